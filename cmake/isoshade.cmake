@@ -1,0 +1,44 @@
+# Flags and helpers that every target shares.
+
+find_package(Threads REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+find_package(glm REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(tinyexr REQUIRED)
+# glslang's package file names these three without finding them.
+find_package(SPIRV-Tools REQUIRED)
+find_package(SPIRV-Tools-opt REQUIRED)
+find_package(glslang REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
+
+# What a float is (docs: "The contract"): no contraction, and no constant folded in another rounding or
+# denormal mode than the one at run time. Every object of ours is compiled so, generated code too.
+set(ISOSHADE_FLOAT_FLAGS -ffp-contract=off -frounding-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND ISOSHADE_FLOAT_FLAGS -fsignaling-nans)
+endif()
+
+add_library(isoshade_flags INTERFACE)
+target_compile_options(isoshade_flags INTERFACE -Wall -Wextra -Werror ${ISOSHADE_FLOAT_FLAGS})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 reports overlapping copies inside std::string that cannot happen (GCC bug 105329).
+  target_compile_options(isoshade_flags INTERFACE -Wno-restrict)
+endif()
+target_include_directories(isoshade_flags INTERFACE ${PROJECT_SOURCE_DIR})
+
+# isoshade_library(NAME SOURCES file... [LINKS target...] [PRIVATE_LINKS target...])
+# One folder, one static library. Public links are the layering; tests/unit checks that includes obey them.
+function(isoshade_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  if(arg_SOURCES)
+    add_library(isoshade_${name} STATIC ${arg_SOURCES})
+    target_link_libraries(isoshade_${name} PUBLIC isoshade_flags ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
+  else()
+    add_library(isoshade_${name} INTERFACE)
+    target_link_libraries(isoshade_${name} INTERFACE isoshade_flags ${arg_LINKS})
+  endif()
+endfunction()
