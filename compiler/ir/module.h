@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The IR: functions in structured SSA form. Pure: nothing is stored, only returned.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/ir/op.h"
+#include "compiler/ir/type.h"
+
+namespace isoshade::ir {
+
+using ValueId = uint32_t;
+using InstructionId = uint32_t;
+using BlockId = uint32_t;
+inline constexpr uint32_t none = ~0u;
+
+/// Where an instruction comes from: the node of a document. Index 0 of a function's origins is "nowhere".
+struct Origin {
+  std::string node;   ///< the node's id; names the value in emitted text
+  uint32_t line = 0;  ///< in the function's document
+};
+
+struct Value {
+  Type type;
+  /// The index of the origin this value is *the* result of (it gets the node's own name), or 0.
+  uint32_t names = 0;
+};
+
+struct Instruction {
+  Opcode op{};
+  uint32_t imm = 0;            ///< see Opcode
+  uint32_t first_operand = 0;  ///< in Function::operands
+  uint32_t operand_count = 0;
+  ValueId first_result = 0;  ///< results are consecutive values
+  uint32_t result_count = 1;
+  std::array<BlockId, 2> blocks{none, none};  ///< branch: then, else; loop: body
+  uint32_t origin = 0;
+};
+
+/// A list of instructions with parameters (of the function, or a loop's index and carried values) that yields
+/// values. Values of enclosing blocks are visible inside.
+struct Block {
+  std::vector<ValueId> parameters;
+  std::vector<InstructionId> instructions;
+  std::vector<ValueId> yields;
+};
+
+/// How a parameter is written and how it varies. Parameters with a group become a struct's fields in emitted text:
+/// `surface.normal`. Parameters of one group are consecutive.
+struct Parameter {
+  std::string name;
+  Type type;
+  std::string group;     ///< empty: a plain parameter
+  bool uniform = false;  ///< the same for all lanes of a batch (material parameters, light data, counts)
+};
+
+struct Result {
+  std::string name;
+  Type type;
+};
+
+/// The body is block 0: its parameters are the function's, its yields the results.
+struct Function {
+  std::string name;      ///< unique in the module; [A-Za-z_][A-Za-z0-9_]*
+  std::string document;  ///< the path of the document it was authored in; empty for library functions
+  std::string library;   ///< the name in functions.def whose body this stands for; empty if authored or a stage
+  std::vector<Parameter> parameters;
+  std::vector<Result> results;
+  std::vector<Origin> origins{{}};
+  std::vector<Value> values;
+  std::vector<Instruction> instructions;
+  std::vector<ValueId> operands;
+  std::vector<Block> blocks;
+
+  /// A library function that `expand` has not given its body yet.
+  bool is_declaration() const { return blocks.empty(); }
+
+  std::span<const ValueId> operands_of(const Instruction& i) const {
+    return {operands.data() + i.first_operand, i.operand_count};
+  }
+  std::span<ValueId> operands_of(const Instruction& i) {
+    return {operands.data() + i.first_operand, i.operand_count};
+  }
+  Type type(ValueId value) const { return values[value].type; }
+};
+
+/// A read-only array of 32-bit elements that stages load from.
+struct Buffer {
+  std::string name;
+  Scalar element = Scalar::floating;  ///< floating or integer
+};
+
+/// Calls are acyclic; a callee may stand after its caller.
+struct Module {
+  std::vector<Buffer> buffers;
+  std::vector<Function> functions;
+
+  uint32_t find(std::string_view function) const;         ///< its index, or none
+  uint32_t find_buffer(std::string_view name) const;  ///< its index, or none
+};
+
+}  // namespace isoshade::ir
