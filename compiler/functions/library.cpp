@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/functions/library.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "compiler/functions/all.h"
+#include "compiler/functions/signatures.h"
+
+namespace isoshade::functions {
+
+namespace {
+
+using namespace traced;
+
+// The body of a row, as a type: its `run` is the template, never the recording overload of the same name.
+#define FUNCTION(name, signature, ulp, domain, reference) \
+  struct Body_##name {                                    \
+    template <class... T>                                 \
+    static auto run(T... arguments) {                     \
+      return functions::name(arguments...);               \
+    }                                                     \
+  };
+#include "compiler/functions/functions.def"
+#undef FUNCTION
+
+template <class Body, class... T>
+void build(ir::Builder& b) {
+  std::vector<ir::ValueId> parameters;
+  for (size_t i = 0; i < b.function().parameters.size(); ++i) parameters.push_back(b.parameter(i));
+  std::span<const ir::ValueId> rest(parameters);
+  std::tuple<T...> arguments{Flat<T>::take(b, rest)...};
+  const auto result = std::apply([](T... a) { return Body::run(a...); }, arguments);
+  std::vector<ir::ValueId> results;
+  Flat<std::remove_const_t<decltype(result)>>::values(b, result, results);
+  b.finish(results);
+}
+
+/// The row's own name where it takes floats, else with the width of its first argument.
+std::string variant_name(std::string_view row, ir::Type first) {
+  std::string name(row);
+  if (first.width > 1) name += std::to_string(first.width);
+  return name;
+}
+
+template <class Body, class... T>
+void add_variant(std::vector<Variant>& out, std::string_view row, Types<T...>) {
+  Variant variant;
+  variant.row = row;
+  (Flat<T>::types(variant.parameters), ...);
+  Flat<decltype(Body::run(std::declval<T>()...))>::types(variant.results);
+  variant.name = variant_name(row, variant.parameters.front());
+  variant.build = &build<Body, T...>;
+  out.push_back(std::move(variant));
+}
+
+template <class Body, class... Variants>
+void add_row(std::vector<Variant>& out, std::string_view row, Types<Variants...>) {
+  (add_variant<Body>(out, row, Variants{}), ...);
+}
+
+}  // namespace
+
+const std::vector<Variant>& variants() {
+  static const std::vector<Variant> table = [] {
+    std::vector<Variant> rows;
+#define FUNCTION(name, signature, ulp, domain, reference) \
+  add_row<Body_##name>(rows, #name, Signature_##signature{});
+#include "compiler/functions/functions.def"
+#undef FUNCTION
+    return rows;
+  }();
+  return table;
+}
+
+const Variant* find(std::string_view row, std::span<const ir::Type> arguments) {
+  static const auto by_row = [] {
+    std::multimap<std::string_view, const Variant*> map;
+    for (const Variant& variant : variants()) map.emplace(variant.row, &variant);
+    return map;
+  }();
+  const auto [first, last] = by_row.equal_range(row);
+  for (auto it = first; it != last; ++it)
+    if (std::ranges::equal(it->second->parameters, arguments)) return it->second;
+  return nullptr;
+}
+
+uint32_t declare(ir::Module& module, const Variant& variant) {
+  for (uint32_t i = 0; i < module.functions.size(); ++i)
+    if (module.functions[i].library == variant.name) return i;
+  ir::Function function;
+  function.name = "iso_" + variant.name;  // no name of GLSL, C++ or an author
+  function.library = variant.name;
+  constexpr std::string_view letters = "abcdefgh";
+  for (size_t i = 0; i < variant.parameters.size(); ++i)
+    function.parameters.push_back({std::string(1, letters[i]), variant.parameters[i], "", false});
+  for (size_t i = 0; i < variant.results.size(); ++i)
+    function.results.push_back({variant.results.size() == 1 ? "out" : "out" + std::to_string(i), variant.results[i]});
+  module.functions.push_back(std::move(function));
+  return static_cast<uint32_t>(module.functions.size() - 1);
+}
+
+std::vector<ir::ValueId> call_library(ir::Builder& builder, std::string_view row,
+                                      std::span<const ir::ValueId> arguments) {
+  std::vector<ir::Type> types;
+  for (ir::ValueId argument : arguments) types.push_back(builder.type(argument));
+  const Variant* variant = find(row, types);
+  if (variant == nullptr) support::bug("no library function " + std::string(row) + " for these arguments");
+  return builder.call(declare(builder.module(), *variant), arguments);
+}
+
+void expand(ir::Module& module) {
+  // Bodies declare further functions at the end of the list.
+  for (uint32_t i = 0; i < module.functions.size(); ++i) {
+    if (!module.functions[i].is_declaration()) continue;
+    for (const Variant& variant : variants()) {
+      if (variant.name != module.functions[i].library) continue;
+      ir::Builder builder(module, i);
+      variant.build(builder);
+    }
+    support::check(!module.functions[i].is_declaration(), "a declaration that the library does not have");
+  }
+}
+
+}  // namespace isoshade::functions

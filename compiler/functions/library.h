@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The function library as IR: what variants there are, declaring them in a module, giving them their bodies.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/ir/builder.h"
+
+namespace isoshade::functions {
+
+/// One row of functions.def at one set of argument types.
+struct Variant {
+  std::string_view row;  ///< "dot"
+  std::string name;      ///< unique: "dot3"; the row's own name where the first argument is a float
+  std::vector<ir::Type> parameters;
+  std::vector<ir::Type> results;
+  void (*build)(ir::Builder&);  ///< makes the body
+};
+
+const std::vector<Variant>& variants();
+/// The row's variant for these argument types, or null.
+const Variant* find(std::string_view row, std::span<const ir::Type> arguments);
+
+/// The index of the variant's declaration in the module, added if it is not there.
+uint32_t declare(ir::Module& module, const Variant& variant);
+
+/// Declares and calls; a row or argument types that do not exist are a bug.
+std::vector<ir::ValueId> call_library(ir::Builder& builder, std::string_view row,
+                                      std::span<const ir::ValueId> arguments);
+
+/// Gives every declaration in the module its body, and those that the bodies call.
+/// Leaves: no declaration in the module.
+void expand(ir::Module& module);
+
+}  // namespace isoshade::functions

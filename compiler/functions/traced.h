@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stand-ins for float, int, bool and vectors that record what is done with them. A function template of this
+// folder instantiated with `traced::Float` builds IR; instantiated with `float` it computes. One text, both uses.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "compiler/ir/builder.h"
+#include "compiler/support/check.h"
+#include "runtime/lanes/lanes.h"
+
+namespace isoshade::functions::traced {
+
+/// A value of a builder, or a literal that becomes a constant of the builder it first meets.
+template <class Literal>
+struct Scalar {
+  ir::Builder* builder = nullptr;
+  ir::ValueId value = ir::none;
+  Literal literal{};
+
+  Scalar() = default;
+  Scalar(Literal literal) : literal(literal) {}
+  Scalar(ir::Builder& builder, ir::ValueId value) : builder(&builder), value(value) {}
+  ir::ValueId id(ir::Builder& b) const { return builder ? value : b.constant(literal); }
+};
+
+struct Bool : Scalar<bool> {
+  using Scalar::Scalar;
+};
+struct Int : Scalar<int> {
+  using Scalar::Scalar;
+};
+struct Float : Scalar<float> {
+  using Scalar::Scalar;
+};
+
+template <class T>
+ir::Builder* builder_in(const T& value) {
+  return value.builder;
+}
+
+template <class... T>
+ir::Builder& builder_of(const T&... values) {
+  ir::Builder* found = nullptr;
+  ((found = found ? found : builder_in(values)), ...);
+  support::check(found != nullptr, "a traced operation on literals alone");
+  return *found;
+}
+
+template <class Result, class... T>
+Result record(ir::Opcode op, const T&... operands) {
+  ir::Builder& b = builder_of(operands...);
+  return Result(b, b.op(op, {operands.id(b)...}));
+}
+
+// A binary operation also takes a literal on either side: friends of the concrete types would do, but two
+// overloads with the one type let implicit conversion work.
+#define ISOSHADE_TRACED(result, type, symbol, op) \
+  inline result operator symbol(type a, type b) { return record<result>(ir::Opcode::op, a, b); }
+ISOSHADE_TRACED(Float, Float, +, fadd)
+ISOSHADE_TRACED(Float, Float, -, fsub)
+ISOSHADE_TRACED(Float, Float, *, fmul)
+ISOSHADE_TRACED(Float, Float, /, fdiv)
+ISOSHADE_TRACED(Bool, Float, <, flt)
+ISOSHADE_TRACED(Bool, Float, <=, fle)
+ISOSHADE_TRACED(Bool, Float, >, fgt)
+ISOSHADE_TRACED(Bool, Float, >=, fge)
+ISOSHADE_TRACED(Bool, Float, ==, feq)
+ISOSHADE_TRACED(Bool, Float, !=, fne)
+ISOSHADE_TRACED(Int, Int, +, iadd)
+ISOSHADE_TRACED(Int, Int, -, isub)
+ISOSHADE_TRACED(Int, Int, *, imul)
+ISOSHADE_TRACED(Int, Int, &, iand)
+ISOSHADE_TRACED(Int, Int, |, ior)
+ISOSHADE_TRACED(Int, Int, ^, ixor)
+ISOSHADE_TRACED(Bool, Int, <, ilt)
+ISOSHADE_TRACED(Bool, Int, <=, ile)
+ISOSHADE_TRACED(Bool, Int, >, igt)
+ISOSHADE_TRACED(Bool, Int, >=, ige)
+ISOSHADE_TRACED(Bool, Int, ==, ieq)
+ISOSHADE_TRACED(Bool, Int, !=, ine)
+ISOSHADE_TRACED(Bool, Bool, &, band)
+ISOSHADE_TRACED(Bool, Bool, |, bor)
+ISOSHADE_TRACED(Bool, Bool, ^, bxor)
+#undef ISOSHADE_TRACED
+
+inline Bool operator!(Bool a) { return record<Bool>(ir::Opcode::bnot, a); }
+inline Float negate(Float a) { return record<Float>(ir::Opcode::fneg, a); }
+inline Float abs(Float a) { return record<Float>(ir::Opcode::fabs, a); }
+inline Float sqrt(Float a) { return record<Float>(ir::Opcode::fsqrt, a); }
+inline Float floor(Float a) { return record<Float>(ir::Opcode::floor, a); }
+inline Int to_int(Float a) { return record<Int>(ir::Opcode::ftoi, a); }
+inline Float to_float(Int a) { return record<Float>(ir::Opcode::itof, a); }
+inline Int bits(Float a) { return record<Int>(ir::Opcode::fbits, a); }
+inline Int bits_nonnan(Float a) { return record<Int>(ir::Opcode::fbits_nonnan, a); }
+inline Float from_bits(Int a) { return record<Float>(ir::Opcode::bitsf, a); }
+inline Float from_bits_normal(Int a) { return record<Float>(ir::Opcode::bitsf_normal, a); }
+inline Int mul_hi(Int a, Int b) { return record<Int>(ir::Opcode::imulhi, a, b); }
+inline Int unsigned_mul_hi(Int a, Int b) { return record<Int>(ir::Opcode::umulhi, a, b); }
+inline Int shift_left(Int a, Int b) { return record<Int>(ir::Opcode::ishl, a, b); }
+inline Int shift_right(Int a, Int b) { return record<Int>(ir::Opcode::ishr, a, b); }
+inline Int shift_right_signed(Int a, Int b) { return record<Int>(ir::Opcode::isar, a, b); }
+inline Bool unsigned_less(Int a, Int b) { return record<Bool>(ir::Opcode::ult, a, b); }
+inline Float select(Bool c, Float a, Float b) { return record<Float>(ir::Opcode::select, c, a, b); }
+inline Int select(Bool c, Int a, Int b) { return record<Int>(ir::Opcode::select, c, a, b); }
+inline Bool select(Bool c, Bool a, Bool b) { return record<Bool>(ir::Opcode::select, c, a, b); }
+
+}  // namespace isoshade::functions::traced
+
+namespace isoshade::lanes {
+
+template <>
+struct traits<functions::traced::Float> {
+  using Int = functions::traced::Int;
+  using Bool = functions::traced::Bool;
+};
+
+/// A traced vector is one value of a vector type; components are extracted on demand.
+template <int N>
+struct vec<functions::traced::Float, N> {
+  using Float = functions::traced::Float;
+  ir::Builder* builder = nullptr;
+  ir::ValueId value = ir::none;
+
+  vec(ir::Builder& builder, ir::ValueId value) : builder(&builder), value(value) {}
+  template <class... Components>
+    requires(sizeof...(Components) == N)
+  vec(Components... components) {
+    const std::array<Float, N> floats{Float(components)...};
+    for (const Float& component : floats) builder = builder ? builder : component.builder;
+    support::check(builder != nullptr, "a traced vector of literals alone");
+    std::array<ir::ValueId, N> ids;
+    for (int i = 0; i < N; ++i) ids[i] = floats[i].id(*builder);
+    value = builder->construct(ids);
+  }
+  Float operator[](int i) const { return Float(*builder, builder->extract(value, static_cast<uint32_t>(i))); }
+  ir::ValueId id(ir::Builder&) const { return value; }
+
+#define ISOSHADE_TRACED(symbol, op) \
+  friend vec operator symbol(vec a, vec b) { return functions::traced::record<vec>(ir::Opcode::op, a, b); }
+  ISOSHADE_TRACED(+, fadd)
+  ISOSHADE_TRACED(-, fsub)
+  ISOSHADE_TRACED(*, fmul)
+  ISOSHADE_TRACED(/, fdiv)
+#undef ISOSHADE_TRACED
+  friend vec negate(vec a) { return functions::traced::record<vec>(ir::Opcode::fneg, a); }
+  friend vec abs(vec a) { return functions::traced::record<vec>(ir::Opcode::fabs, a); }
+  friend vec sqrt(vec a) { return functions::traced::record<vec>(ir::Opcode::fsqrt, a); }
+  friend vec floor(vec a) { return functions::traced::record<vec>(ir::Opcode::floor, a); }
+  friend vec select(functions::traced::Bool c, vec a, vec b) {
+    return functions::traced::record<vec>(ir::Opcode::select, c, a, b);
+  }
+};
+
+}  // namespace isoshade::lanes
