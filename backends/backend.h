@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every backend does: run the vertex stage, draw triangles, evaluate a function over a table. The scene
+// steps around it (render/) are the same for all.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/driver/program.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::backends {
+
+/// Linear, scene-referred; rows top down. Depth is reversed: 1 at the near plane, 0 where nothing was drawn.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<float> rgba;   ///< 4 * width * height
+  std::vector<float> depth;  ///< width * height
+
+  void resize(int w, int h);
+};
+
+enum class Cull : uint8_t { none, back, front };
+
+/// One object under one pass.
+struct Draw {
+  uint32_t vertex_program = 0;  ///< indices into Frame::programs
+  uint32_t pixel_program = 0;
+  int object = 0;             ///< the first word of its record in Frame::objects
+  uint32_t first_vertex = 0;  ///< its mesh in Frame::vertices
+  uint32_t vertex_count = 0;
+  std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
+  Cull cull = Cull::back;
+};
+
+/// A frame ready to be drawn: programs and the arrays of lower/frame_layout.h.
+struct Frame {
+  int width = 0;
+  int height = 0;
+  std::vector<const driver::Program*> programs;
+  std::vector<float> vertices;
+  std::vector<float> objects;
+  std::vector<float> lights;
+  std::vector<float> frame;
+  int light_count = 0;
+  std::vector<Draw> draws;
+  float background[4] = {0, 0, 0, 0};
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual std::string_view name() const = 0;
+  /// Device or compiler, lanes, division: one line for reports.
+  virtual std::string description() const = 0;
+
+  /// Runs the vertex programs: clip[d] receives 4 floats for each vertex of draws[d], NaN canonical.
+  virtual bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+                         support::Diagnostics& diagnostics) = 0;
+  /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order) over the background and shades
+  /// each visible pixel once. `vertices` are frame.vertices with those that clipping made appended.
+  virtual bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
+                    Image& image, support::Diagnostics& diagnostics) = 0;
+  /// Runs an eval program over `rows` records of inputs; outputs are records of the program's result words.
+  virtual bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
+                        std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) = 0;
+};
+
+}  // namespace isoshade::backends

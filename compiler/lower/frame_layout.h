@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arrays that stages load from, word by word. The one definition: lowering writes the loads by it, the
+// runtime fills the arrays by it. Every float in them is flushed (no denormals) and every NaN is 0x7fc00000.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "compiler/ir/type.h"
+
+namespace isoshade::lower {
+
+/// The buffers of every module with stages, in this order; the index is the Vulkan binding (set 0).
+enum class FrameBuffer : uint32_t { vertices, triangles, objects, lights, frame, inputs };
+
+struct FrameBufferInfo {
+  std::string_view name;
+  ir::Scalar element;
+};
+inline constexpr FrameBufferInfo frame_buffers[] = {
+    {"vertices", ir::Scalar::floating},  ///< mesh vertices, object space
+    {"triangles", ir::Scalar::integer},  ///< clipped and snapped, see runtime/raster
+    {"objects", ir::Scalar::floating},   ///< transforms and effect parameters
+    {"lights", ir::Scalar::floating},    //
+    {"frame", ir::Scalar::floating},     ///< the camera
+    {"inputs", ir::Scalar::integer},     ///< of `eval`: one row a record, floats as bits
+};
+
+/// vertices: one record a mesh vertex.
+namespace vertex_word {
+inline constexpr int position = 0;  ///< x y z, object space
+inline constexpr int normal = 3;    ///< x y z, unit, object space
+inline constexpr int texcoord = 6;  ///< u v
+inline constexpr int stride = 8;
+}  // namespace vertex_word
+
+/// triangles: one record of 64 bytes. Wound so that the doubled area, y down, is positive.
+namespace triangle_word {
+inline constexpr int vertex = 0;  ///< three indices into vertices
+inline constexpr int object =
+    3;  ///< 2 * (first word of the object's record) + wide; wide: an edge spans 2^15 or more
+inline constexpr int position = 4;    ///< x0 y0 x1 y1 x2 y2 in 1/256 pixel, y down, |.| <= 2^21
+inline constexpr int depth = 10;      ///< z0 z1 z2 as float bits, reversed: near 1, far 0
+inline constexpr int inverse_w = 13;  ///< 1/w of each vertex as float bits; 1 under orthographic projection
+inline constexpr int stride = 16;
+}  // namespace triangle_word
+
+/// objects: one record an object; effect parameters follow in the order of the effect's reflection, each of
+/// as many words as it has components (matrices column by column).
+namespace object_word {
+inline constexpr int model = 0;  ///< 4 columns of 3: object space -> world space
+inline constexpr int normal =
+    12;  ///< 3 columns of 3: object -> world for normals (cofactors; not normalised)
+inline constexpr int projected = 21;  ///< 4 columns of 4: object space -> clip space
+inline constexpr int program = 37;    ///< the index of the surface program as a float
+inline constexpr int parameters = 38;
+}  // namespace object_word
+
+/// lights: one record a light.
+namespace light_word {
+inline constexpr int kind = 0;         ///< 0 directional, 1 point, 2 spot
+inline constexpr int direction = 1;    ///< unit, world space, towards the light (spot: against its axis)
+inline constexpr int position = 4;     ///< world space
+inline constexpr int color = 7;        ///< linear RGB times intensity
+inline constexpr int cone_scale = 10;  ///< spot: falloff = saturate(cos(angle) * scale + offset)^2
+inline constexpr int cone_offset = 11;
+inline constexpr int range = 12;  ///< point, spot: 1 / range^2, 0 for no end
+inline constexpr int stride = 16;
+}  // namespace light_word
+
+/// frame: the camera.
+namespace frame_word {
+inline constexpr int eye =
+    0;  ///< homogeneous, world space: position and 1, or the direction to the viewer and 0
+inline constexpr int count = 4;
+}  // namespace frame_word
+
+}  // namespace isoshade::lower
