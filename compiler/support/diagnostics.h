@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/support/source.h"
@@ -20,9 +21,9 @@ enum class Id {
 #undef DIAGNOSTIC
 };
 
-std::string_view id_text(Id id);        ///< "unknown-port"
-Severity default_severity(Id id);       ///< as in the table
-std::string_view meaning(Id id);        ///< one sentence
+std::string_view id_text(Id id);   ///< "unknown-port"
+Severity default_severity(Id id);  ///< as in the table
+std::string_view meaning(Id id);   ///< one sentence
 std::vector<Id> all_ids();
 
 struct Note {
@@ -45,7 +46,8 @@ struct Diagnostic {
   Diagnostic& at(std::string json_pointer);
 };
 
-/// The sink that every stage writes to. Keeps at most `limit` errors; later ones are counted.
+/// The sink that every stage writes to. Keeps at most `limit` errors and as many warnings; later ones are
+/// counted. A name or a file in a message is put there by quoted() of visible.h: a document may say anything.
 class Diagnostics {
  public:
   explicit Diagnostics(size_t limit = 50) : limit_(limit) {}
@@ -56,14 +58,22 @@ class Diagnostics {
 
   bool has_errors() const { return errors_ != 0; }
   size_t error_count() const { return errors_; }
+  /// Whether further errors are only counted: nobody reads their suggestions, so do not search for any.
+  bool full() const { return errors_ >= limit_; }
   const std::vector<Diagnostic>& all() const { return diagnostics_; }
+  std::vector<Diagnostic>& all() { return diagnostics_; }
 
   void warnings_as_errors(bool on) { warnings_as_errors_ = on; }
+  /// Drops an id where it is a warning; errors cannot be disabled.
   void disable(Id id) { disabled_.push_back(id); }
 
-  /// path:line:column: error[id]: message, the source line, a caret, notes, the fix.
+  /// path:line:column: error[id]: message, the source line, a caret, the fix, notes. Whatever a document put
+  /// into it is made visible: no control character reaches the terminal. Of lines beyond 160 bytes the part
+  /// around the caret is shown; a tab is shown as four blanks.
   std::string text(bool colour = false) const;
-  /// An array of {id, severity, file, line, column, pointer, message, notes, fix}.
+  /// An array of {id, severity, file, line, column, pointer, message, notes, fix}, in ASCII. Lines and
+  /// columns (in bytes) count from 1; where a diagnostic has no place, file is "" and both are 0. A note has
+  /// file, line, column and message.
   std::string json() const;
 
  private:
@@ -72,11 +82,12 @@ class Diagnostics {
   Diagnostic dropped_{};  ///< where reports past the limit and disabled ones are written
   size_t limit_;
   size_t errors_ = 0;
-  size_t suppressed_ = 0;
+  size_t warnings_ = 0;
   bool warnings_as_errors_ = false;
 };
 
-/// The candidate nearest to `word` by edit distance, or empty if none is near enough to suggest.
+/// The candidate nearest to `word` by edit distance (case and '_' count little), or empty if none is near
+/// enough to suggest. Work is bounded, so of very many candidates only the first ones are looked at.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
 }  // namespace isoshade::support
