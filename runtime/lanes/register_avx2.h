@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Eight lanes: AVX2.
+#pragma once
+
+#include "runtime/lanes/register.h"
+
+#if defined(__AVX2__)
+
+namespace isoshade::lanes {
+
+template <>
+struct Register<8> : VectorMasks<8> {
+  using VectorMasks<8>::blend;
+
+  ISOSHADE_INLINE static Floats splat(float x) { return Floats{x, x, x, x, x, x, x, x}; }
+  ISOSHADE_INLINE static Ints splat(int x) { return Ints{x, x, x, x, x, x, x, x}; }
+  ISOSHADE_INLINE static Ints lane_index() { return Ints{0, 1, 2, 3, 4, 5, 6, 7}; }
+
+  ISOSHADE_INLINE static bool any(Mask mask) { return __builtin_ia32_movmskps256((Floats)mask) != 0; }
+  ISOSHADE_INLINE static bool all(Mask mask) { return __builtin_ia32_movmskps256((Floats)mask) == 0xff; }
+  ISOSHADE_INLINE static Floats blend(Mask mask, Floats then, Floats other) {
+    return __builtin_ia32_blendvps256(other, then, (Floats)mask);
+  }
+
+  ISOSHADE_INLINE static Floats sqrt(Floats x) { return __builtin_ia32_sqrtps256(x); }
+  ISOSHADE_INLINE static Floats floor(Floats x) { return __builtin_ia32_roundps256(x, 9); }
+  ISOSHADE_INLINE static Ints truncate(Floats x) { return (Ints)__builtin_ia32_cvttps2dq256(x); }
+  ISOSHADE_INLINE static Longs multiply_even(Ints a, Ints b) {
+    return (Longs)__builtin_ia32_pmuludq256(a, b);
+  }
+
+#if defined(__clang__)
+  ISOSHADE_INLINE static Floats gather(const float* data, Ints index) {
+    return __builtin_ia32_gatherd_ps256(Floats{}, data, index, (Floats)mask(true), 4);
+  }
+  ISOSHADE_INLINE static Ints gather(const int* data, Ints index) {
+    return __builtin_ia32_gatherd_d256(Ints{}, data, index, mask(true), 4);
+  }
+#else
+  ISOSHADE_INLINE static Floats gather(const float* data, Ints index) {
+    return __builtin_ia32_gathersiv8sf(Floats{}, data, index, (Floats)mask(true), 4);
+  }
+  ISOSHADE_INLINE static Ints gather(const int* data, Ints index) {
+    return __builtin_ia32_gathersiv8si(Ints{}, data, index, mask(true), 4);
+  }
+#endif
+};
+
+}  // namespace isoshade::lanes
+
+#endif

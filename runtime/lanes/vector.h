@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Float, Int and Bool of one register. Every function takes uniform values for lanes, for they convert
+// implicitly; the overloads that take a bool condition test it once and not in every lane.
+#pragma once
+
+#include "runtime/lanes/register.h"
+#include "runtime/lanes/register_avx2.h"
+#include "runtime/lanes/register_avx512.h"
+
+namespace isoshade::lanes {
+
+template <int W, int R>
+struct Float;
+template <int W, int R>
+struct Int;
+template <int W, int R>
+struct Bool;
+
+template <int W, int R>
+struct lane_traits<Float<W, R>> : lane_family<Float<W, R>, Int<W, R>, Bool<W, R>, W * R> {};
+template <int W, int R>
+struct lane_traits<Int<W, R>> : lane_traits<Float<W, R>> {};
+template <int W, int R>
+struct lane_traits<Bool<W, R>> : lane_traits<Float<W, R>> {};
+
+template <int W>
+struct Bool<W, 1> {
+  using Raw = typename Register<W>::Mask;
+  using F = Float<W, 1>;
+  using I = Int<W, 1>;
+
+  Raw raw;
+
+  Bool() = default;
+  ISOSHADE_INLINE Bool(bool uniform) : raw(Register<W>::mask(uniform)) {}
+  ISOSHADE_INLINE static Bool of(Raw raw) {
+    Bool result;
+    result.raw = raw;
+    return result;
+  }
+
+  ISOSHADE_INLINE friend Bool operator&(Bool a, Bool b) { return of((Raw)(a.raw & b.raw)); }
+  ISOSHADE_INLINE friend Bool operator|(Bool a, Bool b) { return of((Raw)(a.raw | b.raw)); }
+  ISOSHADE_INLINE friend Bool operator^(Bool a, Bool b) { return of((Raw)(a.raw ^ b.raw)); }
+  ISOSHADE_INLINE friend Bool operator!(Bool a) { return of((Raw)~a.raw); }
+
+  ISOSHADE_INLINE friend bool any(Bool a) { return Register<W>::any(a.raw); }
+  ISOSHADE_INLINE friend bool all(Bool a) { return Register<W>::all(a.raw); }
+
+  ISOSHADE_INLINE friend Bool select(Bool c, Bool a, Bool b) {
+    return of((Raw)((c.raw & a.raw) | (~c.raw & b.raw)));
+  }
+  ISOSHADE_INLINE friend Bool select(bool c, Bool a, Bool b) { return c ? a : b; }
+  ISOSHADE_INLINE friend Bool select(Bool c, bool a, bool b) { return select(c, Bool(a), Bool(b)); }
+  ISOSHADE_INLINE friend F select(Bool c, float a, float b) { return select(c, F(a), F(b)); }
+  ISOSHADE_INLINE friend I select(Bool c, int a, int b) { return select(c, I(a), I(b)); }
+};
+
+template <int W>
+struct Float<W, 1> {
+  using Raw = typename Vectors<W>::Floats;
+  using Bits = typename Vectors<W>::Ints;
+  using B = Bool<W, 1>;
+
+  Raw raw;
+
+  Float() = default;
+  ISOSHADE_INLINE Float(float uniform) : raw(Register<W>::splat(uniform)) {}
+  ISOSHADE_INLINE static Float of(Raw raw) {
+    Float result;
+    result.raw = raw;
+    return result;
+  }
+
+  ISOSHADE_INLINE friend Float operator+(Float a, Float b) { return of(a.raw + b.raw); }
+  ISOSHADE_INLINE friend Float operator-(Float a, Float b) { return of(a.raw - b.raw); }
+  ISOSHADE_INLINE friend Float operator*(Float a, Float b) { return of(a.raw * b.raw); }
+  ISOSHADE_INLINE friend Float operator/(Float a, Float b) { return of(a.raw / b.raw); }
+
+  ISOSHADE_INLINE friend B operator<(Float a, Float b) { return B::of(Register<W>::less(a.raw, b.raw)); }
+  ISOSHADE_INLINE friend B operator<=(Float a, Float b) {
+    return B::of(Register<W>::less_equal(a.raw, b.raw));
+  }
+  ISOSHADE_INLINE friend B operator>(Float a, Float b) { return b < a; }
+  ISOSHADE_INLINE friend B operator>=(Float a, Float b) { return b <= a; }
+  ISOSHADE_INLINE friend B operator==(Float a, Float b) { return B::of(Register<W>::equal(a.raw, b.raw)); }
+  ISOSHADE_INLINE friend B operator!=(Float a, Float b) {
+    return B::of(Register<W>::not_equal(a.raw, b.raw));
+  }
+
+  ISOSHADE_INLINE friend Float negate(Float x) { return of((Raw)((Bits)x.raw ^ sign_bit)); }
+  ISOSHADE_INLINE friend Float abs(Float x) { return of((Raw)((Bits)x.raw & ~sign_bit)); }
+  ISOSHADE_INLINE friend Float sqrt(Float x) { return of(Register<W>::sqrt(x.raw)); }
+  ISOSHADE_INLINE friend Float floor(Float x) { return of(Register<W>::floor(x.raw)); }
+
+  ISOSHADE_INLINE friend Float select(B c, Float a, Float b) {
+    return of(Register<W>::blend(c.raw, a.raw, b.raw));
+  }
+  ISOSHADE_INLINE friend Float select(bool c, Float a, Float b) { return c ? a : b; }
+};
+
+template <int W>
+struct Int<W, 1> {
+  using Raw = typename Vectors<W>::Ints;
+  using Uints = typename Vectors<W>::Uints;
+  using Longs = typename Vectors<W>::Longs;
+  using B = Bool<W, 1>;
+  using F = Float<W, 1>;
+
+  Raw raw;
+
+  Int() = default;
+  ISOSHADE_INLINE Int(int uniform) : raw(Register<W>::splat(uniform)) {}
+  ISOSHADE_INLINE static Int of(Raw raw) {
+    Int result;
+    result.raw = raw;
+    return result;
+  }
+
+  // Unsigned inside: the compilers may assume that signed lanes do not overflow.
+  ISOSHADE_INLINE friend Int operator+(Int a, Int b) { return of((Raw)((Uints)a.raw + (Uints)b.raw)); }
+  ISOSHADE_INLINE friend Int operator-(Int a, Int b) { return of((Raw)((Uints)a.raw - (Uints)b.raw)); }
+  ISOSHADE_INLINE friend Int operator*(Int a, Int b) { return of((Raw)((Uints)a.raw * (Uints)b.raw)); }
+  ISOSHADE_INLINE friend Int operator&(Int a, Int b) { return of(a.raw & b.raw); }
+  ISOSHADE_INLINE friend Int operator|(Int a, Int b) { return of(a.raw | b.raw); }
+  ISOSHADE_INLINE friend Int operator^(Int a, Int b) { return of(a.raw ^ b.raw); }
+
+  ISOSHADE_INLINE friend Int shift_left(Int x, Int n) { return of((Raw)((Uints)x.raw << (Uints)n.raw)); }
+  ISOSHADE_INLINE friend Int shift_left(Int x, int n) { return of((Raw)((Uints)x.raw << (unsigned)n)); }
+  ISOSHADE_INLINE friend Int shift_right(Int x, Int n) { return of((Raw)((Uints)x.raw >> (Uints)n.raw)); }
+  ISOSHADE_INLINE friend Int shift_right(Int x, int n) { return of((Raw)((Uints)x.raw >> (unsigned)n)); }
+  ISOSHADE_INLINE friend Int shift_right_signed(Int x, Int n) { return of(x.raw >> n.raw); }
+  ISOSHADE_INLINE friend Int shift_right_signed(Int x, int n) { return of(x.raw >> n); }
+
+  /// Products of even and of odd lanes, 64 bits each; the high halves are put together again.
+  ISOSHADE_INLINE friend Int unsigned_mul_hi(Int a, Int b) {
+    const Raw a_odd = (Raw)((Longs)a.raw >> 32), b_odd = (Raw)((Longs)b.raw >> 32);
+    const Longs even = Register<W>::multiply_even(a.raw, b.raw) >> 32;
+    const Longs odd = Register<W>::multiply_even(a_odd, b_odd) & 0xffffffff00000000ull;
+    return of((Raw)(even | odd));
+  }
+  /// A negative operand counts as 2^32 too much, and the other once too often in the high half.
+  ISOSHADE_INLINE friend Int mul_hi(Int a, Int b) {
+    return unsigned_mul_hi(a, b) - (shift_right_signed(a, 31) & b) - (shift_right_signed(b, 31) & a);
+  }
+
+  ISOSHADE_INLINE friend B operator<(Int a, Int b) { return B::of(Register<W>::less(a.raw, b.raw)); }
+  ISOSHADE_INLINE friend B operator<=(Int a, Int b) { return B::of(Register<W>::less_equal(a.raw, b.raw)); }
+  ISOSHADE_INLINE friend B operator>(Int a, Int b) { return b < a; }
+  ISOSHADE_INLINE friend B operator>=(Int a, Int b) { return b <= a; }
+  ISOSHADE_INLINE friend B operator==(Int a, Int b) { return B::of(Register<W>::equal(a.raw, b.raw)); }
+  ISOSHADE_INLINE friend B operator!=(Int a, Int b) { return B::of(Register<W>::not_equal(a.raw, b.raw)); }
+  ISOSHADE_INLINE friend B unsigned_less(Int a, Int b) {
+    return B::of(Register<W>::unsigned_less(a.raw, b.raw));
+  }
+
+  ISOSHADE_INLINE friend Int select(B c, Int a, Int b) { return of(Register<W>::blend(c.raw, a.raw, b.raw)); }
+  ISOSHADE_INLINE friend Int select(bool c, Int a, Int b) { return c ? a : b; }
+};
+
+template <int W>
+ISOSHADE_INLINE Int<W, 1> to_int(Float<W, 1> x) {
+  return Int<W, 1>::of(Register<W>::truncate(x.raw));
+}
+template <int W>
+ISOSHADE_INLINE Float<W, 1> to_float(Int<W, 1> x) {
+  return Float<W, 1>::of(__builtin_convertvector(x.raw, typename Vectors<W>::Floats));
+}
+template <int W>
+ISOSHADE_INLINE Int<W, 1> bits_nonnan(Float<W, 1> x) {
+  return Int<W, 1>::of((typename Vectors<W>::Ints)x.raw);
+}
+template <int W>
+ISOSHADE_INLINE Float<W, 1> from_bits_normal(Int<W, 1> x) {
+  return Float<W, 1>::of((typename Vectors<W>::Floats)x.raw);
+}
+
+// The same text for any number of registers.
+
+template <int W, int R>
+ISOSHADE_INLINE Int<W, R> bits(Float<W, R> x) {
+  return select(x == x, bits_nonnan(x), canonical_nan);
+}
+template <int W, int R>
+ISOSHADE_INLINE Float<W, R> from_bits(Int<W, R> x) {
+  return from_bits_normal(select((x & exponent_bits) == 0, x & sign_bit, x));
+}
+
+}  // namespace isoshade::lanes
