@@ -35,25 +35,46 @@ struct Member {
   Json value;
 };
 
+/// With its article: "a number", "an array", "null".
 std::string_view kind_name(Json::Kind kind);
 
 /// Limits that keep hostile documents harmless.
 inline constexpr int max_depth = 64;
-inline constexpr size_t max_document_bytes = 256u << 20;
+inline constexpr size_t max_document_bytes = 32u << 20;  ///< a graph of 100,000 nodes has some 10 MiB
+inline constexpr size_t max_values =
+    1'000'000;  ///< each takes some 300 bytes, its part of the Graph included
 
 struct Document {
   support::Source source;
   Json root;
 
   support::Span span(const Json& value) const { return {source, value.begin, value.end}; }
+  /// The value as it is written, quotes and escapes included.
+  std::string_view text(const Json& value) const {
+    return std::string_view(source->text()).substr(value.begin, value.end - value.begin);
+  }
+  /// A number's text rounded once to float: through Json::number it would be rounded twice. Denormals are
+  /// zeros; what is beyond the range is infinite.
+  float to_float(const Json& number) const;
+  /// The exact value of an integral number.
+  int64_t to_integer(const Json& number) const;
   support::Span key_span(const Member& member) const { return {source, member.key_begin, member.key_end}; }
 };
 
 /// Parses JSON text (RFC 8259, UTF-8). Reports syntax errors, duplicate keys, nesting beyond max_depth,
-/// numbers that no double holds, and bytes that are not UTF-8.
+/// numbers that no double holds, and bytes that are not UTF-8; a text that is no JSON ends at its first
+/// error. A byte order mark at the head is skipped.
 std::optional<Document> parse_document(support::Source source, support::Diagnostics& diagnostics);
 
-/// Reads a file ("-" is standard input); reports a file that is missing, unreadable or too large.
-support::Source read_source(const std::string& path, support::Diagnostics& diagnostics);
+/// Reads a file ("-" is standard input); reports a file that is missing, unreadable or too large, and then
+/// returns nothing. `where` is the place that names the file, if a document does.
+support::Source read_source(const std::string& path, support::Diagnostics& diagnostics,
+                            const support::Span& where = {});
+
+/// The JSON pointer (RFC 6901) of the innermost value at a byte offset: "/nodes/a/in1"; "" is the root.
+std::string pointer_at(const Document& document, uint32_t offset);
+
+/// Fills in the pointer of every diagnostic that lies in `document` and has none. For --diagnostics json.
+void add_pointers(const Document& document, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::graph

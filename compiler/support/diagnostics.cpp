@@ -5,6 +5,8 @@
 #include <cctype>
 #include <numeric>
 
+#include "compiler/support/visible.h"
+
 namespace isoshade::support {
 namespace {
 
@@ -89,6 +91,14 @@ Diagnostic& Diagnostics::report(Id id, Span where, std::string message) {
   size_t& count = severity == Severity::error ? errors_ : warnings_;
   if (++count > limit_) return dropped_ = std::move(diagnostic);
   return diagnostics_.emplace_back(std::move(diagnostic));
+}
+
+Diagnostic& Diagnostics::report_unknown(Id id, Span where, std::string message, std::string_view word,
+                                        const std::vector<std::string_view>& candidates) {
+  const bool is_read = !full();
+  Diagnostic& diagnostic = report(id, std::move(where), std::move(message));
+  const std::string_view near = is_read ? nearest(word, candidates) : std::string_view{};
+  return near.empty() ? diagnostic : diagnostic.suggest("did you mean " + quoted(near) + "?");
 }
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {

@@ -55,10 +55,13 @@ class Diagnostics {
   /// The reference is valid until the next report.
   Diagnostic& report(Id id, Span where, std::string message);
   Diagnostic& report(Id id, std::string message) { return report(id, Span{}, std::move(message)); }
+  /// Reports that nothing is called `word`, and suggests the candidate nearest to it, if one is near.
+  Diagnostic& report_unknown(Id id, Span where, std::string message, std::string_view word,
+                             const std::vector<std::string_view>& candidates);
 
   bool has_errors() const { return errors_ != 0; }
   size_t error_count() const { return errors_; }
-  /// Whether further errors are only counted: nobody reads their suggestions, so do not search for any.
+  /// Whether further errors are only counted: work on their notes and suggestions is lost.
   bool full() const { return errors_ >= limit_; }
   const std::vector<Diagnostic>& all() const { return diagnostics_; }
   std::vector<Diagnostic>& all() { return diagnostics_; }

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/graph/graph.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "compiler/support/visible.h"
+
+namespace isoshade::graph {
+
+using support::Diagnostics;
+using support::Id;
+using support::quoted;
+
+namespace {
+
+struct TypeRow {
+  std::string_view name;
+  int floats;
+};
+// In the order of Type.
+constexpr std::array<TypeRow, 12> types = {{{"boolean", 0},
+                                            {"integer", 0},
+                                            {"float", 1},
+                                            {"vector2", 2},
+                                            {"vector3", 3},
+                                            {"vector4", 4},
+                                            {"color3", 3},
+                                            {"color4", 4},
+                                            {"matrix33", 9},
+                                            {"matrix44", 16},
+                                            {"filename", 0},
+                                            {"string", 0}}};
+static_assert(types.size() == static_cast<size_t>(Type::string) + 1);
+
+// In the order of DocumentKind.
+constexpr std::array<std::string_view, 4> kinds = {"function", "effect", "post", "scene"};
+
+bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
+
+/// Reports a missing or other version than ours; keys and meanings of another version would be guessed at.
+bool check_version(const Document& document, Diagnostics& diagnostics) {
+  const Json& root = document.root;
+  const Json* version = root.find("isoshade");
+  if (version == nullptr) {
+    diagnostics
+        .report(Id::missing_key, {document.source, root.begin, root.begin + 1},
+                "a document needs its version")
+        .suggest("add \"isoshade\": 1");
+    return false;
+  }
+  if (version->kind == Json::Kind::number && version->integral && version->number == 1) return true;
+  diagnostics.report(Id::wrong_version, document.span(*version),
+                     "this isoshade reads documents of version 1");
+  return false;
+}
+
+}  // namespace
+
+std::string_view kind_name(DocumentKind kind) { return kinds[static_cast<size_t>(kind)]; }
+
+std::string_view type_name(Type type) { return types[static_cast<size_t>(type)].name; }
+
+std::optional<Type> find_type(std::string_view name) {
+  for (size_t i = 0; i < types.size(); ++i) {
+    if (types[i].name == name) return static_cast<Type>(i);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string_view> all_type_names() {
+  std::vector<std::string_view> names;
+  for (const TypeRow& row : types) names.push_back(row.name);
+  return names;
+}
+
+int float_count(Type type) { return types[static_cast<size_t>(type)].floats; }
+
+bool is_id(std::string_view text) {
+  if (text.empty() || text.size() > 128 || !is_letter(text[0])) return false;
+  for (const char c : text) {
+    if (!is_letter(c) && !(c >= '0' && c <= '9')) return false;
+  }
+  return true;
+}
+
+std::optional<DocumentKind> document_kind(const Document& document, Diagnostics& diagnostics) {
+  const Json& root = document.root;
+  if (root.kind != Json::Kind::object) {
+    diagnostics.report(Id::wrong_type, document.span(root),
+                       "a document is an object, not " + std::string(kind_name(root.kind)));
+    return std::nullopt;
+  }
+  const bool version_fits = check_version(document, diagnostics);
+  const Member* named = nullptr;
+  DocumentKind kind{};
+  for (const Member& member : root.members) {
+    for (size_t i = 0; i < kinds.size(); ++i) {
+      if (member.key != kinds[i]) continue;
+      if (named != nullptr) {
+        diagnostics.report(Id::wrong_kind, document.key_span(member), "a document is of one kind only")
+            .note(document.key_span(*named), "its kind was given here");
+        return std::nullopt;
+      }
+      named = &member;
+      kind = static_cast<DocumentKind>(i);
+    }
+  }
+  if (named == nullptr) {
+    diagnostics
+        .report(Id::wrong_kind, {document.source, root.begin, root.begin + 1},
+                "a document is a function, effect, post or scene")
+        .suggest("add \"effect\": \"its_name\", or another of these keys");
+    return std::nullopt;
+  }
+  if (!version_fits) return std::nullopt;
+  return kind;
+}
+
+std::optional<Link> parse_link(const support::Source& source, std::string_view text, Place place,
+                               Diagnostics& diagnostics) {
+  Link link{{}, {}, place};
+  size_t parts = 0;
+  bool good = true;
+  for (std::string_view rest = text; good; ++parts) {
+    const size_t dot = rest.find('.');
+    const std::string_view part = rest.substr(0, dot);
+    good = is_id(part) && parts < 3;
+    if (good && parts == 0) link.name = part;
+    if (good && parts > 0) link.selectors.emplace_back(part);
+    if (dot == std::string_view::npos) break;
+    rest.remove_prefix(dot + 1);
+  }
+  if (good) return link;
+  diagnostics.report(Id::bad_link, {source, place.begin, place.end}, quoted(text) + " is not a link")
+      .note("a link is \"node\", \"node.port\", \"node.xyz\" or \"node.port.xyz\"");
+  return std::nullopt;
+}
+
+bool fits(Type type, const Literal& literal) {
+  switch (type) {
+    case Type::boolean: return literal.kind == Literal::Kind::boolean;
+    case Type::integer:
+      return literal.kind == Literal::Kind::number && literal.integral &&
+             literal.integer >= std::numeric_limits<int32_t>::min() &&
+             literal.integer <= std::numeric_limits<int32_t>::max();
+    case Type::floating: return literal.kind == Literal::Kind::number;
+    case Type::filename:
+    case Type::string: return literal.kind == Literal::Kind::string;
+    default:
+      return literal.kind == Literal::Kind::numbers &&
+             literal.numbers.size() == static_cast<size_t>(float_count(type));
+  }
+}
+
+}  // namespace isoshade::graph

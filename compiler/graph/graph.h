@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// The graph of one document as its author wrote it: shape and names are checked, links and types are not.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "compiler/graph/document.h"
+
+namespace isoshade::graph {
+
+enum class DocumentKind : uint8_t { function, effect, post, scene };
+
+std::string_view kind_name(DocumentKind kind);
+
+/// The kind of a document, after its version was checked. Reports a root that is no object, a missing or
+/// wrong "isoshade": 1, and a document that has not exactly one of the keys function, effect, post, scene.
+std::optional<DocumentKind> document_kind(const Document& document, support::Diagnostics& diagnostics);
+
+enum class Type : uint8_t {
+  boolean,
+  integer,
+  floating,  ///< "float"
+  vector2,
+  vector3,
+  vector4,
+  color3,
+  color4,
+  matrix33,
+  matrix44,
+  filename,
+  string,
+};
+
+std::string_view type_name(Type type);
+std::optional<Type> find_type(std::string_view name);
+std::vector<std::string_view> all_type_names();
+/// Floats in a value of the type: 1, 2, 3, 4, 9 or 16; 0 if it is not made of floats.
+int float_count(Type type);
+
+/// Names of inputs, parameters, nodes, ports, passes: [A-Za-z_][A-Za-z0-9_]{0,127}.
+bool is_id(std::string_view text);
+
+/// A range of bytes in the document; Graph::span makes a Span of it.
+struct Place {
+  uint32_t begin = 0, end = 0;
+};
+
+/// A value written in the document. Floats are rounded once from the text, denormals are zeros; none is NaN
+/// or infinite.
+struct Literal {
+  enum class Kind : uint8_t { boolean, number, numbers, string };
+  Kind kind = Kind::number;
+  bool boolean = false;
+  bool integral = false;       ///< a number written without fraction or exponent that fits int64
+  float number = 0;            ///< of a number
+  int64_t integer = 0;         ///< of an integral number
+  std::vector<float> numbers;  ///< of an array: at most 16
+  std::string string;
+};
+
+/// "node", "node.port", "node.xyz" or "node.port.xyz", taken apart at the dots but not resolved.
+struct Link {
+  std::string name;                    ///< of a node, input or parameter
+  std::vector<std::string> selectors;  ///< at most two: an output port, a swizzle, or both in this order
+  Place place;                         ///< of the string
+};
+
+/// What stands in a port. A string is a Literal here: in a port of type string or filename it is the text
+/// itself, and parse_link makes the link that it is elsewhere. {"link": "x"} is a Link.
+struct Port {
+  std::string name;
+  std::variant<Literal, Link> value;
+  Place name_place, place;
+};
+
+struct Node {
+  std::string id, type, doc;  ///< type: of the node library, or a function document's name or path
+  std::vector<Port> ports;    ///< in the order written
+  Place id_place, type_place, place;
+};
+
+/// An input of a function, or a parameter of an effect or post.
+struct Input {
+  std::string name, doc;
+  Type type = Type::floating;
+  std::optional<Literal> value;   ///< always there in a parameter; fits the type and the range
+  std::optional<float> min, max;  ///< of each component
+  Place name_place, place, value_place;
+};
+
+/// An output of a function ("out", ...) or post ("color").
+struct Output {
+  std::string name;
+  Link link;
+  Place name_place;
+};
+
+enum class Cull : uint8_t { none, back, front };
+enum class DepthTest : uint8_t { nearer, always };
+
+/// One drawing of the mesh by an effect.
+struct Pass {
+  std::string name;
+  Cull cull = Cull::back;
+  DepthTest depth = DepthTest::nearer;
+  std::optional<Link> position;  ///< vertex output; without it the mesh's own position
+  Link color;                    ///< surface output
+  Place place;
+};
+
+struct Graph {
+  support::Source source;
+  DocumentKind kind = DocumentKind::function;  ///< never scene
+  std::string name, doc;
+  Place name_place;
+  std::vector<Input> inputs;
+  std::vector<Node> nodes;
+  std::vector<Output> outputs;  ///< of a function or post, at least one
+  std::vector<Pass> passes;     ///< of an effect, at least one
+
+  /// Inputs and nodes share their names.
+  struct Name {
+    bool is_input;
+    uint32_t index;
+  };
+  std::unordered_map<std::string, Name> names;
+
+  support::Span span(Place place) const { return {source, place.begin, place.end}; }
+};
+
+/// Reports everything wrong with the shape of a function, effect or post document.
+std::optional<Graph> build_graph(const Document& document, support::Diagnostics& diagnostics);
+
+/// Takes a string apart as a link; reports one that has not the form of a link.
+std::optional<Link> parse_link(const support::Source& source, std::string_view text, Place place,
+                               support::Diagnostics& diagnostics);
+
+/// Whether a literal is a value of the type as it stands: a boolean, an integer in 32 bits, a number, an
+/// array of as many numbers as the type has floats, a string.
+bool fits(Type type, const Literal& literal);
+
+}  // namespace isoshade::graph

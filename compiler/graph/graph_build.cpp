@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Apache-2.0
+// Document -> Graph.
+#include <cmath>
+#include <utility>
+
+#include "compiler/graph/graph.h"
+#include "compiler/graph/reader.h"
+#include "compiler/support/parse_number.h"
+#include "compiler/support/visible.h"
+
+namespace isoshade::graph {
+namespace {
+
+using support::Diagnostics;
+using support::Id;
+using support::quoted;
+using Need = ObjectReader::Need;
+
+Place place_of(const Json& json) { return {json.begin, json.end}; }
+Place key_place(const Member& member) { return {member.key_begin, member.key_end}; }
+
+class GraphBuilder {
+ public:
+  GraphBuilder(const Document& document, Diagnostics& diagnostics)
+      : document_(document), diagnostics_(diagnostics) {
+    graph_.source = document.source;
+  }
+
+  std::optional<Graph> build(DocumentKind kind);
+
+ private:
+  void check_id(std::string_view id, Place place, std::string_view what);
+  /// Enters an input or a node under its name.
+  void enter(const Member& member, std::string_view what, Graph::Name name);
+
+  std::optional<Literal> literal(const Json& json, std::string_view key);
+  std::optional<Link> link(const Json& json, std::string_view key);
+
+  void read_inputs(const Json& inputs, bool are_parameters);
+  void read_input(const Member& member, bool is_parameter);
+  void check_value(const Input& input, const Json& json);
+  void read_nodes(const Json& nodes);
+  void read_node(const Member& member);
+  void read_outputs(const Json& outputs);
+  void read_passes(const Json& passes);
+  void read_pass(const Json& json);
+
+  const Document& document_;
+  Diagnostics& diagnostics_;
+  Graph graph_;
+};
+
+void GraphBuilder::check_id(std::string_view id, Place place, std::string_view what) {
+  if (is_id(id)) return;
+  diagnostics_.report(Id::bad_id, graph_.span(place), quoted(id) + " cannot name " + std::string(what))
+      .note(id.size() > 128 ? "names have at most 128 characters"
+                            : "names are letters, digits and '_', and begin with no digit");
+}
+
+void GraphBuilder::enter(const Member& member, std::string_view what, Graph::Name name) {
+  check_id(member.key, key_place(member), what);
+  const auto [found, is_new] = graph_.names.emplace(member.key, name);
+  if (is_new) return;
+  // An object has no key twice, so it is an input that the node repeats.
+  diagnostics_
+      .report(Id::duplicate_name, document_.key_span(member),
+              std::string(what) + " is called " + quoted(member.key) + ", as an input or parameter is")
+      .note(graph_.span(graph_.inputs[found->second.index].name_place), "which is named here");
+}
+
+std::optional<Literal> GraphBuilder::literal(const Json& json, std::string_view key) {
+  Literal literal;
+  const auto finite = [&](const Json& number) {
+    if (std::isfinite(document_.to_float(number))) return true;
+    diagnostics_.report(Id::out_of_range, document_.span(number),
+                        quoted(key) + " is beyond the range of float");
+    return false;
+  };
+  switch (json.kind) {
+    case Json::Kind::boolean:
+      literal.kind = Literal::Kind::boolean;
+      literal.boolean = json.boolean;
+      return literal;
+    case Json::Kind::number:
+      if (!finite(json)) return std::nullopt;
+      literal.number = document_.to_float(json);
+      literal.integral = json.integral;
+      if (json.integral) literal.integer = document_.to_integer(json);
+      return literal;
+    case Json::Kind::string:
+      literal.kind = Literal::Kind::string;
+      literal.string = json.string;
+      return literal;
+    case Json::Kind::array:
+      literal.kind = Literal::Kind::numbers;
+      if (json.items.empty() || json.items.size() > 16) break;
+      for (const Json& item : json.items) {
+        if (item.kind != Json::Kind::number) {
+          diagnostics_.report(
+              Id::wrong_type, document_.span(item),
+              quoted(key) + " is an array of numbers, not with " + std::string(kind_name(item.kind)));
+          return std::nullopt;
+        }
+        if (!finite(item)) return std::nullopt;
+        literal.numbers.push_back(document_.to_float(item));
+      }
+      return literal;
+    case Json::Kind::null:
+    case Json::Kind::object: break;
+  }
+  const bool array = json.kind == Json::Kind::array;
+  diagnostics_.report(
+      Id::wrong_type, document_.span(json),
+      array ? quoted(key) + " is an array of 1 to 16 numbers, not of " + std::to_string(json.items.size())
+            : quoted(key) + " cannot be " + std::string(kind_name(json.kind)));
+  return std::nullopt;
+}
+
+std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
+  if (json.kind == Json::Kind::string) {
+    return parse_link(document_.source, json.string, place_of(json), diagnostics_);
+  }
+  if (json.kind == Json::Kind::object) {
+    ObjectReader reader(document_, json, "a link", diagnostics_);
+    const Json* target = reader.value("link");
+    if (target != nullptr && target->kind != Json::Kind::string)
+      reader.report_wrong("link", *target, "a string");
+    if (!reader.finish()) return std::nullopt;
+    return parse_link(document_.source, target->string, place_of(*target), diagnostics_);
+  }
+  diagnostics_.report(Id::wrong_type, document_.span(json),
+                      quoted(key) + " is a link, not " + std::string(kind_name(json.kind)));
+  return std::nullopt;
+}
+
+void GraphBuilder::check_value(const Input& input, const Json& json) {
+  if (!fits(input.type, *input.value)) {
+    diagnostics_.report(
+        Id::wrong_type, document_.span(json),
+        "the value of " + quoted(input.name) + " is no " + std::string(type_name(input.type)));
+    return;
+  }
+  const auto check = [&](float value, const Json& at) {
+    const bool low = input.min && value < *input.min;
+    if (!low && !(input.max && value > *input.max)) return;
+    diagnostics_.report(Id::out_of_range, document_.span(at),
+                        "the value of " + quoted(input.name) +
+                            (low ? " is less than its min " + support::format_float(*input.min)
+                                 : " is greater than its max " + support::format_float(*input.max)));
+  };
+  if (input.value->kind == Literal::Kind::number) check(input.value->number, json);
+  for (size_t i = 0; i < input.value->numbers.size(); ++i) check(input.value->numbers[i], json.items[i]);
+}
+
+void GraphBuilder::read_input(const Member& member, bool is_parameter) {
+  Input input;
+  input.name = member.key;
+  input.name_place = key_place(member);
+  input.place = place_of(member.value);
+  const std::string what = (is_parameter ? "parameter " : "input ") + quoted(member.key);
+  ObjectReader reader(document_, member.value, what, diagnostics_);
+  const Json* type = reader.value("type");
+  if (type != nullptr && type->kind != Json::Kind::string) {
+    reader.report_wrong("type", *type, "a string");
+  } else if (type != nullptr) {
+    const std::optional<Type> found = find_type(type->string);
+    input.type = found.value_or(Type::floating);
+    if (!found) {
+      diagnostics_.report_unknown(Id::unknown_type, document_.span(*type), "no type " + quoted(type->string),
+                                  type->string, all_type_names());
+    }
+  }
+  if (float_count(input.type) > 0 || input.type == Type::integer) {
+    input.min = reader.optional_number("min");
+    input.max = reader.optional_number("max");
+    if (input.min && input.max && *input.min > *input.max) {
+      diagnostics_.report(Id::out_of_range, document_.span(*reader.value("max")),
+                          "the max of " + what + " is less than its min");
+    }
+  }
+  const Json* value = reader.value("value", is_parameter ? Need::required : Need::optional);
+  if (value != nullptr) {
+    input.value = literal(*value, "value");
+    input.value_place = place_of(*value);
+  }
+  input.doc = reader.string("doc", "");
+  if (reader.finish() && input.value) check_value(input, *value);
+  graph_.inputs.push_back(std::move(input));
+}
+
+void GraphBuilder::read_inputs(const Json& inputs, bool are_parameters) {
+  for (const Member& member : inputs.members) {
+    enter(member, are_parameters ? "a parameter" : "an input",
+          {true, static_cast<uint32_t>(graph_.inputs.size())});
+    read_input(member, are_parameters);
+  }
+}
+
+void GraphBuilder::read_node(const Member& member) {
+  Node node;
+  node.id = member.key;
+  node.id_place = key_place(member);
+  node.place = place_of(member.value);
+  const Json& json = member.value;
+  if (json.kind != Json::Kind::object) {
+    diagnostics_.report(
+        Id::wrong_type, document_.span(json),
+        "node " + quoted(member.key) + " is an object, not " + std::string(kind_name(json.kind)));
+    return;
+  }
+  // Not by ObjectReader: all other keys are ports, and which there are depends on the node's type.
+  const Json* type = nullptr;
+  node.ports.reserve(json.members.size());
+  for (const Member& entry : json.members) {
+    const Json& value = entry.value;
+    if (entry.key == "extras") continue;
+    if (entry.key == "type" || entry.key == "doc") {
+      if (value.kind != Json::Kind::string) {
+        diagnostics_.report(Id::wrong_type, document_.span(value),
+                            quoted(entry.key) + " of node " + quoted(member.key) + " is a string, not " +
+                                std::string(kind_name(value.kind)));
+      }
+      (entry.key == "type" ? node.type : node.doc) = value.string;
+      if (entry.key == "type") type = &value;
+      continue;
+    }
+    check_id(entry.key, key_place(entry), "a port");
+    Port port{entry.key, Literal{}, key_place(entry), place_of(value)};
+    if (value.kind == Json::Kind::object) {
+      if (std::optional<Link> found = link(value, entry.key)) port.value = std::move(*found);
+    } else if (std::optional<Literal> found = literal(value, entry.key)) {
+      port.value = std::move(*found);
+    }
+    node.ports.push_back(std::move(port));
+  }
+  if (type == nullptr) {
+    diagnostics_.report(Id::missing_key, {document_.source, json.begin, json.begin + 1},
+                        "node " + quoted(member.key) + " needs the key \"type\"");
+  } else {
+    node.type_place = place_of(*type);
+  }
+  graph_.nodes.push_back(std::move(node));
+}
+
+void GraphBuilder::read_nodes(const Json& nodes) {
+  graph_.nodes.reserve(nodes.members.size());
+  graph_.names.reserve(graph_.inputs.size() + nodes.members.size());
+  for (const Member& member : nodes.members) {
+    enter(member, "a node", {false, static_cast<uint32_t>(graph_.nodes.size())});
+    read_node(member);
+  }
+}
+
+void GraphBuilder::read_outputs(const Json& outputs) {
+  if (outputs.members.empty()) {
+    diagnostics_.report(Id::missing_key, document_.span(outputs), "there must be at least one output");
+  }
+  for (const Member& member : outputs.members) {
+    check_id(member.key, key_place(member), "an output");
+    Output output{member.key, {}, key_place(member)};
+    if (std::optional<Link> found = link(member.value, member.key)) output.link = std::move(*found);
+    graph_.outputs.push_back(std::move(output));
+  }
+}
+
+void GraphBuilder::read_pass(const Json& json) {
+  Pass pass;
+  pass.place = place_of(json);
+  ObjectReader reader(document_, json, "a pass", diagnostics_);
+  pass.name = reader.string("name");
+  pass.cull =
+      static_cast<Cull>(reader.choice("cull", {"none", "back", "front"}, static_cast<size_t>(Cull::back)));
+  pass.depth = static_cast<DepthTest>(reader.choice("depth", {"nearer", "always"}, 0));
+  if (const Json* position = reader.value("position", Need::optional))
+    pass.position = link(*position, "position");
+  if (const Json* color = reader.value("color")) {
+    if (std::optional<Link> found = link(*color, "color")) pass.color = std::move(*found);
+  }
+  reader.finish();
+  const Json* name = json.find("name");
+  if (name != nullptr && name->kind == Json::Kind::string) {
+    check_id(pass.name, place_of(*name), "a pass");
+    for (const Pass& other : graph_.passes) {
+      if (other.name != pass.name) continue;
+      diagnostics_
+          .report(Id::duplicate_name, document_.span(*name), "two passes are called " + quoted(pass.name))
+          .note(graph_.span(other.place), "the other one");
+      break;
+    }
+  }
+  graph_.passes.push_back(std::move(pass));
+}
+
+void GraphBuilder::read_passes(const Json& passes) {
+  // Few enough to compare each with each; nobody draws a mesh so often.
+  constexpr size_t most = 64;
+  if (passes.items.empty()) {
+    diagnostics_.report(Id::missing_key, document_.span(passes), "an effect needs at least one pass");
+  } else if (passes.items.size() > most) {
+    diagnostics_.report(Id::too_large, document_.span(passes),
+                        "an effect has at most " + std::to_string(most) + " passes");
+  } else {
+    for (const Json& pass : passes.items) read_pass(pass);
+  }
+}
+
+std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
+  const size_t errors_before = diagnostics_.error_count();
+  const Json& root = document_.root;
+  graph_.kind = kind;
+  ObjectReader reader(document_, root,
+                      "a" + std::string(kind == DocumentKind::effect ? "n " : " ") +
+                          std::string(kind_name(kind)) + " document",
+                      diagnostics_);
+  reader.ignore("isoshade");
+  reader.ignore("$schema");
+  graph_.doc = reader.string("doc", "");
+  graph_.name = reader.string(kind_name(kind));
+  const Json& name = *root.find(kind_name(kind));
+  graph_.name_place = place_of(name);
+  if (name.kind == Json::Kind::string) check_id(graph_.name, graph_.name_place, "a document");
+
+  const bool is_function = kind == DocumentKind::function;
+  if (const Json* inputs = reader.object(is_function ? "inputs" : "parameters", Need::optional)) {
+    read_inputs(*inputs, !is_function);
+  }
+  if (const Json* nodes = reader.object("nodes", Need::optional)) read_nodes(*nodes);
+  if (kind == DocumentKind::effect) {
+    if (const Json* passes = reader.array("passes")) read_passes(*passes);
+  } else {
+    if (const Json* outputs = reader.object("outputs")) read_outputs(*outputs);
+  }
+  reader.finish();
+  if (diagnostics_.error_count() != errors_before) return std::nullopt;
+  return std::move(graph_);
+}
+
+}  // namespace
+
+std::optional<Graph> build_graph(const Document& document, Diagnostics& diagnostics) {
+  const std::optional<DocumentKind> kind = document_kind(document, diagnostics);
+  if (!kind) return std::nullopt;
+  if (*kind == DocumentKind::scene) {
+    diagnostics.report(Id::wrong_kind, document.span(*document.root.find("scene")),
+                       "a scene is not a graph; a function, effect or post is needed here");
+    return std::nullopt;
+  }
+  return GraphBuilder(document, diagnostics).build(*kind);
+}
+
+}  // namespace isoshade::graph

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON text -> Document: nlohmann's lexer and grammar, our places, limits and messages.
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "compiler/graph/document.h"
+#include "compiler/support/visible.h"
+
+namespace isoshade::graph {
+namespace {
+
+using support::Diagnostic;
+using support::Diagnostics;
+using support::Id;
+using support::Source;
+using support::Span;
+
+/// Walks the text and tells how far the lexer has read, which nlohmann does not.
+class CountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = char;
+
+  CountingIterator(const char* at, const char** reached) : at_(at), reached_(reached) {}
+  char operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    *reached_ = ++at_;
+    return *this;
+  }
+  CountingIterator operator++(int) {
+    const CountingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
+  bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
+
+ private:
+  const char* at_;
+  const char** reached_;
+};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_word(char c) { return is_digit(c) || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
+
+struct Extent {
+  uint32_t begin, end;
+};
+
+/// What nlohmann says of a syntax error, and what we say instead.
+struct Explanation {
+  std::string_view theirs;  ///< how the reason begins
+  Id id;
+  std::string_view ours;
+  std::string_view fix;
+};
+constexpr Explanation explanations[] = {
+    {"invalid string: missing closing quote", Id::syntax, "this string has no end", "add the closing quote"},
+    {"invalid string: control character", Id::syntax, "a control character in a string",
+     "write it as an escape"},
+    {"invalid string: ill-formed UTF-8", Id::bad_utf8, "the text is not UTF-8 here", ""},
+    {"invalid string: surrogate", Id::bad_utf8, "an escape is half a surrogate pair",
+     "escapes from \\ud800 to \\udfff come in pairs"},
+    {"invalid string: forbidden character", Id::syntax, "no such escape",
+     "a backslash itself is written \\\\"},
+    {"invalid string: '\\u'", Id::syntax, "\\u needs four hex digits", ""},
+    {"invalid BOM", Id::bad_utf8, "the text is not UTF-8 here", ""},
+    {"invalid number", Id::bad_number, "a malformed number", "numbers are written as 1, -0.5, 1e-4"},
+    {"number overflow", Id::bad_number, "a number beyond the range of a double", ""},
+    {"unexpected string literal; expected '}'", Id::syntax, "a comma is missing before this key", ""},
+    {"unexpected string literal; expected ']'", Id::syntax, "a comma is missing before this value", ""},
+    {"unexpected '{'; expected ']'", Id::syntax, "a comma is missing before this value", ""},
+    {"unexpected '['; expected ']'", Id::syntax, "a comma is missing before this value", ""},
+    {"unexpected number literal; expected ']'", Id::syntax, "a comma is missing before this value", ""},
+};
+
+/// Takes nlohmann's events. Each method returns whether to go on.
+class Builder {
+ public:
+  Builder(Document& document, const char* const* reached, Diagnostics& diagnostics)
+      : document_(document), text_(document.source->text()), reached_(reached), diagnostics_(diagnostics) {
+    if (text_.substr(0, 3) == "\xef\xbb\xbf") last_end_ = 3;
+  }
+
+  bool null() { return add(Json::Kind::null, token()) != nullptr; }
+  bool boolean(bool value) {
+    Json* json = add(Json::Kind::boolean, token());
+    if (json != nullptr) json->boolean = value;
+    return json != nullptr;
+  }
+  bool number_integer(int64_t value) { return add_number(static_cast<double>(value), true); }
+  bool number_unsigned(uint64_t value) { return add_number(static_cast<double>(value), value <= INT64_MAX); }
+  bool number_float(double value, const std::string&) { return add_number(value, false); }
+  bool string(std::string& value) {
+    Json* json = add(Json::Kind::string, token());
+    if (json != nullptr) json->string = std::move(value);
+    return json != nullptr;
+  }
+  bool binary(std::string&) { return false; }  // not in JSON texts
+  bool binary(nlohmann::json::binary_t&) { return false; }
+  bool start_object(size_t) { return open(Json::Kind::object); }
+  bool start_array(size_t) { return open(Json::Kind::array); }
+  bool end_object() {
+    report_duplicates(*open_.back());
+    return close();
+  }
+  bool end_array() { return close(); }
+  bool key(std::string& key) {
+    const Extent extent = token();
+    Member& member = open_.back()->members.emplace_back();
+    member.key = std::move(key);
+    member.key_begin = extent.begin;
+    member.key_end = extent.end;
+    return true;
+  }
+
+  bool parse_error(size_t, const std::string&, const nlohmann::json::exception& error);
+
+  /// nlohmann takes a NUL for the end of the text.
+  void check_rest() {
+    const uint32_t rest = skip(last_end_, " \t\r\n");
+    if (rest < text_.size())
+      report_syntax({rest, static_cast<uint32_t>(text_.size())}, "text after the end of the document");
+  }
+
+ private:
+  Span span(Extent extent) const { return {document_.source, extent.begin, extent.end}; }
+  uint32_t reached() const { return static_cast<uint32_t>(*reached_ - text_.data()); }
+  uint32_t skip(uint32_t at, std::string_view what) const {
+    return static_cast<uint32_t>(std::min(text_.find_first_not_of(what, at), text_.size()));
+  }
+
+  /// Where the token lies that nlohmann has just read: between it and the one before are only blanks and the
+  /// separators, which have no events.
+  Extent token() {
+    Extent extent{skip(last_end_, " \t\r\n,:"), reached()};
+    const char first = text_[extent.begin];
+    // A number is known to have ended only when the character after it has been read.
+    if ((is_digit(first) || first == '-') && !is_digit(text_[extent.end - 1])) --extent.end;
+    last_end_ = extent.end;
+    return extent;
+  }
+
+  Json* add(Json::Kind kind, Extent extent) {
+    if (++count_ > max_values) {
+      diagnostics_.report(Id::too_large, span(extent),
+                          "the document has more than " + std::to_string(max_values) + " values");
+      return nullptr;
+    }
+    Json* json = &document_.root;
+    if (!open_.empty()) {
+      Json& parent = *open_.back();
+      json = parent.kind == Json::Kind::array ? &parent.items.emplace_back() : &parent.members.back().value;
+    }
+    json->kind = kind;
+    json->begin = extent.begin;
+    json->end = extent.end;
+    return json;
+  }
+
+  bool add_number(double value, bool integral) {
+    Json* json = add(Json::Kind::number, token());
+    if (json == nullptr) return false;
+    // As an integer, -0 has lost its sign.
+    json->number = value == 0 && text_[json->begin] == '-' ? -0.0 : value;
+    json->integral = integral;
+    return true;
+  }
+
+  bool open(Json::Kind kind) {
+    const Extent extent = token();
+    if (open_.size() >= max_depth) {
+      diagnostics_.report(Id::too_deep, span(extent),
+                          "arrays and objects are nested deeper than " + std::to_string(max_depth));
+      return false;
+    }
+    Json* json = add(kind, extent);
+    // The address lasts while the value is open: its parent grows only afterwards.
+    if (json != nullptr) open_.push_back(json);
+    return json != nullptr;
+  }
+
+  bool close() {
+    open_.back()->end = token().end;
+    open_.pop_back();
+    return true;
+  }
+
+  void report_duplicates(const Json& object);
+
+  Diagnostic& report_syntax(Extent extent, std::string message, Id id = Id::syntax) {
+    return diagnostics_.report(id, span(extent), std::move(message));
+  }
+
+  Document& document_;
+  std::string_view text_;
+  const char* const* reached_;
+  Diagnostics& diagnostics_;
+  std::vector<Json*> open_;
+  uint32_t last_end_ = 0;
+  size_t count_ = 0;
+};
+
+void Builder::report_duplicates(const Json& object) {
+  // By sorting: documents cannot make it slow, as they could a hash table.
+  std::vector<const Member*> sorted;
+  for (const Member& member : object.members) sorted.push_back(&member);
+  std::sort(sorted.begin(), sorted.end(), [](const Member* a, const Member* b) {
+    const int order = a->key.compare(b->key);
+    return order != 0 ? order < 0 : a->key_begin < b->key_begin;
+  });
+  const Member* first = nullptr;
+  for (const Member* member : sorted) {
+    if (first == nullptr || member->key != first->key) {
+      first = member;
+      continue;
+    }
+    diagnostics_
+        .report(Id::duplicate_key, document_.key_span(*member),
+                "the key " + support::quoted(member->key) + " is given twice")
+        .note(document_.key_span(*first), "first given here");
+  }
+}
+
+bool Builder::parse_error(size_t, const std::string&, const nlohmann::json::exception& error) {
+  // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value -
+  // REASON; last read: '...'". An overflow has only the last part.
+  std::string_view reason = error.what();
+  const size_t overflow = reason.find("number overflow");
+  const size_t dash = reason.find(" - ");
+  if (overflow != std::string_view::npos) {
+    reason.remove_prefix(overflow);
+  } else if (dash != std::string_view::npos) {
+    reason.remove_prefix(dash + 3);
+  }
+  reason = reason.substr(0, reason.find("; last read: "));
+  const auto begins = [&](std::string_view start) { return reason.substr(0, start.size()) == start; };
+
+  const auto size = static_cast<uint32_t>(text_.size());
+  const uint32_t end = reached();
+  const uint32_t last = end == 0 ? 0 : end - 1;
+  Extent extent{std::min(skip(last_end_, " \t\r\n,:"), last), end};
+  const char first = extent.begin < size ? text_[extent.begin] : '\0';
+
+  if (begins("unexpected end of input")) {
+    if (last < size && text_[last] == '\0') {
+      report_syntax({last, end}, "a NUL byte");
+    } else if (skip(0, " \t\r\n") == size || text_ == "\xef\xbb\xbf") {
+      report_syntax({0, 0}, "the document is empty");
+    } else {
+      Diagnostic& report = report_syntax({size, size}, "the document ends too early");
+      if (!open_.empty()) {
+        const Json& unclosed = *open_.back();
+        const bool array = unclosed.kind == Json::Kind::array;
+        report.note(span({unclosed.begin, unclosed.begin + 1}),
+                    array ? "this '[' has no ']'" : "this '{' has no '}'");
+      }
+    }
+    return false;
+  }
+  if (reason.find("; expected end of input") != std::string_view::npos) {
+    report_syntax({extent.begin, size}, "text after the end of the document");
+    return false;
+  }
+  if ((first == '}' || first == ']') && begins("unexpected")) {
+    const size_t before = text_.find_last_not_of(" \t\r\n", extent.begin - (extent.begin > 0));
+    if (extent.begin > 0 && before != std::string_view::npos && text_[before] == ',') {
+      const auto comma = static_cast<uint32_t>(before);
+      report_syntax({comma, comma + 1}, std::string("a comma before '") + first + "'").suggest("remove it");
+      return false;
+    }
+  }
+  if (begins("invalid literal")) {
+    // The lexer stops at the first wrong character; the author sees a word.
+    while (is_word(first) && extent.end < size && is_word(text_[extent.end])) ++extent.end;
+    const bool comment = first == '/' || first == '#';
+    Diagnostic& report = report_syntax(extent, comment ? "JSON has no comments" : "not a JSON value");
+    if (first == '\'' || is_word(first)) report.suggest("strings and keys stand in double quotes");
+    if (comment) report.suggest("remarks may stand under \"doc\" or \"extras\"");
+    return false;
+  }
+  if (begins("invalid string") && !begins("invalid string: missing closing quote")) extent.begin = last;
+  if (begins("number overflow") && extent.end > extent.begin && !is_digit(text_[extent.end - 1]))
+    --extent.end;
+  for (const Explanation& explanation : explanations) {
+    if (!begins(explanation.theirs)) continue;
+    report_syntax(extent, std::string(explanation.ours), explanation.id)
+        .suggest(std::string(explanation.fix));
+    return false;
+  }
+  report_syntax(extent, std::string(reason));
+  return false;
+}
+
+}  // namespace
+
+std::optional<Document> parse_document(Source source, Diagnostics& diagnostics) {
+  Document document{std::move(source), {}};
+  const std::string& text = document.source->text();
+  if (text.size() > max_document_bytes) {
+    diagnostics.report(Id::too_large, {document.source, 0, 0},
+                       "the document has more than " + std::to_string(max_document_bytes >> 20) + " MiB");
+    return std::nullopt;
+  }
+  const size_t errors_before = diagnostics.error_count();
+  const char* reached = text.data();
+  Builder builder(document, &reached, diagnostics);
+  const char* const end = text.data() + text.size();
+  if (nlohmann::json::sax_parse(CountingIterator(text.data(), &reached), CountingIterator(end, &reached),
+                                &builder)) {
+    builder.check_rest();
+  }
+  if (diagnostics.error_count() != errors_before) return std::nullopt;
+  return document;
+}
+
+}  // namespace isoshade::graph
