@@ -11,10 +11,10 @@ namespace isoshade::lanes {
 /// The family a type belongs to: its float, int and bool type of the same lanes. Specialise it to run the
 /// function library over a type of your own.
 template <class T>
-struct lane_traits;
+struct traits;
 
 template <class FloatType, class IntType, class BoolType, int lanes>
-struct lane_family {
+struct family {
   using Float = FloatType;
   using Int = IntType;
   using Bool = BoolType;
@@ -22,20 +22,20 @@ struct lane_family {
 };
 
 template <>
-struct lane_traits<float> : lane_family<float, int, bool, 1> {};
+struct traits<float> : family<float, int, bool, 1> {};
 template <>
-struct lane_traits<int> : lane_family<float, int, bool, 1> {};
+struct traits<int> : family<float, int, bool, 1> {};
 template <>
-struct lane_traits<bool> : lane_family<float, int, bool, 1> {};
+struct traits<bool> : family<float, int, bool, 1> {};
 
 template <class T>
-using float_of = typename lane_traits<T>::Float;
+using float_of = typename traits<T>::Float;
 template <class T>
-using int_of = typename lane_traits<T>::Int;
+using int_of = typename traits<T>::Int;
 template <class T>
-using bool_of = typename lane_traits<T>::Bool;
+using bool_of = typename traits<T>::Bool;
 template <class T>
-inline constexpr int lane_count = lane_traits<T>::count;
+inline constexpr int lane_count = traits<T>::count;
 
 inline constexpr int sign_bit = static_cast<int>(0x80000000u);
 inline constexpr int exponent_bits = 0x7f800000;

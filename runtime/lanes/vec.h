@@ -2,6 +2,8 @@
 //
 // Vectors of 2 to 4 components of a float type: float, or lanes. Arithmetic is componentwise. A uniform
 // vector (vec<float, N>) converts to one of lanes.
+// (The definitions say `requires` so that a type of your own can have vectors of its own: vec<Mine, N> is
+// then the more special one.)
 #pragma once
 
 #include "runtime/lanes/pair.h"
@@ -19,20 +21,24 @@ template <class T>
 using vec4 = vec<T, 4>;
 
 template <class T>
-inline constexpr bool is_uniform_float = false;
+inline constexpr bool is_float = false;
 template <>
-inline constexpr bool is_uniform_float<float> = true;
+inline constexpr bool is_float<float> = true;
 
-template <class T>
-struct vec<T, 2> {
+/// A vector of the first type is a uniform value among vectors of the second.
+template <class From, class To>
+concept Broadcasts = is_float<From> && !is_float<To>;
+
+template <class T, int N>
+requires(N == 2) struct vec<T, N> {
   using B = bool_of<T>;
 
   T x, y;
 
   vec() = default;
   ISOSHADE_INLINE vec(T x_, T y_) : x(x_), y(y_) {}
-  ISOSHADE_INLINE vec(const vec<float, 2>& uniform) requires(!is_uniform_float<T>)
-      : x(uniform.x), y(uniform.y) {}
+  template <Broadcasts<T> Uniform>
+  ISOSHADE_INLINE vec(const vec<Uniform, 2>& uniform) : x(uniform.x), y(uniform.y) {}
 
   ISOSHADE_INLINE T operator[](int i) const { return i == 0 ? x : y; }
 
@@ -47,16 +53,16 @@ struct vec<T, 2> {
   ISOSHADE_INLINE friend vec select(B c, vec a, vec b) { return {select(c, a.x, b.x), select(c, a.y, b.y)}; }
 };
 
-template <class T>
-struct vec<T, 3> {
+template <class T, int N>
+requires(N == 3) struct vec<T, N> {
   using B = bool_of<T>;
 
   T x, y, z;
 
   vec() = default;
   ISOSHADE_INLINE vec(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
-  ISOSHADE_INLINE vec(const vec<float, 3>& uniform) requires(!is_uniform_float<T>)
-      : x(uniform.x), y(uniform.y), z(uniform.z) {}
+  template <Broadcasts<T> Uniform>
+  ISOSHADE_INLINE vec(const vec<Uniform, 3>& uniform) : x(uniform.x), y(uniform.y), z(uniform.z) {}
 
   ISOSHADE_INLINE T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
 
@@ -73,15 +79,16 @@ struct vec<T, 3> {
   }
 };
 
-template <class T>
-struct vec<T, 4> {
+template <class T, int N>
+requires(N == 4) struct vec<T, N> {
   using B = bool_of<T>;
 
   T x, y, z, w;
 
   vec() = default;
   ISOSHADE_INLINE vec(T x_, T y_, T z_, T w_) : x(x_), y(y_), z(z_), w(w_) {}
-  ISOSHADE_INLINE vec(const vec<float, 4>& uniform) requires(!is_uniform_float<T>)
+  template <Broadcasts<T> Uniform>
+  ISOSHADE_INLINE vec(const vec<Uniform, 4>& uniform)
       : x(uniform.x), y(uniform.y), z(uniform.z), w(uniform.w) {}
 
   ISOSHADE_INLINE T operator[](int i) const { return i == 0 ? x : i == 1 ? y : i == 2 ? z : w; }

@@ -18,11 +18,11 @@ template <int W, int R>
 struct Bool;
 
 template <int W, int R>
-struct lane_traits<Float<W, R>> : lane_family<Float<W, R>, Int<W, R>, Bool<W, R>, W * R> {};
+struct traits<Float<W, R>> : family<Float<W, R>, Int<W, R>, Bool<W, R>, W * R> {};
 template <int W, int R>
-struct lane_traits<Int<W, R>> : lane_traits<Float<W, R>> {};
+struct traits<Int<W, R>> : traits<Float<W, R>> {};
 template <int W, int R>
-struct lane_traits<Bool<W, R>> : lane_traits<Float<W, R>> {};
+struct traits<Bool<W, R>> : traits<Float<W, R>> {};
 
 template <int W>
 struct Bool<W, 1> {
