@@ -17,7 +17,7 @@ pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 
 # What a float is (docs: "The contract"): no contraction, and no constant folded in another rounding or
 # denormal mode than the one at run time. Every object of ours is compiled so, generated code too.
-set(ISOSHADE_FLOAT_FLAGS -ffp-contract=off -frounding-math)
+set(ISOSHADE_FLOAT_FLAGS -ffp-contract=off -frounding-math -fwrapv)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND ISOSHADE_FLOAT_FLAGS -fsignaling-nans)
 endif()

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/emit/cpp.h"
+#include "compiler/emit/names.h"
+#include "compiler/emit/result_words.h"
+#include "compiler/emit/stages.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::emit {
+
+namespace {
+
+constexpr std::string_view head =
+    "#include \"runtime/lanes/lanes.h\"\n\n"
+    "#ifndef ISOSHADE_LANES\n#define ISOSHADE_LANES 1\n#endif\n"
+    "#ifndef ISOSHADE_REGISTERS\n#define ISOSHADE_REGISTERS 1\n#endif\n\n"
+    "namespace isoshade_program {\n\n"
+    "using namespace isoshade::lanes;\n\n"
+    "#if ISOSHADE_LANES == 1\n"
+    "using Lanes = float;\n"
+    "#else\n"
+    "using Lanes = Float<ISOSHADE_LANES, ISOSHADE_REGISTERS>;\n"
+    "#endif\n"
+    "constexpr int batch = lane_count<Lanes>;\n\n";
+
+constexpr std::string_view tail_head =
+    "\n}  // namespace isoshade_program\n\n"
+    "struct BufferView {\n  const void* data;\n  int size;\n};\n\n";
+
+/// The statement that gives functions their buffers.
+std::string bind(const ir::Module& module) {
+  std::string text = "  const Buffers buffers{\n";
+  for (size_t i = 0; i < module.buffers.size(); ++i) {
+    const std::string view = "views[" + std::to_string(i) + "]";
+    const bool floats = module.buffers[i].element == ir::Scalar::floating;
+    text += "      {static_cast<const " + std::string(floats ? "float" : "int") + "*>(" + view + ".data), " +
+            view + ".size},\n";
+  }
+  return text + "  };\n";
+}
+
+constexpr std::string_view vertex_main =
+    "  using Ints = int_of<Lanes>;\n"
+    "  for (int begin = 0; begin < count; begin += batch) {\n"
+    "    const Ints vertex_index = lane_index<Ints>() + (first + begin);\n"
+    "    const vec4<Lanes> position = vertex<Lanes>(buffers, vertex_index, object);\n"
+    "    float words[4][batch];\n"
+    "    store_lanes(words[0], position.x);\n"
+    "    store_lanes(words[1], position.y);\n"
+    "    store_lanes(words[2], position.z);\n"
+    "    store_lanes(words[3], position.w);\n"
+    "    const int wanted = count - begin < batch ? count - begin : batch;\n"
+    "    for (int lane = 0; lane < wanted; ++lane)\n"
+    "      for (int word = 0; word < 4; ++word) clip[4 * (begin + lane) + word] = words[word][lane];\n"
+    "  }\n";
+
+// A tail is filled up with its last pixel.
+constexpr std::string_view pixel_main =
+    "  using Ints = int_of<Lanes>;\n"
+    "  for (int begin = 0; begin < count; begin += batch) {\n"
+    "    const int wanted = count - begin < batch ? count - begin : batch;\n"
+    "    int filled[3][batch];\n"
+    "    const int* at[3] = {x + begin, y + begin, triangle + begin};\n"
+    "    if (wanted < batch)\n"
+    "      for (int list = 0; list < 3; ++list) {\n"
+    "        for (int lane = 0; lane < batch; ++lane)\n"
+    "          filled[list][lane] = at[list][lane < wanted ? lane : wanted - 1];\n"
+    "        at[list] = filled[list];\n"
+    "      }\n"
+    "    const vec4<Lanes> color = pixel<Lanes>(buffers, load_lanes<Ints>(at[0]), load_lanes<Ints>(at[1]),\n"
+    "                                           load_lanes<Ints>(at[2]), object, light_count);\n"
+    "    float words[4][batch];\n"
+    "    store_lanes(words[0], color.x);\n"
+    "    store_lanes(words[1], color.y);\n"
+    "    store_lanes(words[2], color.z);\n"
+    "    store_lanes(words[3], color.w);\n"
+    "    for (int lane = 0; lane < wanted; ++lane)\n"
+    "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
+    "  }\n";
+
+std::string eval_main(const ir::Function& kernel) {
+  const std::vector<ResultWord> words = result_words(kernel, "row_results");
+  const std::string count = std::to_string(words.size());
+  std::string text =
+      "  using Ints = int_of<Lanes>;\n"
+      "  for (int begin = 0; begin < count; begin += batch) {\n"
+      "    const auto row_results = eval<Lanes>(buffers, lane_index<Ints>() + (first + begin));\n"
+      "    int words[" +
+      count + "][batch];\n";
+  for (size_t i = 0; i < words.size(); ++i) {
+    std::string value = words[i].text;
+    if (words[i].scalar == ir::Scalar::floating) value = "bits(" + value + ")";
+    if (words[i].scalar == ir::Scalar::boolean) value = "select(" + value + ", Ints(1), Ints(0))";
+    text += "    store_lanes(words[" + std::to_string(i) + "], " + value + ");\n";
+  }
+  return text +
+         "    const int wanted = count - begin < batch ? count - begin : batch;\n"
+         "    for (int lane = 0; lane < wanted; ++lane)\n"
+         "      for (int word = 0; word < " +
+         count +
+         "; ++word)\n"
+         "        results[" +
+         count +
+         " * (begin + lane) + word] = words[word][lane];\n"
+         "  }\n";
+}
+
+}  // namespace
+
+std::string cpp_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading) {
+  std::string text =
+      "// " + comment_text(heading.name) + ", " + std::string(name(stage)) + " stage; generated by isoshade";
+  text += heading.document.empty() ? "\n" : " from " + comment_text(heading.document) + "\n";
+  text +=
+      std::string(head) + cpp_buffers(module) + "\n" + cpp_functions(module, entry) + std::string(tail_head);
+  std::string signature, body;
+  switch (stage) {
+    case lower::Stage::vertex:
+      signature = "isoshade_vertex(const BufferView* views, int object, int first, int count, float* clip)";
+      body = vertex_main;
+      break;
+    case lower::Stage::pixel:
+      signature =
+          "isoshade_pixel(const BufferView* views, int object, int light_count, int count, const int* x,\n"
+          "                               const int* y, const int* triangle, float* rgba)";
+      body = pixel_main;
+      break;
+    case lower::Stage::eval:
+      signature = "isoshade_eval(const BufferView* views, int first, int count, int* results)";
+      body = eval_main(module.functions[entry]);
+      break;
+    case lower::Stage::depth: support::bug("depth has no C++ stage");
+  }
+  return text + "extern \"C\" __attribute__((visibility(\"default\"))) void " + signature +
+         " {\n  using namespace isoshade_program;\n" + bind(module) + body + "}\n";
+}
+
+}  // namespace isoshade::emit

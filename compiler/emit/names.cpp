@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/emit/names.h"
+
+#include <unordered_set>
+
+namespace isoshade::emit {
+
+namespace {
+
+// Keywords and reserved words of GLSL 4.60 and C++20, built-in functions of GLSL, and what generated code
+// itself says: names of ops, of lanes and of stages. An id among them gets an underscore behind it.
+const std::unordered_set<std::string_view> reserved = {
+    // both languages, or either
+    "alignas", "alignof", "and", "and_eq", "asm", "atomic_uint", "attribute", "auto", "bitand", "bitor",
+    "bool", "break", "buffer", "bvec2", "bvec3", "bvec4", "case", "cast", "catch", "centroid", "char",
+    "char8_t", "char16_t", "char32_t", "class", "co_await", "co_return", "co_yield", "coherent", "common",
+    "compl", "concept", "const", "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype",
+    "default", "delete", "discard", "dmat2", "dmat3", "dmat4", "do", "double", "dvec2", "dvec3", "dvec4",
+    "dynamic_cast", "else", "enum", "explicit", "export", "extern", "external", "false", "filter", "fixed",
+    "flat", "float", "for", "friend", "fvec2", "fvec3", "fvec4", "goto", "half", "highp", "hvec2", "hvec3",
+    "hvec4", "if", "iimage2D", "image2D", "image3D", "image1D", "in", "inline", "inout", "input", "int",
+    "interface", "invariant", "isampler2D", "ivec2", "ivec3", "ivec4", "layout", "long", "lowp", "mat2",
+    "mat3", "mat4", "mediump", "mutable", "namespace", "new", "noexcept", "noinline", "noperspective", "not",
+    "not_eq", "nullptr", "operator", "or", "or_eq", "out", "output", "partition", "patch", "precise",
+    "precision", "private", "protected", "public", "readonly", "register", "reinterpret_cast", "requires",
+    "resource", "restrict", "return", "sample", "sampler", "sampler1D", "sampler2D", "sampler2DRect",
+    "sampler3D", "samplerCube", "shared", "short", "signed", "sizeof", "smooth", "static", "static_assert",
+    "static_cast", "struct", "subroutine", "superp", "switch", "template", "texture2D", "this",
+    "thread_local", "throw", "true", "try", "typedef", "typeid", "typename", "uint", "union", "uniform",
+    "unsigned", "using", "uvec2", "uvec3", "uvec4", "varying", "vec2", "vec3", "vec4", "virtual", "void",
+    "volatile", "wchar_t", "while", "writeonly", "xor", "xor_eq", "main", "std", "texture", "image",
+    // functions that emitted text calls, and names of its surroundings
+    "abs", "all", "any", "bits", "bits_nonnan", "branch", "floatBitsToInt", "floor", "from_bits",
+    "from_bits_normal", "imulExtended", "intBitsToFloat", "lanes", "load", "mul_hi", "negate", "select",
+    "shift_left", "shift_right", "shift_right_signed", "sqrt", "texelFetch", "to_float", "to_int",
+    "umulExtended", "unsigned_less", "unsigned_mul_hi", "vec", "F", "I", "B", "buffers", "push", "Push",
+    "frame", "inputs", "lights", "objects", "triangles", "vertices", "clip", "ids", "id", "isoshade",
+    "int_of", "bool_of", "float_of", "lane_count", "pixel", "vertex", "depth", "eval", "shade", "light_at",
+    "edges_at", "attribute2", "attribute3", "Buffers", "NULL", "INFINITY", "NAN", "assert", "errno", "linux",
+    "unix", "near", "far"};
+
+// Functions of GLSL: a local may hide them, a function of ours would redefine them.
+const std::unordered_set<std::string_view> glsl_functions = {
+    "acos",         "acosh",    "asin",       "asinh",   "atan",       "atanh",    "barrier",     "bitCount",
+    "ceil",         "clamp",    "cos",        "cosh",    "cross",      "degrees",  "determinant", "dFdx",
+    "dFdy",         "distance", "dot",        "equal",   "exp",        "exp2",     "faceforward", "findLSB",
+    "findMSB",      "fma",      "fract",      "frexp",   "ftransform", "fwidth",   "greaterThan", "inverse",
+    "inversesqrt",  "isinf",    "isnan",      "ldexp",   "length",     "lessThan", "log",         "log2",
+    "max",          "min",      "mix",        "mod",     "modf",       "noise1",   "normalize",   "notEqual",
+    "outerProduct", "pow",      "radians",    "reflect", "refract",    "round",    "roundEven",   "sign",
+    "sin",          "sinh",     "smoothstep", "step",    "tan",        "tanh",     "texelFetch",  "transpose",
+    "trunc"};
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string clean(std::string_view wanted) {
+  std::string name;
+  for (char c : wanted) {
+    const char kept = is_letter(c) || is_digit(c) ? c : '_';
+    if (kept == '_' && !name.empty() && name.back() == '_') continue;  // both languages reserve "__"
+    name += kept;
+  }
+  if (name.size() > 100) name.resize(100);
+  while (!name.empty() && name.front() == '_') name.erase(0, 1);  // C++ reserves "_A" and, globally, "_a"
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  if (name.empty() || is_digit(name.front()) || name.starts_with("gl_")) name = "n_" + name;
+  if (name.back() == '_') name.pop_back();
+  return name;
+}
+
+}  // namespace
+
+bool Names::taken(const std::string& name) const {
+  for (const Names* scope = this; scope != nullptr; scope = scope->outer_)
+    if (scope->used_.contains(name)) return true;
+  return false;
+}
+
+std::string Names::take(std::string_view wanted) { return take(wanted, false); }
+
+std::string Names::take_function(std::string_view wanted) { return take(wanted, true); }
+
+std::string Names::take(std::string_view wanted, bool function) {
+  const std::string base = clean(wanted);
+  std::string name =
+      reserved.contains(base) || (function && glsl_functions.contains(base)) ? base + "_" : base;
+  int number = 0;
+  if (auto it = used_.find(base); it != used_.end()) number = it->second;
+  while (taken(name)) name = base + "_" + std::to_string(++number);
+  used_[base] = number;
+  used_.emplace(name, 0);
+  return name;
+}
+
+std::string comment_text(std::string_view text) {
+  std::string out;
+  for (char c : text.substr(0, 200)) {
+    if (c < ' ' || c > '~' || c == '\\' || c == '?' || c == '*') c = '_';
+    out += c;
+  }
+  return out;
+}
+
+}  // namespace isoshade::emit

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Identifiers of emitted text. A graph is data: no id of a document can become a keyword, a name of the
+// generated code or anything but an identifier.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+namespace isoshade::emit {
+
+/// Names of one scope, unique in it and good in GLSL and C++ alike.
+class Names {
+ public:
+  Names() = default;
+  /// A scope inside another: names of the outer one are not taken again.
+  explicit Names(const Names* outer) : outer_(outer) {}
+
+  /// `wanted`, or the nearest name that is free: letters, digits and single underscores, no keyword or name
+  /// of either language or of the code around it, not beginning with a digit, "gl_" or (unless ours) "iso_".
+  std::string take(std::string_view wanted);
+  /// The same for a function, which must not redefine one of GLSL's own.
+  std::string take_function(std::string_view wanted);
+
+ private:
+  std::string take(std::string_view wanted, bool function);
+  bool taken(const std::string& name) const;
+
+  const Names* outer_ = nullptr;
+  std::unordered_map<std::string, int> used_;  ///< name -> the last number tried behind it
+};
+
+/// Text made harmless for the rest of a line behind `//`: printable ASCII, no backslash, `??` or `*/`; at
+/// most 200 characters.
+std::string comment_text(std::string_view text);
+
+}  // namespace isoshade::emit

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// GLSL to SPIR-V 1.3 for Vulkan 1.1, by glslang in this process.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::emit {
+
+enum class ShaderKind : uint8_t { vertex, fragment };
+
+/// The module with entry point `main`, validated by SPIRV-Tools. Not optimised: every operation and its
+/// NoContraction are as in the text. The same text gives the same words on every machine. Thread-safe.
+///
+/// `glsl` begins with glsl_head(); a module without SignedZeroInfNanPreserve 32 would be a bug of ours, so it
+/// aborts. A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.
+std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
+                                                   support::Diagnostics& diagnostics);
+
+}  // namespace isoshade::emit
