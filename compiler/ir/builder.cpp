@@ -19,13 +19,15 @@ std::optional<Type> result_type(Opcode op, std::span<const Type> operands) {
     return true;
   };
   switch (row.rule) {
-    case Rule::same: return operands[0].is_float() && all(operands[0]) ? std::optional(operands[0]) : std::nullopt;
+    case Rule::same:
+      return operands[0].is_float() && all(operands[0]) ? std::optional(operands[0]) : std::nullopt;
     case Rule::compare: return all(float_type) ? std::optional(bool_type) : std::nullopt;
     case Rule::icompare: return all(int_type) ? std::optional(bool_type) : std::nullopt;
     case Rule::integer: return all(int_type) ? std::optional(int_type) : std::nullopt;
     case Rule::logic: return all(bool_type) ? std::optional(bool_type) : std::nullopt;
     case Rule::choose:
-      return operands[0] == bool_type && operands[1] == operands[2] ? std::optional(operands[1]) : std::nullopt;
+      return operands[0] == bool_type && operands[1] == operands[2] ? std::optional(operands[1])
+                                                                    : std::nullopt;
     case Rule::to_int: return all(float_type) ? std::optional(int_type) : std::nullopt;
     case Rule::to_float: return all(int_type) ? std::optional(float_type) : std::nullopt;
   }
@@ -175,7 +177,8 @@ std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initi
   std::vector<ValueId> yields = body(index, carried);
   block_ = outer;
   check(yields.size() == types.size(), "a loop yields what it carries");
-  for (size_t i = 0; i < yields.size(); ++i) check(type(yields[i]) == types[i], "a loop yields what it carries");
+  for (size_t i = 0; i < yields.size(); ++i)
+    check(type(yields[i]) == types[i], "a loop yields what it carries");
   function().blocks[inner].yields = std::move(yields);
   std::vector<ValueId> operands{count};
   operands.insert(operands.end(), initial.begin(), initial.end());
@@ -187,7 +190,8 @@ std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initi
 void Builder::finish(std::span<const ValueId> results) {
   Function& f = function();
   check(block_ == 0 && results.size() == f.results.size(), "wrong number of results");
-  for (size_t i = 0; i < results.size(); ++i) check(type(results[i]) == f.results[i].type, "wrong type of result");
+  for (size_t i = 0; i < results.size(); ++i)
+    check(type(results[i]) == f.results[i].type, "wrong type of result");
   f.blocks[0].yields.assign(results.begin(), results.end());
 }
 

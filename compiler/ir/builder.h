@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes functions instruction by instruction. A misuse (wrong types, a value out of scope) is a bug and aborts.
+// Makes functions instruction by instruction. A misuse (wrong types, a value out of scope) is a bug and
+// aborts.
 #pragma once
 
 #include <functional>
 #include <initializer_list>
-#include <span>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,8 @@ class Builder {
 
  private:
   ValueId new_value(Type type);
-  InstructionId append(Opcode op, uint32_t imm, std::span<const ValueId> operands, std::span<const Type> results);
+  InstructionId append(Opcode op, uint32_t imm, std::span<const ValueId> operands,
+                       std::span<const Type> results);
   BlockId new_block();
 
   Module& module_;

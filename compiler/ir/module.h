@@ -19,16 +19,21 @@ using InstructionId = uint32_t;
 using BlockId = uint32_t;
 inline constexpr uint32_t none = ~0u;
 
+/// How deep blocks may nest; a module that nests deeper is invalid. Passes may recurse over blocks.
+inline constexpr int max_block_depth = 128;
+
 /// Where an instruction comes from: the node of a document. Index 0 of a function's origins is "nowhere".
 struct Origin {
   std::string node;   ///< the node's id; names the value in emitted text
   uint32_t line = 0;  ///< in the function's document
+  friend bool operator==(const Origin&, const Origin&) = default;
 };
 
 struct Value {
   Type type;
   /// The index of the origin this value is *the* result of (it gets the node's own name), or 0.
   uint32_t names = 0;
+  friend bool operator==(const Value&, const Value&) = default;
 };
 
 struct Instruction {
@@ -40,6 +45,7 @@ struct Instruction {
   uint32_t result_count = 1;
   std::array<BlockId, 2> blocks{none, none};  ///< branch: then, else; loop: body
   uint32_t origin = 0;
+  friend bool operator==(const Instruction&, const Instruction&) = default;
 };
 
 /// A list of instructions with parameters (of the function, or a loop's index and carried values) that yields
@@ -48,27 +54,31 @@ struct Block {
   std::vector<ValueId> parameters;
   std::vector<InstructionId> instructions;
   std::vector<ValueId> yields;
+  friend bool operator==(const Block&, const Block&) = default;
 };
 
-/// How a parameter is written and how it varies. Parameters with a group become a struct's fields in emitted text:
-/// `surface.normal`. Parameters of one group are consecutive.
+/// How a parameter is written and how it varies. Parameters with a group become a struct's fields in emitted
+/// text: `surface.normal`. Parameters of one group are consecutive.
 struct Parameter {
   std::string name;
   Type type;
   std::string group;     ///< empty: a plain parameter
   bool uniform = false;  ///< the same for all lanes of a batch (material parameters, light data, counts)
+  friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
 struct Result {
   std::string name;
   Type type;
+  friend bool operator==(const Result&, const Result&) = default;
 };
 
 /// The body is block 0: its parameters are the function's, its yields the results.
 struct Function {
   std::string name;      ///< unique in the module; [A-Za-z_][A-Za-z0-9_]*
   std::string document;  ///< the path of the document it was authored in; empty for library functions
-  std::string library;   ///< the name in functions.def whose body this stands for; empty if authored or a stage
+  std::string
+      library;  ///< the name in functions.def whose body this stands for; empty if authored or a stage
   std::vector<Parameter> parameters;
   std::vector<Result> results;
   std::vector<Origin> origins{{}};
@@ -87,12 +97,14 @@ struct Function {
     return {operands.data() + i.first_operand, i.operand_count};
   }
   Type type(ValueId value) const { return values[value].type; }
+  friend bool operator==(const Function&, const Function&) = default;
 };
 
 /// A read-only array of 32-bit elements that stages load from.
 struct Buffer {
   std::string name;
   Scalar element = Scalar::floating;  ///< floating or integer
+  friend bool operator==(const Buffer&, const Buffer&) = default;
 };
 
 /// Calls are acyclic; a callee may stand after its caller.
@@ -100,8 +112,9 @@ struct Module {
   std::vector<Buffer> buffers;
   std::vector<Function> functions;
 
-  uint32_t find(std::string_view function) const;         ///< its index, or none
+  uint32_t find(std::string_view function) const;     ///< its index, or none
   uint32_t find_buffer(std::string_view name) const;  ///< its index, or none
+  friend bool operator==(const Module&, const Module&) = default;
 };
 
 }  // namespace isoshade::ir
