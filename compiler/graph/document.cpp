@@ -52,7 +52,7 @@ int64_t Document::to_integer(const Json& number) const {
 Source read_source(const std::string& path, Diagnostics& diagnostics, const Span& where) {
   const bool standard_input = path == "-";
   const auto fail = [&](Id id, const std::string& reason) {
-    diagnostics.report(id, where, "cannot read " + support::quoted(path) + ": " + reason);
+    diagnostics.report(id, where, "cannot read " + support::quote(path) + ": " + reason);
     return nullptr;
   };
   // The system would open what stands before the NUL.

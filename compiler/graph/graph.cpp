@@ -11,7 +11,7 @@ namespace isoshade::graph {
 
 using support::Diagnostics;
 using support::Id;
-using support::quoted;
+using support::quote;
 
 namespace {
 
@@ -133,7 +133,7 @@ std::optional<Link> parse_link(const support::Source& source, std::string_view t
     rest.remove_prefix(dot + 1);
   }
   if (good) return link;
-  diagnostics.report(Id::bad_link, {source, place.begin, place.end}, quoted(text) + " is not a link")
+  diagnostics.report(Id::bad_link, {source, place.begin, place.end}, quote(text) + " is not a link")
       .note("a link is \"node\", \"node.port\", \"node.xyz\" or \"node.port.xyz\"");
   return std::nullopt;
 }

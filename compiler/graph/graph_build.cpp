@@ -13,7 +13,7 @@ namespace {
 
 using support::Diagnostics;
 using support::Id;
-using support::quoted;
+using support::quote;
 using Need = ObjectReader::Need;
 
 Place place_of(const Json& json) { return {json.begin, json.end}; }
@@ -52,7 +52,7 @@ class GraphBuilder {
 
 void GraphBuilder::check_id(std::string_view id, Place place, std::string_view what) {
   if (is_id(id)) return;
-  diagnostics_.report(Id::bad_id, graph_.span(place), quoted(id) + " cannot name " + std::string(what))
+  diagnostics_.report(Id::bad_id, graph_.span(place), quote(id) + " cannot name " + std::string(what))
       .note(id.size() > 128 ? "names have at most 128 characters"
                             : "names are letters, digits and '_', and begin with no digit");
 }
@@ -64,7 +64,7 @@ void GraphBuilder::enter(const Member& member, std::string_view what, Graph::Nam
   // An object has no key twice, so it is an input that the node repeats.
   diagnostics_
       .report(Id::duplicate_name, document_.key_span(member),
-              std::string(what) + " is called " + quoted(member.key) + ", as an input or parameter is")
+              std::string(what) + " is called " + quote(member.key) + ", as an input or parameter is")
       .note(graph_.span(graph_.inputs[found->second.index].name_place), "which is named here");
 }
 
@@ -73,7 +73,7 @@ std::optional<Literal> GraphBuilder::literal(const Json& json, std::string_view 
   const auto finite = [&](const Json& number) {
     if (std::isfinite(document_.to_float(number))) return true;
     diagnostics_.report(Id::out_of_range, document_.span(number),
-                        quoted(key) + " is beyond the range of float");
+                        quote(key) + " is beyond the range of float");
     return false;
   };
   switch (json.kind) {
@@ -98,7 +98,7 @@ std::optional<Literal> GraphBuilder::literal(const Json& json, std::string_view 
         if (item.kind != Json::Kind::number) {
           diagnostics_.report(
               Id::wrong_type, document_.span(item),
-              quoted(key) + " is an array of numbers, not with " + std::string(kind_name(item.kind)));
+              quote(key) + " is an array of numbers, not with " + std::string(kind_name(item.kind)));
           return std::nullopt;
         }
         if (!finite(item)) return std::nullopt;
@@ -111,8 +111,8 @@ std::optional<Literal> GraphBuilder::literal(const Json& json, std::string_view 
   const bool array = json.kind == Json::Kind::array;
   diagnostics_.report(
       Id::wrong_type, document_.span(json),
-      array ? quoted(key) + " is an array of 1 to 16 numbers, not of " + std::to_string(json.items.size())
-            : quoted(key) + " cannot be " + std::string(kind_name(json.kind)));
+      array ? quote(key) + " is an array of 1 to 16 numbers, not of " + std::to_string(json.items.size())
+            : quote(key) + " cannot be " + std::string(kind_name(json.kind)));
   return std::nullopt;
 }
 
@@ -129,22 +129,21 @@ std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
     return parse_link(document_.source, target->string, place_of(*target), diagnostics_);
   }
   diagnostics_.report(Id::wrong_type, document_.span(json),
-                      quoted(key) + " is a link, not " + std::string(kind_name(json.kind)));
+                      quote(key) + " is a link, not " + std::string(kind_name(json.kind)));
   return std::nullopt;
 }
 
 void GraphBuilder::check_value(const Input& input, const Json& json) {
   if (!fits(input.type, *input.value)) {
-    diagnostics_.report(
-        Id::wrong_type, document_.span(json),
-        "the value of " + quoted(input.name) + " is no " + std::string(type_name(input.type)));
+    diagnostics_.report(Id::wrong_type, document_.span(json),
+                        "the value of " + quote(input.name) + " is no " + std::string(type_name(input.type)));
     return;
   }
   const auto check = [&](float value, const Json& at) {
     const bool low = input.min && value < *input.min;
     if (!low && !(input.max && value > *input.max)) return;
     diagnostics_.report(Id::out_of_range, document_.span(at),
-                        "the value of " + quoted(input.name) +
+                        "the value of " + quote(input.name) +
                             (low ? " is less than its min " + support::format_float(*input.min)
                                  : " is greater than its max " + support::format_float(*input.max)));
   };
@@ -157,7 +156,7 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
   input.name = member.key;
   input.name_place = key_place(member);
   input.place = place_of(member.value);
-  const std::string what = (is_parameter ? "parameter " : "input ") + quoted(member.key);
+  const std::string what = (is_parameter ? "parameter " : "input ") + quote(member.key);
   ObjectReader reader(document_, member.value, what, diagnostics_);
   const Json* type = reader.value("type");
   if (type != nullptr && type->kind != Json::Kind::string) {
@@ -166,7 +165,7 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
     const std::optional<Type> found = find_type(type->string);
     input.type = found.value_or(Type::floating);
     if (!found) {
-      diagnostics_.report_unknown(Id::unknown_type, document_.span(*type), "no type " + quoted(type->string),
+      diagnostics_.report_unknown(Id::unknown_type, document_.span(*type), "no type " + quote(type->string),
                                   type->string, all_type_names());
     }
   }
@@ -205,7 +204,7 @@ void GraphBuilder::read_node(const Member& member) {
   if (json.kind != Json::Kind::object) {
     diagnostics_.report(
         Id::wrong_type, document_.span(json),
-        "node " + quoted(member.key) + " is an object, not " + std::string(kind_name(json.kind)));
+        "node " + quote(member.key) + " is an object, not " + std::string(kind_name(json.kind)));
     return;
   }
   // Not by ObjectReader: all other keys are ports, and which there are depends on the node's type.
@@ -217,7 +216,7 @@ void GraphBuilder::read_node(const Member& member) {
     if (entry.key == "type" || entry.key == "doc") {
       if (value.kind != Json::Kind::string) {
         diagnostics_.report(Id::wrong_type, document_.span(value),
-                            quoted(entry.key) + " of node " + quoted(member.key) + " is a string, not " +
+                            quote(entry.key) + " of node " + quote(member.key) + " is a string, not " +
                                 std::string(kind_name(value.kind)));
       }
       (entry.key == "type" ? node.type : node.doc) = value.string;
@@ -235,7 +234,7 @@ void GraphBuilder::read_node(const Member& member) {
   }
   if (type == nullptr) {
     diagnostics_.report(Id::missing_key, {document_.source, json.begin, json.begin + 1},
-                        "node " + quoted(member.key) + " needs the key \"type\"");
+                        "node " + quote(member.key) + " needs the key \"type\"");
   } else {
     node.type_place = place_of(*type);
   }
@@ -283,7 +282,7 @@ void GraphBuilder::read_pass(const Json& json) {
     for (const Pass& other : graph_.passes) {
       if (other.name != pass.name) continue;
       diagnostics_
-          .report(Id::duplicate_name, document_.span(*name), "two passes are called " + quoted(pass.name))
+          .report(Id::duplicate_name, document_.span(*name), "two passes are called " + quote(pass.name))
           .note(graph_.span(other.place), "the other one");
       break;
     }

@@ -11,7 +11,7 @@
 namespace isoshade::graph {
 
 using support::Id;
-using support::quoted;
+using support::quote;
 
 namespace {
 
@@ -54,14 +54,14 @@ const Json* ObjectReader::value(std::string_view key, Need need) {
   }
   if (need == Need::required && json_.kind == Json::Kind::object) {
     diagnostics_.report(Id::missing_key, {document_.source, json_.begin, json_.begin + 1},
-                        what_ + " needs the key " + quoted(key));
+                        what_ + " needs the key " + quote(key));
   }
   return nullptr;
 }
 
 void ObjectReader::report_wrong(std::string_view key, const Json& json, std::string_view expected) {
   diagnostics_.report(Id::wrong_type, document_.span(json),
-                      quoted(key) + " of " + what_ + " is " + std::string(expected) + ", not " +
+                      quote(key) + " of " + what_ + " is " + std::string(expected) + ", not " +
                           std::string(kind_name(json.kind)));
 }
 
@@ -78,7 +78,7 @@ bool ObjectReader::check_range(std::string_view key, const Json& number, Range r
                         : high      ? "at most " + decimal(range.high)
                                     : "in the range of float";
   diagnostics_.report(Id::out_of_range, document_.span(number),
-                      quoted(key) + " of " + what_ + " must be " + allowed);
+                      quote(key) + " of " + what_ + " must be " + allowed);
   return false;
 }
 
@@ -125,7 +125,7 @@ int64_t ObjectReader::integer(std::string_view key, Range range, std::optional<i
   if (found->kind != Json::Kind::number || !found->integral) {
     if (found->kind == Json::Kind::number) {
       diagnostics_.report(Id::wrong_type, document_.span(*found),
-                          quoted(key) + " of " + what_ + " is an integer, written without fraction");
+                          quote(key) + " of " + what_ + " is an integer, written without fraction");
     } else {
       report_wrong(key, *found, "an integer");
     }
@@ -143,13 +143,14 @@ void ObjectReader::read_numbers(std::string_view key, float* values, size_t coun
   if (found->items.size() != count) {
     diagnostics_.report(
         Id::wrong_type, document_.span(*found),
-        quoted(key) + " of " + what_ + " is " + expected + ", not of " + std::to_string(found->items.size()));
+        quote(key) + " of " + what_ + " is " + expected + ", not of " + std::to_string(found->items.size()));
     return;
   }
   for (size_t i = 0; i < count; ++i) {
     const Json& item = found->items[i];
-    if (item.kind != Json::Kind::number) return report_wrong(key, item, expected);
-    if (!check_range(key, item, range)) return;
+    const std::string name = std::string(key) + "[" + std::to_string(i) + "]";
+    if (item.kind != Json::Kind::number) return report_wrong(name, item, "a number");
+    if (!check_range(name, item, range)) return;
   }
   for (size_t i = 0; i < count; ++i) values[i] = document_.to_float(found->items[i]);
 }
@@ -162,7 +163,7 @@ size_t ObjectReader::choice(std::string_view key, const std::vector<std::string_
   if (place != choices.end()) return static_cast<size_t>(place - choices.begin());
   diagnostics_.report_unknown(
       Id::out_of_range, document_.span(*found),
-      quoted(key) + " of " + what_ + " is one of " + join(choices) + ", not " + quoted(found->string),
+      quote(key) + " of " + what_ + " is one of " + join(choices) + ", not " + quote(found->string),
       found->string, choices);
   return fallback.value_or(0);
 }
@@ -173,7 +174,7 @@ bool ObjectReader::finish() {
     const Member& member = json_.members[i];
     support::Diagnostic& report =
         diagnostics_.report_unknown(Id::unknown_key, document_.key_span(member),
-                                    what_ + " has no key " + quoted(member.key), member.key, known_);
+                                    what_ + " has no key " + quote(member.key), member.key, known_);
     if (report.fix.empty()) report.note("its keys are " + join(known_));
   }
   return diagnostics_.error_count() == errors_before_;

@@ -98,7 +98,7 @@ Diagnostic& Diagnostics::report_unknown(Id id, Span where, std::string message, 
   const bool is_read = !full();
   Diagnostic& diagnostic = report(id, std::move(where), std::move(message));
   const std::string_view near = is_read ? nearest(word, candidates) : std::string_view{};
-  return near.empty() ? diagnostic : diagnostic.suggest("did you mean " + quoted(near) + "?");
+  return near.empty() ? diagnostic : diagnostic.suggest("did you mean " + quote(near) + "?");
 }
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {

@@ -47,7 +47,7 @@ struct Diagnostic {
 };
 
 /// The sink that every stage writes to. Keeps at most `limit` errors and as many warnings; later ones are
-/// counted. A name or a file in a message is put there by quoted() of visible.h: a document may say anything.
+/// counted. A name or a file in a message is put there by quote() of visible.h: a document may say anything.
 class Diagnostics {
  public:
   explicit Diagnostics(size_t limit = 50) : limit_(limit) {}

@@ -52,8 +52,9 @@ Shown show_line(std::string_view line, size_t begin, size_t end) {
   if (line.size() > window) {
     from = std::min(begin - std::min(begin, before_caret), line.size() - window);
     to = from + window;
-    while (from > 0 && continues_character(line[from]) && begin - from < window / 2) --from;
-    while (to < line.size() && continues_character(line[to]) && to - from < window + 4) ++to;
+    // A character has at most three continuation bytes; more are no text and may be cut anywhere.
+    for (int i = 0; i < 3 && from > 0 && continues_character(line[from]); ++i) --from;
+    for (int i = 0; i < 3 && to < line.size() && continues_character(line[to]); ++i) ++to;
   }
   Shown shown;
   if (from > 0) shown.text = cut_mark;

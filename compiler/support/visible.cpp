@@ -72,7 +72,7 @@ std::string visible(std::string_view text) {
   return out;
 }
 
-std::string quoted(std::string_view text) {
+std::string quote(std::string_view text) {
   constexpr size_t longest = 80;
   std::string out = "\"";
   while (!text.empty() && out.size() < longest) text.remove_prefix(append_visible(text, out).bytes);

@@ -23,6 +23,6 @@ Glyph append_visible(std::string_view text, std::string& out);
 std::string visible(std::string_view text);
 
 /// The visible text in double quotes, cut after some 80 bytes: how messages name what a document says.
-std::string quoted(std::string_view text);
+std::string quote(std::string_view text);
 
 }  // namespace isoshade::support
