@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The lanes of every width compute, function by function, the bits of one lane; and one lane computes what
+// the C++ library and 64-bit arithmetic say.
+#include "runtime/lanes/lanes.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <limits>
+#include <map>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tests/unit/lanes_kernels.h"
+
+namespace isoshade::lanes {
+
+// Tests are printed by their parameter.
+namespace test {
+struct Configuration {
+  const char* name;
+  const char* instruction_set;
+  const KernelTable& (*table)();
+};
+
+void PrintTo(const Configuration& configuration, std::ostream* out) { *out << configuration.name; }
+}  // namespace test
+
+namespace {
+
+using namespace test;
+
+bool processor_has(const std::string& instruction_set) {
+  __builtin_cpu_init();
+  if (instruction_set == "SSE4.1") return __builtin_cpu_supports("sse4.1");
+  if (instruction_set == "AVX2") return __builtin_cpu_supports("avx2");
+  if (instruction_set == "AVX-512") {
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+  }
+  return true;
+}
+
+// ---- operands
+
+const std::vector<uint32_t>& special_bits() {
+  static const std::vector<uint32_t> bits = [] {
+    std::vector<uint32_t> magnitudes = {
+        0x00000000, 0x00000001, 0x00000002, 0x00012345, 0x007fffff,              // zero, denormals
+        0x00800000, 0x00800001, 0x00ffffff, 0x01000000, 0x0c800000, 0x1f800000,  // tiny; square root of tiny
+        0x20000000, 0x33800000, 0x34000000, 0x3effffff, 0x3f000000, 0x3f000001, 0x3f7fffff, 0x3f800000,
+        0x3f800001, 0x3fc00000, 0x40000000, 0x40490fdb, 0x437f0000, 0x4affffff,  // ordinary
+        0x4b000000, 0x4b000001, 0x4b7fffff, 0x4b800000,                          // from 2^23 on all are whole
+        0x4effffff, 0x4f000000, 0x4f000001, 0x4f7fffff, 0x4f800000, 0x5f000000,  // the ends of int and
+                                                                                 // unsigned
+        0x7e800000, 0x7f000000, 0x7f7fffff, 0x7f800000,                          // huge, infinity
+        0x7f800001, 0x7fa00000, 0x7fc00000, 0x7fc01234, 0x7fffffff,              // NaN, signaling and quiet
+        31, 32, 36, 37, 255, 256, 0x0000ffff, 0x00010000};  // as ints: shift amounts, sizes
+    std::vector<uint32_t> both = magnitudes;
+    for (uint32_t magnitude : magnitudes) both.push_back(magnitude | 0x80000000u);
+    return both;
+  }();
+  return bits;
+}
+
+constexpr int rows = 1 << 20;
+
+struct Rows {
+  std::vector<int> columns[3];
+};
+
+/// All pairs of special values, then random rows of several kinds.
+const Rows& operand_rows() {
+  static const Rows operands = [] {
+    Rows result;
+    std::mt19937 random(20260101);
+    const std::vector<uint32_t>& special = special_bits();
+    const auto put = [&](uint32_t a, uint32_t b, uint32_t c) {
+      const uint32_t row[3] = {a, b, c};
+      for (int i = 0; i < 3; ++i) result.columns[i].push_back(static_cast<int>(row[i]));
+    };
+    const auto with_exponent = [&](uint32_t exponent) {
+      return (static_cast<uint32_t>(random()) & 0x807fffffu) | ((exponent & 0xff) << 23);
+    };
+    for (uint32_t a : special)
+      for (uint32_t b : special) put(a, b, special[random() % special.size()] ^ (random() & 3));
+    while (result.columns[0].size() < rows) {
+      const uint32_t a = static_cast<uint32_t>(random());
+      const uint32_t exponent = (a >> 23) & 0xff;
+      switch (random() % 6) {
+        case 0: put(a, random(), random()); break;
+        case 1: put(a, a + random() % 9 - 4, random()); break;  // neighbours: cancellation
+        case 2:
+          put(a, with_exponent(127 - exponent + random() % 4), random());
+          break;  // products near the least
+        case 3: put(a, with_exponent(exponent + random() % 5 - 2), with_exponent(exponent)); break;
+        case 4: put(with_exponent(120 + random() % 40), with_exponent(120 + random() % 40), random()); break;
+        case 5: put(random() % 1000, random() % 64, random()); break;  // small ints
+      }
+    }
+    return result;
+  }();
+  return operands;
+}
+
+const std::vector<float>& float_table() {
+  static const std::vector<float> table = [] {
+    std::vector<float> values(37);
+    for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i) * 0.37f - 3.0f;
+    return values;
+  }();
+  return table;
+}
+
+const std::vector<int> int_table = {5,  -7, 1 << 30, 0,  -1, 99, 12345, 1,  2,  3,  4,  -5, 6,
+                                    7,  8,  9,       10, 11, 12, 13,    14, 15, 16, 17, 18, 19,
+                                    20, 21, 22,      23, 24, 25, 26,    27, 28, 29, 31};
+
+constexpr int block = 4096;
+
+/// Runs the kernel over rows [begin, begin + block). Uniform operands differ from block to block.
+std::vector<int> run_block(const Kernel& kernel, int begin) {
+  const Rows& operands = operand_rows();
+  const std::vector<uint32_t>& special = special_bits();
+  Inputs inputs;
+  for (int i = 0; i < 3; ++i) inputs.columns[i] = operands.columns[i].data() + begin;
+  inputs.count = block;
+  const size_t which = static_cast<size_t>(begin) / block;
+  inputs.uniform[0] = static_cast<int>(special[which % special.size()]);
+  inputs.uniform[1] =
+      which % 2 == 0 ? operands.columns[1][begin + 1] : static_cast<int>(special[which % special.size()]);
+  inputs.floats = float_table().data();
+  inputs.ints = int_table.data();
+  inputs.table_size = static_cast<int>(int_table.size());
+
+  std::vector<int> results(block + 1);
+  // One element off: lanes may start anywhere.
+  const FpGuard guard;
+  kernel.run(inputs, results.data() + 1);
+  results.erase(results.begin());
+  return results;
+}
+
+// ---- every width against one lane
+
+class Lanes : public testing::TestWithParam<Configuration> {
+ protected:
+  void SetUp() override {
+    const std::string needed = GetParam().instruction_set;
+    if (!processor_has(needed)) GTEST_SKIP() << "this processor has no " << needed;
+  }
+  const KernelTable& table() const { return GetParam().table(); }
+};
+
+TEST_P(Lanes, ComputeTheBitsOfOneLane) {
+  const KernelTable& reference = kernels_scalar_sse2();
+  ASSERT_EQ(table().count, reference.count);
+  for (int k = 0; k < reference.count; ++k) {
+    const char* text = reference.kernels[k].text;
+    ASSERT_STREQ(table().kernels[k].text, text);
+    for (int begin = 0; begin + block <= rows; begin += block) {
+      const std::vector<int> expected = run_block(reference.kernels[k], begin);
+      const std::vector<int> actual = run_block(table().kernels[k], begin);
+      if (expected == actual) continue;
+      const auto [e, a] = std::mismatch(expected.begin(), expected.end(), actual.begin());
+      const size_t row = static_cast<size_t>(begin + (e - expected.begin()));
+      ADD_FAILURE() << text << std::hex << " at (" << operand_rows().columns[0][row] << ", "
+                    << operand_rows().columns[1][row] << ", " << operand_rows().columns[2][row]
+                    << "): one lane gives " << *e << ", these lanes give " << *a;
+      break;
+    }
+  }
+}
+
+TEST_P(Lanes, StoreFloatsUnchangedButForNan) {
+  std::vector<float> from(block + 1), to(block + 1);
+  for (int i = 0; i < block; ++i) {
+    const int pattern = operand_rows().columns[0][static_cast<size_t>(i)];
+    std::memcpy(&from[static_cast<size_t>(i) + 1], &pattern, sizeof pattern);
+  }
+  {
+    const FpGuard guard;
+    table().copy(from.data() + 1, to.data() + 1, block);
+  }
+  for (size_t i = 1; i <= block; ++i) {
+    const uint32_t before = std::bit_cast<uint32_t>(from[i]);
+    const bool nan = (before & 0x7fffffffu) > 0x7f800000u;
+    ASSERT_EQ(std::bit_cast<uint32_t>(to[i]), nan ? 0x7fc00000u : before) << std::hex << before;
+  }
+}
+
+TEST_P(Lanes, BranchRunsOnlySidesThatSomeLaneWants) {
+  const int lanes = table().lanes;
+  const auto sides = [&](const std::vector<int>& conditions) {
+    int then_count = 0, other_count = 0;
+    table().count_branch_sides(conditions.data(), &then_count, &other_count);
+    return std::pair(then_count, other_count);
+  };
+  EXPECT_EQ(sides(std::vector<int>(lanes, 1)), std::pair(1, 0));
+  EXPECT_EQ(sides(std::vector<int>(lanes, 0)), std::pair(0, 1));
+  if (lanes == 1) return;
+  for (int lane = 0; lane < lanes; ++lane) {
+    std::vector<int> conditions(lanes, 0);
+    conditions[lane] = 1;
+    EXPECT_EQ(sides(conditions), std::pair(1, 1)) << "only lane " << lane;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Width, Lanes,
+                         testing::Values(Configuration{"scalar_sse2", "SSE2", kernels_scalar_sse2},
+                                         Configuration{"scalar_sse4", "SSE4.1", kernels_scalar_sse4},
+                                         Configuration{"4x1_sse2", "SSE2", kernels_4x1_sse2},
+                                         Configuration{"4x1_sse4", "SSE4.1", kernels_4x1_sse4},
+                                         Configuration{"4x1_avx2", "AVX2", kernels_4x1_avx2},
+                                         Configuration{"8x1_avx2", "AVX2", kernels_8x1_avx2},
+                                         Configuration{"8x2_avx2", "AVX2", kernels_8x2_avx2},
+                                         Configuration{"8x2_avx512", "AVX-512", kernels_8x2_avx512},
+                                         Configuration{"16x1_avx512", "AVX-512", kernels_16x1_avx512},
+                                         Configuration{"16x2_avx512", "AVX-512", kernels_16x2_avx512}),
+                         [](const testing::TestParamInfo<Configuration>& info) {
+                           return std::string(info.param.name);
+                         });
+
+// ---- the table of ops
+
+TEST(LaneKernels, CoverEveryOpAsOpsDefSpellsIt) {
+  std::map<std::string, std::string> kernels;
+  const KernelTable& table = kernels_scalar_sse2();
+  for (const Kernel& kernel : std::span(table.kernels, static_cast<size_t>(table.count)))
+    if (*kernel.op != '\0') kernels[kernel.op] = kernel.text;
+
+  // The operands of each rule, by the names that the kernels give them.
+  const std::map<std::string, std::vector<std::string>> operands = {
+      {"same", {"a", "b"}},        {"compare", {"a", "b"}}, {"integer", {"i", "j"}},
+      {"icompare", {"i", "j"}},    {"logic", {"p", "q"}},   {"to_int", {"a"}},
+      {"choose", {"p", "a", "b"}}, {"to_float", {"i"}},     {"shift", {"i", "n"}}};
+  const auto check = [&](const std::string& op, std::string rule, std::string text,
+                         const std::string& needs) {
+    if (needs == "shift_amount") rule = "shift";
+    ASSERT_TRUE(operands.contains(rule)) << op << " has a rule that is new to this test: " << rule;
+    const std::vector<std::string>& names = operands.at(rule);
+    for (size_t at = text.find('$'); at != std::string::npos; at = text.find('$'))
+      text.replace(at, 2, names.at(static_cast<size_t>(text[at + 1] - '0')));
+    ASSERT_TRUE(kernels.contains(op)) << op << " has no kernel";
+    EXPECT_EQ(kernels[op], text) << op;
+    kernels.erase(op);
+  };
+#define OP(name, arity, rule, glsl, cpp, precondition) check(#name, #rule, cpp, #precondition);
+#include "compiler/ir/ops.def"
+  for (const auto& [op, text] : kernels) ADD_FAILURE() << "ops.def has no row " << op;
+}
+
+// ---- one lane against what is known
+
+uint32_t flushed(uint32_t bits) { return (bits & 0x7f800000u) == 0 ? bits & 0x80000000u : bits; }
+bool is_nan(uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
+uint32_t canonical(uint32_t bits) { return is_nan(bits) ? 0x7fc00000u : bits; }
+
+class OneLane : public testing::Test {
+ protected:
+  /// Compares the results of a kernel, by its text, with expected(a, b) on all rows.
+  template <class Expected>
+  void expect(const std::string& text, Expected expected) {
+    const KernelTable& table = kernels_scalar_sse2();
+    for (const Kernel& kernel : std::span(table.kernels, static_cast<size_t>(table.count))) {
+      if (kernel.text != text) continue;
+      for (int begin = 0; begin + block <= rows; begin += block) {
+        const std::vector<int> actual = run_block(kernel, begin);
+        for (int i = 0; i < block; ++i) {
+          const size_t row = static_cast<size_t>(begin + i);
+          const uint32_t a = static_cast<uint32_t>(operand_rows().columns[0][row]);
+          const uint32_t b = static_cast<uint32_t>(operand_rows().columns[1][row]);
+          ASSERT_EQ(static_cast<uint32_t>(actual[static_cast<size_t>(i)]),
+                    static_cast<uint32_t>(expected(a, b)))
+              << text << std::hex << " of " << a << ", " << b;
+        }
+      }
+      return;
+    }
+    FAIL() << "no kernel " << text;
+  }
+
+  static float number(uint32_t bits) { return std::bit_cast<float>(flushed(bits)); }
+  static uint32_t pattern(float value) { return canonical(std::bit_cast<uint32_t>(value)); }
+};
+
+TEST_F(OneLane, RoundsDownToWholeNumbers) {
+  expect("floor(a)", [](uint32_t a, uint32_t) { return pattern(std::floor(number(a))); });
+}
+
+TEST_F(OneLane, TakesTheCorrectlyRoundedRoot) {
+  // The root of a float in double, rounded again, is the correctly rounded root in float.
+  expect("sqrt(a)", [](uint32_t a, uint32_t) {
+    return pattern(static_cast<float>(std::sqrt(static_cast<double>(number(a)))));
+  });
+}
+
+TEST_F(OneLane, MultipliesAndFlushesWhatIsTiny) {
+  // The product is exact in double. Tiny is what is below the least normal float after rounding as if the
+  // exponent had no end.
+  expect("a * b", [](uint32_t a, uint32_t b) {
+    const double exact = static_cast<double>(number(a)) * number(b);
+    int exponent = 0;
+    const double fraction = std::frexp(exact, &exponent);
+    if (!std::isfinite(exact) || exact == 0) return pattern(static_cast<float>(exact));
+    const double rounded = std::ldexp(static_cast<double>(static_cast<float>(fraction)), exponent);
+    return pattern(std::fabs(rounded) < 0x1p-126 ? std::copysign(0.0f, static_cast<float>(exact))
+                                                 : static_cast<float>(rounded));
+  });
+}
+
+TEST_F(OneLane, ComparesAsIeeeSays) {
+  expect("a < b", [](uint32_t a, uint32_t b) { return number(a) < number(b); });
+  expect("a <= b", [](uint32_t a, uint32_t b) { return number(a) <= number(b); });
+  expect("a > b", [](uint32_t a, uint32_t b) { return number(a) > number(b); });
+  expect("a >= b", [](uint32_t a, uint32_t b) { return number(a) >= number(b); });
+  expect("a == b", [](uint32_t a, uint32_t b) { return number(a) == number(b); });
+  expect("a != b", [](uint32_t a, uint32_t b) { return number(a) != number(b); });
+}
+
+TEST_F(OneLane, ConvertsBetweenFloatsBitsAndInts) {
+  expect("bits(a)", [](uint32_t a, uint32_t) { return canonical(a); });
+  expect("bits_nonnan(a)", [](uint32_t a, uint32_t) { return a; });
+  expect("bits_nonnan(from_bits(i))", [](uint32_t a, uint32_t) { return flushed(a); });
+  expect("bits_nonnan(negate(a))", [](uint32_t a, uint32_t) { return a ^ 0x80000000u; });
+  expect("bits_nonnan(abs(a))", [](uint32_t a, uint32_t) { return a & 0x7fffffffu; });
+  expect("to_float(i)", [](uint32_t a, uint32_t) {
+    return pattern(static_cast<float>(static_cast<double>(static_cast<int32_t>(a))));
+  });
+  expect("to_int(a)", [](uint32_t a, uint32_t) {
+    const double value = number(a);
+    const bool in_range = value > -2147483649.0 && value < 2147483648.0;
+    return in_range ? static_cast<uint32_t>(static_cast<int32_t>(value)) : 0x80000000u;
+  });
+}
+
+TEST_F(OneLane, WrapsIntegers) {
+  const auto wide = [](uint32_t a) { return static_cast<int64_t>(static_cast<int32_t>(a)); };
+  expect("i + j", [](uint32_t a, uint32_t b) { return a + b; });
+  expect("i - j", [](uint32_t a, uint32_t b) { return a - b; });
+  expect("i * j", [](uint32_t a, uint32_t b) { return a * b; });
+  expect("mul_hi(i, j)",
+         [&](uint32_t a, uint32_t b) { return static_cast<uint32_t>((wide(a) * wide(b)) >> 32); });
+  expect("unsigned_mul_hi(i, j)", [](uint32_t a, uint32_t b) {
+    return static_cast<uint32_t>((static_cast<uint64_t>(a) * static_cast<uint64_t>(b)) >> 32);
+  });
+  expect("shift_left(i, n)", [](uint32_t a, uint32_t b) { return a << (b & 31); });
+  expect("shift_right(i, n)", [](uint32_t a, uint32_t b) { return a >> (b & 31); });
+  expect("shift_right_signed(i, n)",
+         [&](uint32_t a, uint32_t b) { return static_cast<uint32_t>(wide(a) >> (b & 31)); });
+  expect("i < j", [&](uint32_t a, uint32_t b) { return wide(a) < wide(b); });
+  expect("unsigned_less(i, j)", [](uint32_t a, uint32_t b) { return a < b; });
+}
+
+TEST_F(OneLane, ReadsInsideTheTableWhateverTheIndex) {
+  const auto at = [](uint32_t index) { return std::min<size_t>(index, int_table.size() - 1); };
+  expect("load(ints, i)", [&](uint32_t a, uint32_t) { return static_cast<uint32_t>(int_table[at(a)]); });
+  expect("load(floats, i)", [&](uint32_t a, uint32_t) { return pattern(float_table()[at(a)]); });
+}
+
+// ---- the processor's mode
+
+TEST(FpGuardTest, FlushesDenormalsWhileAliveAndRestoresTheMode) {
+  volatile float least = std::numeric_limits<float>::min();
+  volatile float half = 0.5f;
+  volatile float third = 3.0f;
+  volatile float one = 1.0f;
+  volatile float product = 0, quotient = 0;
+
+  constexpr unsigned upward = 0x4000;
+  const unsigned before = __builtin_ia32_stmxcsr();
+  const unsigned odd = (before & ~0x6000u & ~0x3fu) | upward;
+  __builtin_ia32_ldmxcsr(odd);
+  {
+    const FpGuard guard;
+    product = least * half;
+    quotient = one / third;
+    EXPECT_EQ(__builtin_ia32_stmxcsr() & 0xffc0u, 0x9fc0u);
+  }
+  const unsigned after = __builtin_ia32_stmxcsr();
+  EXPECT_EQ(after & 0xffc0u, odd & 0xffc0u);
+  EXPECT_EQ(product, 0.0f);
+  EXPECT_EQ(std::bit_cast<uint32_t>(float{quotient}), 0x3eaaaaabu);
+  quotient = one / third;
+  EXPECT_EQ(std::bit_cast<uint32_t>(float{quotient}), 0x3eaaaaabu);
+  quotient = -one / third;
+  EXPECT_EQ(std::bit_cast<uint32_t>(float{quotient}), 0xbeaaaaaau);
+  __builtin_ia32_ldmxcsr(before);
+  product = least * half;
+  EXPECT_GT(product, 0.0f);
+}
+
+}  // namespace
+}  // namespace isoshade::lanes
