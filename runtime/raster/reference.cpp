@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/raster/reference.h"
+
+#include <algorithm>
+
+#include "compiler/functions/interpolation.h"
+#include "compiler/lower/frame_layout.h"
+#include "runtime/lanes/lanes.h"
+
+namespace isoshade::raster {
+namespace {
+
+namespace word = lower::triangle_word;
+
+struct Position {
+  int x, y;
+};
+
+/// Whether the pixel centre lies to the inner side of the edge. Of two triangles that share an edge, the
+/// centres on it belong to the one whose left or top edge it is.
+bool inside(Position from, Position to, Position centre) {
+  const int64_t dx = to.x - from.x;
+  const int64_t dy = to.y - from.y;
+  const int64_t edge = dx * (centre.y - from.y) - dy * (centre.x - from.x);
+  const bool left = dy < 0;
+  const bool top = dy == 0 && dx > 0;
+  return edge > 0 || (edge == 0 && (left || top));
+}
+
+void draw(const int32_t* record, int id, int width, int height, std::span<int32_t> ids,
+          std::span<float> depth) {
+  Position corner[3];
+  float z[3];
+  for (int i = 0; i < 3; ++i) {
+    corner[i] = {record[word::position + 2 * i], record[word::position + 2 * i + 1]};
+    z[i] = lanes::from_bits(record[word::depth + i]);
+  }
+  const bool wide = record[word::object] & 1;
+
+  const auto [left, right] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
+  const auto [top, bottom] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
+  const int first_x = std::max(0, left >> 8), last_x = std::min(width - 1, right >> 8);
+  const int first_y = std::max(0, top >> 8), last_y = std::min(height - 1, bottom >> 8);
+  for (int y = first_y; y <= last_y; ++y)
+    for (int x = first_x; x <= last_x; ++x) {
+      const Position centre{256 * x + 128, 256 * y + 128};
+      if (!inside(corner[0], corner[1], centre) || !inside(corner[1], corner[2], centre) ||
+          !inside(corner[2], corner[0], centre))
+        continue;
+      const auto edges = functions::edge_functions<float>(corner[0].x, corner[0].y, corner[1].x, corner[1].y,
+                                                          corner[2].x, corner[2].y, wide, centre.x, centre.y);
+      const float nearness = functions::interpolate_depth<float>(edges, z[0], z[1], z[2]);
+      const size_t pixel = static_cast<size_t>(y) * width + x;
+      if (!(nearness > depth[pixel])) continue;
+      depth[pixel] = nearness;
+      ids[pixel] = id;
+    }
+}
+
+}  // namespace
+
+void rasterize_reference(std::span<const int32_t> triangles, int width, int height, std::span<int32_t> ids,
+                         std::span<float> depth) {
+  const lanes::FpGuard guard_floats;
+  std::fill(ids.begin(), ids.end(), -1);
+  std::fill(depth.begin(), depth.end(), 0.0f);
+  const int count = static_cast<int>(triangles.size() / word::stride);
+  for (int i = 0; i < count; ++i)
+    draw(triangles.data() + static_cast<size_t>(i) * word::stride, i, width, height, ids, depth);
+}
+
+}  // namespace isoshade::raster

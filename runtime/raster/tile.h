@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Visibility of one tile of the image: for each pixel the nearest triangle and its depth.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace isoshade::raster {
+
+inline constexpr int tile_size = 64;  ///< pixels each way
+inline constexpr int block_size = 8;
+inline constexpr int tile_pixels = tile_size * tile_size;
+
+/// Stored block by block, so that neighbours in the image are neighbours in memory: blocks of 8x8 pixels row
+/// by row, pixels of a block row by row.
+struct Tile {
+  alignas(64) int32_t triangles[tile_pixels];  ///< indices of the triangles, -1 where there is none
+  alignas(64) float depth[tile_pixels];        ///< 0 where there is none
+
+  void clear();
+};
+
+/// The pixel of the tile that is the i-th in storage.
+constexpr int tile_x(int i) { return (i >> 6 & 7) * block_size + (i & 7); }
+constexpr int tile_y(int i) { return (i >> 9) * block_size + (i >> 3 & 7); }
+constexpr int tile_index(int x, int y) {
+  return (y / block_size * (tile_size / block_size) + x / block_size) * 64 + y % block_size * 8 +
+         x % block_size;
+}
+
+/// Draws those of the triangles (records of lower/frame_layout.h) that `which` names, in this order, into the
+/// tile whose first pixel is (x, y). A pixel keeps the triangle with the greatest depth above 0, of equal
+/// ones the first drawn. Needs an FpGuard on the thread.
+void rasterize_tile(const int32_t* triangles, std::span<const int32_t> which, int x, int y, Tile& tile);
+
+/// How many lanes `rasterize_tile` uses on this machine: 4, 8 or 16.
+int rasterizer_lanes();
+
+namespace detail {
+/// The same at a given number of lanes, if the machine has them.
+void rasterize_tile_4(const int32_t* triangles, const int32_t* which, int count, int x, int y, Tile& tile);
+void rasterize_tile_8(const int32_t* triangles, const int32_t* which, int count, int x, int y, Tile& tile);
+void rasterize_tile_16(const int32_t* triangles, const int32_t* which, int count, int x, int y, Tile& tile);
+}  // namespace detail
+
+}  // namespace isoshade::raster

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading the triangle records of lower/frame_layout.h, and the pixel grid that they lie on.
+#pragma once
+
+#include <cstdint>
+
+#include "compiler/lower/frame_layout.h"
+#include "runtime/lanes/lanes.h"
+
+namespace isoshade::raster {
+
+/// One record. Always inlined, for it is read by code for several instruction sets.
+struct Triangle {
+  const int32_t* words;
+
+  ISOSHADE_INLINE int x(int vertex) const { return words[lower::triangle_word::position + 2 * vertex]; }
+  ISOSHADE_INLINE int y(int vertex) const { return words[lower::triangle_word::position + 2 * vertex + 1]; }
+  ISOSHADE_INLINE float depth(int vertex) const {
+    return lanes::from_bits_normal(words[lower::triangle_word::depth + vertex]);
+  }
+  ISOSHADE_INLINE bool wide() const { return words[lower::triangle_word::object] & 1; }
+  /// The first word of its object's record.
+  ISOSHADE_INLINE int object() const { return words[lower::triangle_word::object] >> 1; }
+};
+
+ISOSHADE_INLINE Triangle triangle_at(const int32_t* triangles, int index) {
+  return {triangles + static_cast<int64_t>(index) * lower::triangle_word::stride};
+}
+
+template <class T>
+ISOSHADE_INLINE T least(T a, T b) {
+  return b < a ? b : a;
+}
+template <class T>
+ISOSHADE_INLINE T greatest(T a, T b) {
+  return a < b ? b : a;
+}
+
+/// The pixels whose centres lie within a triangle's bounds, ends included; empty if an end lies before its
+/// beginning.
+struct Box {
+  int x0, y0, x1, y1;
+  ISOSHADE_INLINE bool empty() const { return x1 < x0 || y1 < y0; }
+  ISOSHADE_INLINE Box within(Box other) const {
+    return {greatest(x0, other.x0), greatest(y0, other.y0), least(x1, other.x1), least(y1, other.y1)};
+  }
+};
+
+/// Positions are in 1/256 pixel; pixel i has its centre at 256 * i + 128.
+ISOSHADE_INLINE Box centres_between(int left, int top, int right, int bottom) {
+  return {(left + 127) >> 8, (top + 127) >> 8, (right - 128) >> 8, (bottom - 128) >> 8};
+}
+
+ISOSHADE_INLINE Box bounds(Triangle t) {
+  return centres_between(least(least(t.x(0), t.x(1)), t.x(2)), least(least(t.y(0), t.y(1)), t.y(2)),
+                         greatest(greatest(t.x(0), t.x(1)), t.x(2)),
+                         greatest(greatest(t.y(0), t.y(1)), t.y(2)));
+}
+
+/// The edge function of vertices `from` and `to` at pixel centre (x, y) as step_x * x + step_y * y +
+/// at_origin, divided by 256 and rounded down; every pixel step is a multiple of 256, so nothing is lost. Not
+/// negative where the pixel is on the inner side of the edge, or on an edge that is a top or a left one.
+struct Edge {
+  int64_t at_origin;
+  int step_x, step_y;
+};
+
+ISOSHADE_INLINE Edge edge_between(Triangle t, int from, int to) {
+  const int dx = t.x(to) - t.x(from);
+  const int dy = t.y(to) - t.y(from);
+  const bool top_or_left = dy < 0 || (dy == 0 && dx > 0);
+  const int64_t exact =
+      static_cast<int64_t>(dx) * (128 - t.y(from)) - static_cast<int64_t>(dy) * (128 - t.x(from));
+  return {(exact - (top_or_left ? 0 : 1)) >> 8, -dy, dx};
+}
+
+}  // namespace isoshade::raster

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "runtime/lanes/lanes.h"
+#include "runtime/raster/bins.h"
+#include "runtime/raster/reference.h"
+#include "runtime/raster/tile.h"
+#include "tests/unit/raster_shapes.h"
+
+namespace isoshade::raster {
+namespace {
+
+using shapes::Position;
+using shapes::Shapes;
+
+using Rasterize = void (*)(const int32_t*, const int32_t*, int, int, int, Tile&);
+
+struct Visible {
+  std::vector<int32_t> ids;
+  std::vector<float> depth;
+
+  Visible(int width, int height) : ids(static_cast<size_t>(width) * height), depth(ids.size()) {}
+};
+
+Visible by_tiles(Rasterize rasterize, const std::vector<int32_t>& triangles, int width, int height) {
+  Visible result(width, height);
+  const TileGrid grid(width, height);
+  const Bins bins(triangles, 0, shapes::count(triangles), width, height);
+  const lanes::FpGuard guard_floats;
+  for (int i = 0; i < grid.count(); ++i) {
+    const int left = i % grid.columns * tile_size, top = i / grid.columns * tile_size;
+    Tile tile;
+    tile.clear();
+    rasterize(triangles.data(), bins.of(i).data(), static_cast<int>(bins.of(i).size()), left, top, tile);
+    for (int pixel = 0; pixel < tile_pixels; ++pixel) {
+      const int x = left + tile_x(pixel), y = top + tile_y(pixel);
+      if (x >= width || y >= height) continue;
+      result.ids[static_cast<size_t>(y) * width + x] = tile.triangles[pixel];
+      result.depth[static_cast<size_t>(y) * width + x] = tile.depth[pixel];
+    }
+  }
+  return result;
+}
+
+Visible plainly(const std::vector<int32_t>& triangles, int width, int height) {
+  Visible result(width, height);
+  rasterize_reference(triangles, width, height, result.ids, result.depth);
+  return result;
+}
+
+int differences(const Visible& a, const Visible& b) {
+  int count = 0;
+  for (size_t i = 0; i < a.ids.size(); ++i)
+    if (a.ids[i] != b.ids[i] || std::bit_cast<int32_t>(a.depth[i]) != std::bit_cast<int32_t>(b.depth[i]))
+      ++count;
+  return count;
+}
+
+struct Variant {
+  int lanes;
+  Rasterize rasterize;
+};
+
+class TileAtLanes : public testing::TestWithParam<Variant> {
+ protected:
+  void SetUp() override {
+    if (GetParam().lanes > rasterizer_lanes())
+      GTEST_SKIP() << "this machine has no registers of so many lanes";
+  }
+};
+
+TEST_P(TileAtLanes, SeesWhatTheReferenceSees) {
+  for (const auto& [width, height] :
+       {std::pair{64, 64}, std::pair{200, 150}, std::pair{1, 1}, std::pair{333, 65}})
+    for (const std::string kind : shapes::kinds) {
+      Shapes shapes(width, height, 4242u + static_cast<unsigned>(width));
+      std::vector<int32_t> triangles;
+      std::array<float, 3> depth{};
+      for (const auto& t : shapes.of(kind, 400)) {
+        // Every fourth has the depths of the one before, so that ties occur; some are flat, some lie at the
+        // ends.
+        if (shapes.between(0, 3) != 0) depth = {shapes.fraction(), shapes.fraction(), shapes.fraction()};
+        if (shapes.between(0, 7) == 0) depth = {0.5f, 0.5f, 0.5f};
+        if (shapes.between(0, 15) == 0) depth = {0.0f, 1.0f, shapes.fraction()};
+        shapes::append(triangles, t, depth);
+        if (shapes.between(0, 7) == 0) shapes::append(triangles, t, depth);
+      }
+      const Visible expected = plainly(triangles, width, height);
+      const Visible actual = by_tiles(GetParam().rasterize, triangles, width, height);
+      EXPECT_EQ(differences(expected, actual), 0) << kind << " at " << width << "x" << height;
+    }
+}
+
+TEST_P(TileAtLanes, CoversClosedFansExactlyOnce) {
+  Shapes shapes(64, 64, 7);
+  for (int round = 0; round < 200; ++round) {
+    const Position centre{shapes.between(2048, 14336), shapes.between(2048, 14336)};
+    const int reach = round % 4 == 3 ? 2000000 : 16384;
+    std::vector<int> times(tile_pixels);
+    for (const auto& t : shapes.fan(centre, shapes.between(5, 12), reach / 2, reach)) {
+      std::vector<int32_t> triangle;
+      if (!shapes::append(triangle, t, {0.5f, 0.5f, 0.5f})) continue;
+      const lanes::FpGuard guard_floats;
+      Tile tile;
+      tile.clear();
+      const int32_t first = 0;
+      GetParam().rasterize(triangle.data(), &first, 1, 0, 0, tile);
+      for (int i = 0; i < tile_pixels; ++i) times[static_cast<size_t>(i)] += tile.triangles[i] >= 0;
+    }
+    const int around = tile_index(centre.x / 256, centre.y / 256);
+    EXPECT_EQ(times[static_cast<size_t>(around)], 1);
+    for (const int n : times) ASSERT_TRUE(n == 1 || (n == 0 && reach == 16384)) << n << " times";
+  }
+}
+
+/// Covers all of a small image.
+constexpr std::array<Position, 3> everywhere = {Position{-65536, -65536}, Position{262144, -65536},
+                                                Position{-65536, 262144}};
+
+TEST_P(TileAtLanes, TakesTheEarlierOfEqualDepths) {
+  std::vector<int32_t> triangles;
+  shapes::append(triangles, everywhere, {0.25f, 0.25f, 0.25f});
+  shapes::append(triangles, everywhere, {0.25f, 0.25f, 0.25f});
+  const Visible seen = by_tiles(GetParam().rasterize, triangles, 8, 8);
+  for (const int32_t id : seen.ids) EXPECT_EQ(id, 0);
+}
+
+TEST_P(TileAtLanes, DrawsNothingInfinitelyFar) {
+  std::vector<int32_t> triangles;
+  shapes::append(triangles, everywhere, {0, 0, 0});
+  const Visible seen = by_tiles(GetParam().rasterize, triangles, 8, 8);
+  for (const int32_t id : seen.ids) EXPECT_EQ(id, -1);
+}
+
+TEST_P(TileAtLanes, InterpolatesNarrowTrianglesLikeWideOnes) {
+  Shapes shapes(120, 120, 99);
+  std::vector<int32_t> narrow, wide;
+  for (const char* kind : {"general", "small", "subpixel", "sliver", "on_centres"})
+    for (const auto& t : shapes.of(kind, 300)) {
+      bool fits = true;
+      for (const Position p : t) fits &= p.x >= 0 && p.x < 1 << 15 && p.y >= 0 && p.y < 1 << 15;
+      if (fits) shapes::append(narrow, t, {shapes.fraction(), shapes.fraction(), shapes.fraction()});
+    }
+  wide = narrow;
+  for (size_t i = lower::triangle_word::object; i < wide.size(); i += lower::triangle_word::stride) {
+    ASSERT_EQ(narrow[i] & 1, 0);
+    wide[i] |= 1;
+  }
+  const Visible a = by_tiles(GetParam().rasterize, narrow, 128, 128);
+  const Visible b = by_tiles(GetParam().rasterize, wide, 128, 128);
+  EXPECT_EQ(differences(a, b), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Raster, TileAtLanes,
+                         testing::Values(Variant{4, detail::rasterize_tile_4},
+                                         Variant{8, detail::rasterize_tile_8},
+                                         Variant{16, detail::rasterize_tile_16}),
+                         [](const auto& info) { return std::to_string(info.param.lanes); });
+
+TEST(Tile, StoresEveryPixelOnce) {
+  for (int i = 0; i < tile_pixels; ++i) EXPECT_EQ(tile_index(tile_x(i), tile_y(i)), i);
+}
+
+}  // namespace
+}  // namespace isoshade::raster
