@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every body of functions.def.
+// Every body of functions.def, at every width.
 #pragma once
 
+#include "compiler/functions/blending.h"
 #include "compiler/functions/comparison.h"
+#include "compiler/functions/exact.h"
 #include "compiler/functions/exponential.h"
+#include "compiler/functions/logarithm.h"
+#include "compiler/functions/matrix.h"
+#include "compiler/functions/power.h"
+#include "compiler/functions/root.h"
+#include "compiler/functions/rounding.h"
+#include "compiler/functions/trigonometric.h"
+#include "compiler/functions/vector.h"
+#include "compiler/functions/widths.h"

@@ -2,30 +2,58 @@
 // Functions that choose.
 #pragma once
 
-#include "compiler/functions/vector.h"
+#include "compiler/functions/body.h"
 
 namespace isoshade::functions {
 
-/// The lesser. NaN in `b` gives `a`; NaN in `a` gives `a`; min(+0, -0) is the first. Exact.
+/// The lesser.
+/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is `a`.
+/// Error: 0 ULP.
 template <class F>
 F min(F a, F b) {
   return select(b < a, b, a);
 }
 
-template <class F, int N>
-vec<F, N> min(vec<F, N> a, vec<F, N> b) {
-  return componentwise([](F x, F y) { return min(x, y); }, a, b);
-}
-
-/// The greater. NaN in `b` gives `a`; NaN in `a` gives `a`; max(+0, -0) is the first. Exact.
+/// The greater.
+/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is `a`.
+/// Error: 0 ULP.
 template <class F>
 F max(F a, F b) {
   return select(a < b, b, a);
 }
 
-template <class F, int N>
-vec<F, N> max(vec<F, N> a, vec<F, N> b) {
-  return componentwise([](F x, F y) { return max(x, y); }, a, b);
+/// The nearest value to `x` in [low, high].
+/// Domain: all floats with low <= high, else `high`. NaN gives NaN.
+/// Error: 0 ULP.
+template <class F>
+F clamp(F x, F low, F high) {
+  return min(max(x, low), high);
+}
+
+/// The nearest value to `x` in [0, 1].
+/// Domain: all floats. NaN and -0 give +0.
+/// Error: 0 ULP.
+template <class F>
+F saturate(F x) {
+  const F below_one = select(x < 1.0f, x, F(1.0f));
+  return select(x > 0.0f, below_one, F(0.0f));
+}
+
+/// 1, 0 or -1.
+/// Domain: all floats. Zeros and NaN give themselves.
+/// Error: 0 ULP.
+template <class F>
+F sign(F x) {
+  const F below_zero = select(x < 0.0f, F(-1.0f), x);
+  return select(x > 0.0f, F(1.0f), below_zero);
+}
+
+/// 0 below `edge`, 1 from there on.
+/// Domain: all floats. If either is NaN it is 1.
+/// Error: 0 ULP.
+template <class F>
+F step(F edge, F x) {
+  return select(x < edge, F(0.0f), F(1.0f));
 }
 
 }  // namespace isoshade::functions

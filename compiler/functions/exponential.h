@@ -1,31 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
-// exp2, log2 and what is made of them.
 #pragma once
 
-#include "compiler/functions/comparison.h"
+#include "compiler/functions/body.h"
 
 namespace isoshade::functions {
+
+/// p * 2^n, n a whole number. The result must be normal, or an infinity.
+template <class F>
+F scale_by_power_of_two(F p, F n) {
+  return from_bits_normal(bits_nonnan(p) + shift_left(to_int(n), 23));
+}
+
+/// 2^f for f in [-0.5, 0.5]: the kernel of exp2 and pow.
+/// Source: polynomial by Sollya's fpminimax, relative error 2^-27.
+template <class F>
+F exp2_of_fraction(F f) {
+  return polynomial(f, {0x1.41fbbcp-13f, 0x1.5f3e52p-10f, 0x1.3b2d4cp-7f, 0x1.c6aee8p-5f, 0x1.ebfbdcp-3f,
+                        0x1.62e43p-1f, 1.0f});
+}
 
 /// 2^x.
 /// Domain: all floats; x >= 128 gives +inf, x < -126 gives 0, NaN gives NaN.
 /// Error: 1.2 ULP.
-/// Source: polynomial of degree 6 on [-0.5, 0.5] by Sollya's fpminimax.
 template <class F>
 F exp2(F x) {
-  F within = select(x < F(-150.0f), F(-150.0f), x);
-  within = select(within < F(150.0f), within, F(150.0f));  // NaN too becomes harmless
-  const F n = floor(within + F(0.5f));
-  const F f = within - n;
-  F p = F(0.000153533620f) * f + F(0.00133988739f);
-  p = p * f + F(0.00961843692f);
-  p = p * f + F(0.0555033237f);
-  p = p * f + F(0.240226477f);
-  p = p * f + F(0.693147182f);
-  p = p * f + F(1.0f);
-  F result = from_bits(bits_nonnan(p) + shift_left(to_int(n), 23));
-  result = select(x >= F(128.0f), F(__builtin_inff()), result);
-  result = select(x < F(-126.0f), F(0.0f), result);
-  return select(x == x, result, x);
+  const F above = select(x < -126.0f, F(-126.0f), x);
+  const F within = select(above < 128.0f, above, F(127.0f));  // NaN too becomes harmless
+  const F n = floor(within + 0.5f);
+  const F power = scale_by_power_of_two(exp2_of_fraction(within - n), n);
+  const F finite = select(x < -126.0f, F(0.0f), power);
+  return select(x < 128.0f, finite, x + infinity);
+}
+
+/// e^x.
+/// Domain: all floats; x > 88.722839 gives +inf, x < -87.336540 gives 0, NaN gives NaN.
+/// Error: 1 ULP.
+/// Source: Cody and Waite's reduction by 9 + 24 bits of log(2); polynomial by Sollya's fpminimax.
+template <class F>
+F exp(F x) {
+  constexpr float lowest = -87.336540f;
+  constexpr float highest = 88.722839f;
+  const F above = select(x < lowest, F(lowest), x);
+  const F within = select(above <= highest, above, F(highest));
+  const F n = floor(within * 1.44269502f + 0.5f);
+  const F r = (within - n * 0.693359375f) - n * -2.12194442e-4f;
+  const F q = polynomial(r, {0x1.6d4bfcp-10f, 0x1.120c06p-7f, 0x1.5554eap-5f, 0x1.5554dcp-3f, 0.5f});
+  const F power = scale_by_power_of_two((r * r * q + r) + 1.0f, n);
+  const F finite = select(x < lowest, F(0.0f), power);
+  return select(x <= highest, finite, x + infinity);
 }
 
 }  // namespace isoshade::functions

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the C++ types of function templates and the IR's values: a vector is one value, a matrix its columns.
+// Between the C++ types of function templates and the IR's values: a vector is one value, a matrix its
+// columns.
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compiler/functions/matrix_type.h"
@@ -10,13 +12,18 @@
 
 namespace isoshade::functions::traced {
 
+template <int N>
+using M = mat<Float, N>;
+
 template <class T>
 struct Flat;
 
 template <class T, ir::Type type>
 struct FlatScalar {
   static void types(std::vector<ir::Type>& out) { out.push_back(type); }
-  static void values(ir::Builder& b, const T& from, std::vector<ir::ValueId>& out) { out.push_back(from.id(b)); }
+  static void values(ir::Builder& b, const T& from, std::vector<ir::ValueId>& out) {
+    out.push_back(from.id(b));
+  }
   static T take(ir::Builder& b, std::span<const ir::ValueId>& from) {
     const T result(b, from.front());
     from = from.subspan(1);
@@ -31,32 +38,49 @@ struct Flat<Int> : FlatScalar<Int, ir::int_type> {};
 template <>
 struct Flat<Bool> : FlatScalar<Bool, ir::bool_type> {};
 template <int N>
-struct Flat<lanes::vec<Float, N>> : FlatScalar<lanes::vec<Float, N>, ir::vector_type(N)> {};
+struct Flat<V<N>> : FlatScalar<V<N>, ir::vector_type(N)> {};
 
 template <int N>
-ir::Builder* builder_in(const mat<Float, N>& value) {
+ir::Builder* builder_in(const M<N>& value) {
   return value[0].builder;
 }
 
 template <int N>
-struct Flat<mat<Float, N>> {
-  using Column = Flat<lanes::vec<Float, N>>;
+struct Flat<M<N>> {
+  using Column = Flat<V<N>>;
   static void types(std::vector<ir::Type>& out) {
     for (int i = 0; i < N; ++i) Column::types(out);
   }
-  static void values(ir::Builder& b, const mat<Float, N>& from, std::vector<ir::ValueId>& out) {
+  static void values(ir::Builder& b, const M<N>& from, std::vector<ir::ValueId>& out) {
     for (int i = 0; i < N; ++i) Column::values(b, from[i], out);
   }
-  static mat<Float, N> take(ir::Builder& b, std::span<const ir::ValueId>& from) {
+  static M<N> take(ir::Builder& b, std::span<const ir::ValueId>& from) {
     return take_columns(b, from, std::make_integer_sequence<int, N>());
   }
 
  private:
   template <int... I>
-  static mat<Float, N> take_columns(ir::Builder& b, std::span<const ir::ValueId>& from,
-                                    std::integer_sequence<int, I...>) {
+  static M<N> take_columns(ir::Builder& b, std::span<const ir::ValueId>& from,
+                           std::integer_sequence<int, I...>) {
     return {{(static_cast<void>(I), Column::take(b, from))...}};
   }
 };
+
+/// then() where the condition holds, else other(): the IR's `branch`, as lanes::branch is of values.
+template <class Then, class Other>
+auto branch(Bool condition, const Then& then, const Other& other) {
+  using Result = decltype(then());
+  ir::Builder& b = *condition.builder;
+  const auto side = [&b](const auto& body) {
+    return [&b, &body] {
+      std::vector<ir::ValueId> values;
+      Flat<Result>::values(b, body(), values);
+      return values;
+    };
+  };
+  const std::vector<ir::ValueId> results = b.branch(condition.value, side(then), side(other));
+  std::span<const ir::ValueId> rest(results);
+  return Flat<Result>::take(b, rest);
+}
 
 }  // namespace isoshade::functions::traced

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "compiler/functions/all.h"
+#include "compiler/functions/calls.h"
 #include "compiler/functions/signatures.h"
+#include "compiler/support/check.h"
 
 namespace isoshade::functions {
 
@@ -16,15 +19,14 @@ namespace {
 using namespace traced;
 
 // The body of a row, as a type: its `run` is the template, never the recording overload of the same name.
-#define FUNCTION(name, signature, ulp, domain, reference) \
-  struct Body_##name {                                    \
-    template <class... T>                                 \
-    static auto run(T... arguments) {                     \
-      return functions::name(arguments...);               \
-    }                                                     \
+#define FUNCTION(name, signature, ulp, domain, reference, unit) \
+  struct Body_##name {                                          \
+    template <class... T>                                       \
+    static auto run(T... arguments) {                           \
+      return functions::name(arguments...);                     \
+    }                                                           \
   };
 #include "compiler/functions/functions.def"
-#undef FUNCTION
 
 template <class Body, class... T>
 void build(ir::Builder& b) {
@@ -38,10 +40,22 @@ void build(ir::Builder& b) {
   b.finish(results);
 }
 
-/// The row's own name where it takes floats, else with the width of its first argument.
-std::string variant_name(std::string_view row, ir::Type first) {
+template <class T>
+constexpr std::string_view code = "f";
+template <int N>
+constexpr std::string_view code<V<N>> = N == 2   ? "v2"
+                                        : N == 3 ? "v3"
+                                                 : "v4";
+template <int N>
+constexpr std::string_view code<M<N>> = N == 3 ? "m3" : "m4";
+
+/// The row's own name where it takes floats, else with the types of its arguments, or the one type of all.
+template <class First, class... Rest>
+std::string variant_name(std::string_view row) {
   std::string name(row);
-  if (first.width > 1) name += std::to_string(first.width);
+  if (code<First> == "f") return name;
+  name.append("_").append(code<First>);
+  if (!(std::is_same_v<First, Rest> && ...)) (name.append(code<Rest>), ...);
   return name;
 }
 
@@ -51,7 +65,7 @@ void add_variant(std::vector<Variant>& out, std::string_view row, Types<T...>) {
   variant.row = row;
   (Flat<T>::types(variant.parameters), ...);
   Flat<decltype(Body::run(std::declval<T>()...))>::types(variant.results);
-  variant.name = variant_name(row, variant.parameters.front());
+  variant.name = variant_name<T...>(row);
   variant.build = &build<Body, T...>;
   out.push_back(std::move(variant));
 }
@@ -66,10 +80,9 @@ void add_row(std::vector<Variant>& out, std::string_view row, Types<Variants...>
 const std::vector<Variant>& variants() {
   static const std::vector<Variant> table = [] {
     std::vector<Variant> rows;
-#define FUNCTION(name, signature, ulp, domain, reference) \
-  add_row<Body_##name>(rows, #name, Signature_##signature{});
+#define FUNCTION(name, signature, ulp, domain, reference, unit) \
+  add_row<Body_##name>(rows, #name, Signatures<Float>::signature{});
 #include "compiler/functions/functions.def"
-#undef FUNCTION
     return rows;
   }();
   return table;
@@ -97,7 +110,8 @@ uint32_t declare(ir::Module& module, const Variant& variant) {
   for (size_t i = 0; i < variant.parameters.size(); ++i)
     function.parameters.push_back({std::string(1, letters[i]), variant.parameters[i], "", false});
   for (size_t i = 0; i < variant.results.size(); ++i)
-    function.results.push_back({variant.results.size() == 1 ? "out" : "out" + std::to_string(i), variant.results[i]});
+    function.results.push_back(
+        {variant.results.size() == 1 ? "out" : "out" + std::to_string(i), variant.results[i]});
   module.functions.push_back(std::move(function));
   return static_cast<uint32_t>(module.functions.size() - 1);
 }

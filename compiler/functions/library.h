@@ -14,7 +14,7 @@ namespace isoshade::functions {
 /// One row of functions.def at one set of argument types.
 struct Variant {
   std::string_view row;  ///< "dot"
-  std::string name;      ///< unique: "dot3"; the row's own name where the first argument is a float
+  std::string name;      ///< unique: "dot_v3", "mix_v3v3f"; on floats the row's own
   std::vector<ir::Type> parameters;
   std::vector<ir::Type> results;
   void (*build)(ir::Builder&);  ///< makes the body

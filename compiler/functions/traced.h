@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stand-ins for float, int, bool and vectors that record what is done with them. A function template of this
-// folder instantiated with `traced::Float` builds IR; instantiated with `float` it computes. One text, both uses.
+// folder instantiated with `traced::Float` builds IR; instantiated with `float` it computes. One text, both
+// uses.
 #pragma once
 
 #include <array>
-#include <utility>
-#include <vector>
+#include <concepts>
 
 #include "compiler/ir/builder.h"
 #include "compiler/support/check.h"
@@ -13,7 +13,7 @@
 
 namespace isoshade::functions::traced {
 
-/// A value of a builder, or a literal that becomes a constant of the builder it first meets.
+/// A value of a builder, or a literal that becomes a constant where it first meets a value.
 template <class Literal>
 struct Scalar {
   ir::Builder* builder = nullptr;
@@ -55,8 +55,7 @@ Result record(ir::Opcode op, const T&... operands) {
   return Result(b, b.op(op, {operands.id(b)...}));
 }
 
-// A binary operation also takes a literal on either side: friends of the concrete types would do, but two
-// overloads with the one type let implicit conversion work.
+// Not templates, so that a literal on either side converts.
 #define ISOSHADE_TRACED(result, type, symbol, op) \
   inline result operator symbol(type a, type b) { return record<result>(ir::Opcode::op, a, b); }
 ISOSHADE_TRACED(Float, Float, +, fadd)
@@ -112,12 +111,10 @@ inline Bool select(Bool c, Bool a, Bool b) { return record<Bool>(ir::Opcode::sel
 namespace isoshade::lanes {
 
 template <>
-struct traits<functions::traced::Float> {
-  using Int = functions::traced::Int;
-  using Bool = functions::traced::Bool;
-};
+struct traits<functions::traced::Float>
+    : family<functions::traced::Float, functions::traced::Int, functions::traced::Bool, 1> {};
 
-/// A traced vector is one value of a vector type; components are extracted on demand.
+/// A vector is one value of a vector type; components are extracted on demand.
 template <int N>
 struct vec<functions::traced::Float, N> {
   using Float = functions::traced::Float;
@@ -125,9 +122,8 @@ struct vec<functions::traced::Float, N> {
   ir::ValueId value = ir::none;
 
   vec(ir::Builder& builder, ir::ValueId value) : builder(&builder), value(value) {}
-  template <class... Components>
-    requires(sizeof...(Components) == N)
-  vec(Components... components) {
+  template <std::convertible_to<Float>... Components>
+  requires(sizeof...(Components) == N) vec(const Components&... components) {
     const std::array<Float, N> floats{Float(components)...};
     for (const Float& component : floats) builder = builder ? builder : component.builder;
     support::check(builder != nullptr, "a traced vector of literals alone");
@@ -135,23 +131,43 @@ struct vec<functions::traced::Float, N> {
     for (int i = 0; i < N; ++i) ids[i] = floats[i].id(*builder);
     value = builder->construct(ids);
   }
+
   Float operator[](int i) const { return Float(*builder, builder->extract(value, static_cast<uint32_t>(i))); }
   ir::ValueId id(ir::Builder&) const { return value; }
-
-#define ISOSHADE_TRACED(symbol, op) \
-  friend vec operator symbol(vec a, vec b) { return functions::traced::record<vec>(ir::Opcode::op, a, b); }
-  ISOSHADE_TRACED(+, fadd)
-  ISOSHADE_TRACED(-, fsub)
-  ISOSHADE_TRACED(*, fmul)
-  ISOSHADE_TRACED(/, fdiv)
-#undef ISOSHADE_TRACED
-  friend vec negate(vec a) { return functions::traced::record<vec>(ir::Opcode::fneg, a); }
-  friend vec abs(vec a) { return functions::traced::record<vec>(ir::Opcode::fabs, a); }
-  friend vec sqrt(vec a) { return functions::traced::record<vec>(ir::Opcode::fsqrt, a); }
-  friend vec floor(vec a) { return functions::traced::record<vec>(ir::Opcode::floor, a); }
-  friend vec select(functions::traced::Bool c, vec a, vec b) {
-    return functions::traced::record<vec>(ir::Opcode::select, c, a, b);
-  }
 };
 
 }  // namespace isoshade::lanes
+
+namespace isoshade::functions::traced {
+
+template <int N>
+using V = lanes::vec<Float, N>;
+
+#define ISOSHADE_TRACED(symbol, op)            \
+  template <int N>                             \
+  V<N> operator symbol(V<N> a, V<N> b) {       \
+    return record<V<N>>(ir::Opcode::op, a, b); \
+  }
+ISOSHADE_TRACED(+, fadd)
+ISOSHADE_TRACED(-, fsub)
+ISOSHADE_TRACED(*, fmul)
+ISOSHADE_TRACED(/, fdiv)
+#undef ISOSHADE_TRACED
+
+#define ISOSHADE_TRACED(name, op)           \
+  template <int N>                          \
+  V<N> name(V<N> a) {                       \
+    return record<V<N>>(ir::Opcode::op, a); \
+  }
+ISOSHADE_TRACED(negate, fneg)
+ISOSHADE_TRACED(abs, fabs)
+ISOSHADE_TRACED(sqrt, fsqrt)
+ISOSHADE_TRACED(floor, floor)
+#undef ISOSHADE_TRACED
+
+template <int N>
+V<N> select(Bool c, V<N> a, V<N> b) {
+  return record<V<N>>(ir::Opcode::select, c, a, b);
+}
+
+}  // namespace isoshade::functions::traced

@@ -1,33 +1,95 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every body is written with: the ops of runtime/lanes, and ways to write one body for all widths.
+// Geometry. Sums run over the components in order.
 #pragma once
 
-#include <utility>
-
-#include "compiler/functions/matrix_type.h"
-#include "runtime/lanes/lanes.h"
+#include "compiler/functions/comparison.h"
+#include "compiler/functions/root.h"
 
 namespace isoshade::functions {
 
-using namespace lanes;
-
-/// All components equal `s`.
-template <int N, class F>
-vec<F, N> splat(F s) {
-  if constexpr (N == 2) return vec<F, 2>(s, s);
-  if constexpr (N == 3) return vec<F, 3>(s, s, s);
-  if constexpr (N == 4) return vec<F, 4>(s, s, s, s);
+/// x . y
+/// Domain: all floats; sums of products that overflow give infinities or NaN.
+/// Error: 2 ULP of the sum of |x_i y_i|.
+template <class F, int N>
+F dot(vec<F, N> x, vec<F, N> y) {
+  F sum = x[0] * y[0];
+  for (int i = 1; i < N; ++i) sum = sum + x[i] * y[i];
+  return sum;
 }
 
-/// f of the components of its arguments, one after another.
-template <class F, int N, class Function, class... Rest>
-vec<F, N> componentwise(Function f, vec<F, N> first, Rest... rest) {
-  if constexpr (N == 2) return vec<F, 2>(f(first[0], rest[0]...), f(first[1], rest[1]...));
-  if constexpr (N == 3)
-    return vec<F, 3>(f(first[0], rest[0]...), f(first[1], rest[1]...), f(first[2], rest[2]...));
-  if constexpr (N == 4)
-    return vec<F, 4>(f(first[0], rest[0]...), f(first[1], rest[1]...), f(first[2], rest[2]...),
-                     f(first[3], rest[3]...));
+/// x x y, right-handed.
+/// Domain: all floats; products that overflow give infinities or NaN.
+/// Error: 1.5 ULP of the sum of the two products' magnitudes, in each component.
+template <class F>
+vec<F, 3> cross(vec<F, 3> x, vec<F, 3> y) {
+  const F a = x[1] * y[2] - x[2] * y[1];
+  const F b = x[2] * y[0] - x[0] * y[2];
+  const F c = x[0] * y[1] - x[1] * y[0];
+  return {a, b, c};
+}
+
+/// The exponent field, in place, of the largest |component|: from 2^-126's to 2^127's. NaN counts as zero.
+template <class F, int N>
+int_of<F> largest_exponent(vec<F, N> v) {
+  F largest = max(F(smallest_normal), abs(v[0]));
+  for (int i = 1; i < N; ++i) largest = max(largest, abs(v[i]));
+  return bits_nonnan(min(largest, F(largest_finite))) & exponent_bits;
+}
+
+/// v times the power of two that makes its largest |component| lie in [2, 4), so that squares are in range.
+template <class F, int N>
+vec<F, N> scale_to_unity(vec<F, N> v, int_of<F> exponent) {
+  return v * splat<N>(from_bits_normal(exponent_bits - exponent));
+}
+
+/// v / |v|. The same for v times any power of two.
+/// Domain: all floats; zeros give zeros (of their signs). Infinite and NaN components give NaN.
+/// Error: 3 ULP in each component.
+template <class F, int N>
+vec<F, N> normalize(vec<F, N> v) {
+  const vec<F, N> scaled = scale_to_unity(v, largest_exponent(v));
+  const F square = max(F(1.0f), dot(scaled, scaled));  // less only for zeros; NaN too becomes harmless
+  return scaled * splat<N>(rsqrt_positive(square));
+}
+
+/// |v|, without overflow or underflow on the way.
+/// Domain: all floats. +inf where a component is infinite; NaN where one is NaN.
+/// Error: 2 ULP.
+template <class F, int N>
+F length(vec<F, N> v) {
+  const auto exponent = largest_exponent(v);
+  const vec<F, N> scaled = scale_to_unity(v, exponent);
+  return (sqrt(dot(scaled, scaled)) * 0.5f) * from_bits_normal(exponent);
+}
+
+/// |x - y|
+/// Domain: all floats whose differences do not overflow.
+/// Error: 3 ULP.
+template <class F, int N>
+F distance(vec<F, N> x, vec<F, N> y) {
+  return length(x - y);
+}
+
+/// `incident`, mirrored at the plane with unit normal `normal`: incident - 2 dot(normal, incident) normal.
+/// Domain: all floats whose products do not overflow.
+/// Error: 4 ULP of |i| + 2 |n| sum |n_j i_j|, in each component.
+template <class F, int N>
+vec<F, N> reflect(vec<F, N> incident, vec<F, N> normal) {
+  return incident - splat<N>(2.0f * dot(normal, incident)) * normal;
+}
+
+/// The direction in which a ray goes on behind a surface. `incident` and `normal` are unit vectors, `eta` the
+/// ratio of the indices of refraction, this side over that. Zeros where there is total reflection. Domain:
+/// errors grow without bound, in ULP, where total reflection is near; NaN gives zeros. Error: 6 ULP of |eta
+/// i| + |n| (eta sum |n_j i_j| + sqrt(k)), in each component, for eta <= 0.9.
+template <class F, int N>
+vec<F, N> refract(vec<F, N> incident, vec<F, N> normal, F eta) {
+  const F d = dot(normal, incident);
+  const F k = 1.0f - (eta * eta) * ((1.0f - d) * (1.0f + d));
+  const auto passes = k >= 0.0f;
+  const F along_normal = eta * d + sqrt(select(passes, k, F(0.0f)));
+  const vec<F, N> refracted = incident * splat<N>(eta) - normal * splat<N>(along_normal);
+  return componentwise([&](F component) { return select(passes, component, F(0.0f)); }, refracted);
 }
 
 }  // namespace isoshade::functions

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// From one value to another.
+#pragma once
+
+#include "compiler/functions/comparison.h"
+
+namespace isoshade::functions {
+
+/// a * (1 - t) + b * t: exactly `a` at t = 0 and exactly `b` at t = 1.
+/// Domain: all floats; t outside [0, 1] extrapolates. An infinite end gives NaN at the other.
+/// Error: 2 ULP of |a * (1 - t)| + |b * t|.
+template <class F>
+F mix(F a, F b, F t) {
+  return a * (1.0f - t) + b * t;
+}
+
+/// 0 up to `low`, 1 from `high` on, 3t^2 - 2t^3 between. With low > high it falls instead.
+/// Domain: all floats. Equal edges make a step: 0 up to the edge, 1 above. NaN gives 0; so does a difference
+/// of the edges that overflows. Error: 6 ULP.
+template <class F>
+F smoothstep(F low, F high, F x) {
+  const F t = saturate((x - low) / (high - low));
+  return (t * t) * (3.0f - 2.0f * t);
+}
+
+}  // namespace isoshade::functions

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "compiler/functions/comparison.h"
+#include "compiler/functions/exponential.h"
+#include "compiler/functions/logarithm.h"
+
+namespace isoshade::functions {
+
+/// x^y for x >= 0.
+/// Domain: all floats. As IEEE-754's powr, but that pow(x, 0) = 1 for every x, NaN too, and pow(1, y) = 1 for
+/// every y but NaN; x < 0 gives NaN even for whole y. A result below 2^-126 is 0. Error: 4 ULP. Source:
+/// exp2(y * log2(x)) with the product and the logarithm carried as sums of two floats.
+template <class F>
+F pow(F x, F y) {
+  const auto ordinary = (x > 0.0f) & (x < infinity);
+  const Sum<F> log2_x = log2_sum(select(ordinary, x, F(1.0f)));
+  const F l = log2_x.high + log2_x.low;
+  const F l_rest = (log2_x.high - l) + log2_x.low;
+  const F e = min(max(F(-0x1p100f), y), F(0x1p100f));  // so that nothing overflows; not NaN
+
+  // e * (l + l_rest) = p + p_rest
+  const F e_head = head(e);
+  const F e_tail = e - e_head;
+  const F l_head = head(l);
+  const F l_tail = l - l_head;
+  const F p = e * l;
+  const F rounded_off = (((e_head * l_head - p) + e_head * l_tail) + e_tail * l_head) + e_tail * l_tail;
+  const F p_rest = rounded_off + e * l_rest;
+
+  const F within = min(max(p, F(-127.0f)), F(128.0f));
+  const F n = floor(within + 0.5f);
+  const F f = (within - n) + select(within == p, p_rest, F(0.0f));
+  const auto power = bits_nonnan(exp2_of_fraction(f)) + shift_left(to_int(n), 23);
+  const auto below_infinity = select(power < exponent_bits, power, int_of<F>(exponent_bits));
+  const F finite = from_bits_normal(select(power < implicit_bit, int_of<F>(0), below_infinity));
+
+  const F extreme = select((x > 0.0f) ^ (y < 0.0f), F(infinity), F(0.0f));  // x is 0 or infinite
+  const F result = select((x >= 0.0f) & (y == y), select(ordinary, finite, extreme), F(not_a_number));
+  return select(y == 0.0f, F(1.0f), result);
+}
+
+}  // namespace isoshade::functions

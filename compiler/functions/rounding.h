@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is left over.
+#pragma once
+
+#include "compiler/functions/comparison.h"
+
+namespace isoshade::functions {
+
+/// x - floor(x), in [0, 1): what would round to 1 is the float below.
+/// Domain: all floats; infinities and NaN give NaN.
+/// Error: 1 ULP.
+template <class F>
+F fract(F x) {
+  return min(x - floor(x), F(0x1.fffffep-1f));
+}
+
+/// x - y * floor(x / y), with the sign of y.
+/// Domain: |x / y| < 2^23, or the result may leave [0, |y|]. y = 0, infinities and NaN give NaN.
+/// Error: 1 ULP of |x| + |y|; where x / y rounds to a whole number 0 and y are taken for each other.
+template <class F>
+F mod(F x, F y) {
+  const F rest = x - y * floor(x / y);
+  // A quotient just below a whole number may have been rounded up to it.
+  return select((rest < 0.0f) ^ (y < 0.0f), select(rest == 0.0f, rest, rest + y), rest);
+}
+
+}  // namespace isoshade::functions
