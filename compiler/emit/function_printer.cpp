@@ -27,9 +27,7 @@ class FunctionPrinter {
     const std::vector<std::string> parameters = declare_parameters();
     out_ = language_.function_head(function_, text_, parameters);
     if (function_.is_declaration()) return out_ + ";  // yours to provide\n";
-    uniform_ = ir::uniform_values(module_, function_);
-    for (size_t i = 0; i < function_.parameters.size(); ++i)
-      uniform_[function_.blocks[0].parameters[i]] = function_.parameters[i].uniform;
+    uniform_ = ir::uniform_values(function_);
     out_ += " {\n";
     print_block(0);
     return out_ + "  return " + returned() + ";\n}\n";
@@ -41,8 +39,8 @@ class FunctionPrinter {
   /// `// a :12` behind the statement that makes a node's value.
   std::string comment(ir::ValueId value) const {
     const uint32_t origin = function_.values[value].names;
-    if (origin == 0) return "";
     const ir::Origin& from = function_.origins[origin];
+    if (from.line == 0) return "";
     return "  // " + comment_text(from.node) + " :" + std::to_string(from.line);
   }
 
@@ -52,12 +50,27 @@ class FunctionPrinter {
     return names_.take(origin != 0 ? function_.origins[origin].node + "_t" : "t");
   }
 
+  // Which values are used at all, and which only where an expression may stand: a sum as an index, a word
+  // that is loaded for one vector. Nothing else is nested: one operator a statement is what keeps it exact.
   void find_used() {
     used_.assign(values_.size(), false);
+    nested_.assign(values_.size(), true);
+    std::vector<bool> once(values_.size(), false);
     for (const ir::Block& block : function_.blocks) {
-      for (ir::InstructionId id : block.instructions)
-        for (ir::ValueId value : function_.operands_of(function_.instructions[id])) used_[value] = true;
-      for (ir::ValueId value : block.yields) used_[value] = true;
+      for (ir::InstructionId id : block.instructions) {
+        const ir::Instruction& instruction = function_.instructions[id];
+        for (ir::ValueId value : function_.operands_of(instruction)) {
+          if (instruction.op == ir::Opcode::construct) nested_[value] = nested_[value] && !once[value];
+          if (instruction.op == ir::Opcode::construct) once[value] = true;
+          if (instruction.op != ir::Opcode::construct && instruction.op != ir::Opcode::load)
+            nested_[value] = false;
+          used_[value] = true;
+        }
+      }
+      for (ir::ValueId value : block.yields) {
+        used_[value] = true;
+        nested_[value] = false;
+      }
     }
   }
 
@@ -133,8 +146,16 @@ class FunctionPrinter {
         return define(instruction,
                       language_.type(function_.type(result), uniform_[result]) + "(" + components + ")");
       }
-      case ir::Opcode::load:
-        return define(instruction, language_.load(module_.buffers[instruction.imm].name, text(operands[0])));
+      case ir::Opcode::load: {
+        const std::string word = language_.load(module_.buffers[instruction.imm].name, text(operands[0]));
+        if (!nested_[result]) return define(instruction, word);
+        values_[result] = word;
+        return;
+      }
+      case ir::Opcode::iadd:
+        if (!nested_[result]) return print_primitive(instruction);
+        values_[result] = text(operands[0]) + " + " + text(operands[1]);
+        return;
       case ir::Opcode::call: return print_call(instruction);
       case ir::Opcode::branch: return print_branch(instruction);
       case ir::Opcode::loop: return print_loop(instruction);
@@ -267,6 +288,7 @@ class FunctionPrinter {
   std::vector<bool> uniform_;
   std::vector<bool> literals_;
   std::vector<bool> used_;
+  std::vector<bool> nested_;
   std::string group_;
   std::string out_;
   size_t indent_ = 0;

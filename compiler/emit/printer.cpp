@@ -60,9 +60,9 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   for (uint32_t index : *order) {
     const ir::Function& function = module.functions[index];
     FunctionText& text = texts[index];
-    // A library function's name is ours; the others are authors' or stages' and lowering has made them
-    // unique.
-    text.name = function.library.empty() ? globals.take_function(function.name) : function.name;
+    // Library functions and stages are named by us; lowering keeps authors' names off `shade`.
+    const bool ours = function.document.empty() || function.name == "shade";
+    text.name = ours ? function.name : globals.take_function(function.name);
     text.loads = loads_directly(function);
     for (const ir::Instruction& instruction : function.instructions)
       if (instruction.op == ir::Opcode::call) text.loads |= texts[instruction.imm].loads;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/spirv.h"
 
+#include <array>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
-
-#include <array>
 #include <spirv-tools/libspirv.hpp>
 #include <string_view>
 
@@ -73,7 +72,8 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
   shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
-  if (!shader.parse(GetDefaultResources(), 450, false, messages)) return refuse(first_error(shader.getInfoLog()));
+  if (!shader.parse(GetDefaultResources(), 450, false, messages))
+    return refuse(first_error(shader.getInfoLog()));
 
   glslang::TProgram program;
   program.addShader(&shader);

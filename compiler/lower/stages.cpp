@@ -39,12 +39,25 @@ class Kernel {
   Int load_int(FrameBuffer buffer, Int word) {
     return Int(b, b.load(static_cast<uint32_t>(buffer), word.id(b)));
   }
-  Vec3 load3(FrameBuffer buffer, Int word) {
-    return Vec3(load(buffer, word), load(buffer, word + Int(1)), load(buffer, word + Int(2)));
+  /// Three or four words of a record, from `record + word` on.
+  Vec3 load3(FrameBuffer buffer, Int record, int word) {
+    const auto at = [&](int i) { return load(buffer, record + Int(word + i)); };
+    return Vec3(at(0), at(1), at(2));
   }
-  Vec4 load4(FrameBuffer buffer, Int word) {
-    return Vec4(load(buffer, word), load(buffer, word + Int(1)), load(buffer, word + Int(2)),
-                load(buffer, word + Int(3)));
+  Vec4 load4(FrameBuffer buffer, Int record, int word) {
+    const auto at = [&](int i) { return load(buffer, record + Int(word + i)); };
+    return Vec4(at(0), at(1), at(2), at(3));
+  }
+
+  /// Gives a value a name for readers of the emitted text.
+  ir::ValueId named(std::string name, ir::ValueId value) {
+    b.name(value, b.add_origin(std::move(name), 0));
+    return value;
+  }
+  template <class T>
+  T named(std::string name, T value) {
+    named(std::move(name), value.value);
+    return value;
   }
 
   std::vector<ir::ValueId> call(std::string_view function, std::initializer_list<ir::ValueId> arguments) {
@@ -77,15 +90,16 @@ void add_edges(ir::Module& module) {
   if (module.find("edges_at") != ir::none) return;
   Kernel k(module, "edges_at", {int_parameter("x"), int_parameter("y"), int_parameter("triangle")},
            {{"edges", ir::vector_type(3)}});
-  const Int record = k.integer(2) * Int(triangle_word::stride);
+  const Int record = k.named("record", k.integer(2) * Int(triangle_word::stride));
   const auto word = [&](int at) { return k.load_int(FrameBuffer::triangles, record + Int(at)); };
-  const Int wide = word(triangle_word::object) & Int(1);
+  const Bool wide = k.named("wide", (word(triangle_word::object) & Int(1)) != Int(0));
   std::array<Int, 6> p;
-  for (int i = 0; i < 6; ++i) p[i] = word(triangle_word::position + i);
-  const auto centre = [](Int pixel) { return shift_left(pixel, Int(8)) + Int(128); };
-  const Vec3 edges = functions::edge_functions<Float>(p[0], p[1], p[2], p[3], p[4], p[5], wide != Int(0),
-                                                      centre(k.integer(0)), centre(k.integer(1)));
-  k.b.finish(std::array{edges.value});
+  for (int i = 0; i < 6; ++i)
+    p[i] = k.named(std::string(1, "xy"[i % 2]) + std::to_string(i / 2), word(triangle_word::position + i));
+  const Int px = k.named("px", shift_left(k.integer(0), Int(8)) + Int(128));
+  const Int py = k.named("py", shift_left(k.integer(1), Int(8)) + Int(128));
+  const Vec3 edges = functions::edge_functions<Float>(p[0], p[1], p[2], p[3], p[4], p[5], wide, px, py);
+  k.b.finish(std::array{k.named("edges", edges.value)});
 }
 
 /// attributeN(weights, first0, first1, first2): N words of `vertices` from each vertex's own, interpolated.
@@ -118,7 +132,7 @@ Column weighted(const std::array<Column, 3>& columns, Vec3 v) {
 
 Vec4 to_clip(Kernel& k, Int object, Vec3 position) {
   const auto column = [&](int i) {
-    return k.load4(FrameBuffer::objects, object + Int(object_word::projected + 4 * i));
+    return k.load4(FrameBuffer::objects, object, object_word::projected + 4 * i);
   };
   return weighted<Vec4>({column(0), column(1), column(2)}, position) + column(3);
 }
@@ -128,23 +142,25 @@ class Surface {
  public:
   Surface(Kernel& kernel, Int x, Int y, Int triangle, Int object) : k_(kernel), object_(object) {
     const ir::ValueId edges = k_.call("edges_at", {x.id(k_.b), y.id(k_.b), triangle.id(k_.b)})[0];
-    const Int record = triangle * Int(triangle_word::stride);
+    k_.named("edges", edges);
+    const Int record = k_.named("record", triangle * Int(triangle_word::stride));
     std::array<Float, 3> inverse_w;
     for (int i = 0; i < 3; ++i) {
       const auto word = [&](int at) { return k_.load_int(FrameBuffer::triangles, record + Int(at + i)); };
-      inverse_w[i] = from_bits_normal(word(triangle_word::inverse_w));
-      first_[i] = word(triangle_word::vertex) * Int(vertex_word::stride);
+      const std::string digit = std::to_string(i);
+      inverse_w[i] = k_.named("inverse_w" + digit, from_bits_normal(word(triangle_word::inverse_w)));
+      first_[i] = k_.named("first" + digit, word(triangle_word::vertex) * Int(vertex_word::stride));
     }
-    weights_ =
-        functions::attribute_weights<Float>(Vec3(k_.b, edges), inverse_w[0], inverse_w[1], inverse_w[2])
-            .value;
+    weights_ = k_.named("weights", functions::attribute_weights<Float>(Vec3(k_.b, edges), inverse_w[0],
+                                                                       inverse_w[1], inverse_w[2]))
+                   .value;
   }
 
   ir::ValueId field(std::string_view name) {
     if (name == "position") return position().value;
-    if (name == "normal") return normal();
-    if (name == "texcoord") return attribute(2, vertex_word::texcoord);
-    if (name == "view_direction") return view_direction();
+    if (name == "normal") return k_.named("normal", normal());
+    if (name == "texcoord") return k_.named("texcoord", attribute(2, vertex_word::texcoord));
+    if (name == "view_direction") return k_.named("view_direction", view_direction());
     support::bug("a surface has no " + std::string(name));
   }
 
@@ -155,14 +171,14 @@ class Surface {
     return k_.call("attribute" + std::to_string(width), {weights_, first(0), first(1), first(2)})[0];
   }
   std::array<Vec3, 3> columns(int word) {
-    const auto column = [&](int i) { return k_.load3(FrameBuffer::objects, object_ + Int(word + 3 * i)); };
+    const auto column = [&](int i) { return k_.load3(FrameBuffer::objects, object_, word + 3 * i); };
     return {column(0), column(1), column(2)};
   }
   Vec3 position() {
     if (position_ == ir::none) {
       const Vec3 local(k_.b, attribute(3, vertex_word::position));
-      const Vec3 origin = k_.load3(FrameBuffer::objects, object_ + Int(object_word::model + 9));
-      position_ = (weighted(columns(object_word::model), local) + origin).value;
+      const Vec3 origin = k_.load3(FrameBuffer::objects, object_, object_word::model + 9);
+      position_ = k_.named("position", (weighted(columns(object_word::model), local) + origin).value);
     }
     return Vec3(k_.b, position_);
   }
@@ -172,7 +188,7 @@ class Surface {
   }
   // The eye is homogeneous: a point for perspective, a direction for orthographic projection.
   ir::ValueId view_direction() {
-    const Vec4 eye = k_.load4(FrameBuffer::frame, Int(k_.b, k_.b.constant(frame_word::eye)));
+    const Vec4 eye = k_.load4(FrameBuffer::frame, Int(k_.b, k_.b.constant(frame_word::eye)), 0);
     return normalize(Vec3(eye[0], eye[1], eye[2]) - position() * functions::splat<3>(eye[3])).value;
   }
 
@@ -183,12 +199,12 @@ class Surface {
   ir::ValueId position_ = ir::none;
 };
 
-ir::ValueId load_typed(Kernel& k, ir::Type type, Int word) {
-  if (type == ir::int_type) return to_int(k.load(FrameBuffer::objects, word)).value;
-  if (type == ir::bool_type) return (k.load(FrameBuffer::objects, word) != Float(0.0f)).value;
+ir::ValueId load_typed(Kernel& k, ir::Type type, Int object, int offset) {
+  const auto word = [&](int i) { return k.load(FrameBuffer::objects, object + Int(offset + i)); };
+  if (type == ir::int_type) return to_int(word(0)).value;
+  if (type == ir::bool_type) return (word(0) != Float(0.0f)).value;
   std::vector<ir::ValueId> components;
-  for (int i = 0; i < type.width; ++i)
-    components.push_back(k.load(FrameBuffer::objects, word + Int(i)).value);
+  for (int i = 0; i < type.width; ++i) components.push_back(word(i).value);
   return k.b.construct(components);
 }
 
@@ -208,11 +224,11 @@ void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
   const auto finish = [&](Vec3 direction, Vec3 color) {
     k.b.finish(std::array{direction.value, color.value});
   };
-  const Vec3 direction = k.load3(FrameBuffer::lights, at(light_word::direction));
-  const Vec3 color = k.load3(FrameBuffer::lights, at(light_word::color));
+  const Vec3 direction = k.load3(FrameBuffer::lights, record, light_word::direction);
+  const Vec3 color = k.load3(FrameBuffer::lights, record, light_word::color);
   if (!kinds.point && !kinds.spot) return finish(direction, color);
 
-  const Vec3 towards = k.load3(FrameBuffer::lights, at(light_word::position)) - k.vector3(1);
+  const Vec3 towards = k.load3(FrameBuffer::lights, record, light_word::position) - k.vector3(1);
   const Vec3 unit = normalize(towards);
   Float falloff = distance_falloff(k, record, dot(towards, towards));
   if (kinds.spot) {
@@ -245,7 +261,7 @@ uint32_t add_vertex_kernel(ir::Module& module) {
   Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
            {{"clip", ir::vector_type(4)}});
   const Int first = k.integer(0) * Int(vertex_word::stride);
-  const Vec3 position = k.load3(FrameBuffer::vertices, first + Int(vertex_word::position));
+  const Vec3 position = k.load3(FrameBuffer::vertices, first, vertex_word::position);
   k.b.finish(std::array{to_clip(k, k.integer(1), position).value});
   return k.index;
 }
@@ -285,7 +301,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
       for (const auto& [name, word] : parameters)
         if (name == parameter.name) offset = word;
       support::check(offset >= 0, parameter.name);
-      arguments.push_back(load_typed(k, parameter.type, object + Int(offset)));
+      arguments.push_back(k.named(parameter.name, load_typed(k, parameter.type, object, offset)));
     } else {
       support::check(parameter.name == "light_count", parameter.name);
       arguments.push_back(k.b.parameter(4));
