@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program: what a backend runs. One IR function at the end of the pipeline, and how it is called.
+// A program: what a backend runs. One kernel at the end of the pipeline, and what is told of it.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,11 @@
 #include <vector>
 
 #include "compiler/ir/module.h"
+#include "compiler/lower/stages.h"
 
 namespace isoshade::driver {
 
-/// The kernels, each a function of the module named as the enumerator:
-///   vertex (vertex: int, object: int uniform) -> (clip: vec4)
-///   depth  (x: int, y: int, triangle: int) -> (depth: float)                      the same for every scene
-///   pixel  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform) -> (color: vec4)
-///   eval   (row: int) -> (any results, flattened to words)
-/// `object` is the first word of the object's record; buffers are those of lower/frame_layout.h.
-enum class Stage : uint8_t { vertex, depth, pixel, eval };
-std::string_view name(Stage stage);
+using lower::Stage;
 
 /// One effect parameter or eval column, as reflection tells it.
 struct Field {
@@ -30,21 +24,20 @@ struct Field {
 
 struct Program {
   Stage stage = Stage::pixel;
-  std::string name;            ///< of the document: "cook_torrance"
-  std::string document;        ///< its path
-  ir::Module module;           ///< expanded, optimised; fdiv and fsqrt still native
-  uint32_t entry = 0;          ///< the kernel's index in the module
-  std::vector<Field> fields;   ///< effect parameters after object_word::parameters; eval: input columns
+  std::string name;           ///< of the document: "cook_torrance"
+  std::string document;       ///< its path
+  ir::Module module;          ///< expanded, optimised; `/` and sqrt still native
+  uint32_t entry = 0;         ///< the kernel's index in the module
+  std::vector<Field> inputs;  ///< eval: input columns
   std::vector<Field> results;  ///< eval: output columns
-  bool uses_lights = false;
 };
 
 /// How `/` and `sqrt` are computed: by the device, or by Newton steps and an exact integer residual.
 enum class Division : uint8_t { native, exact };
 
-/// The program as a Vulkan shader of its stage, readable; see emit/glsl_stages.h for the interface of each.
+/// The program as a Vulkan shader of its stage; emit/stages.h tells the interface.
 std::string glsl(const Program& program, Division division);
-/// The program as C++ that exports `extern "C"` entry points; see emit/cpp_stages.h.
+/// The program as C++ that exports its entry point; emit/stages.h. Not for Stage::depth.
 std::string cpp(const Program& program);
 
 }  // namespace isoshade::driver

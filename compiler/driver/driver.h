@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole compiler on one page: a document's path in, programs out.
+//
+//   JSON text -> Document -> Graph -> TypedGraph -> ir::Module -> passes -> Program -> GLSL, C++, SPIR-V
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/check/library.h"
+#include "compiler/driver/program.h"
+#include "compiler/graph/graph.h"
+
+namespace isoshade::driver {
+
+/// Called with what a stage made, as text. Stages: document, graph, typed, lower, then each pass by its name.
+using Dump = std::function<void(std::string_view stage, const std::function<std::string()>& text)>;
+
+struct Options {
+  check::Library* library = nullptr;  ///< where sub-graphs come from; required
+  lower::LightKinds lights;           ///< the kinds that the scene has
+  Dump dump;                          ///< empty: nothing is dumped
+};
+
+/// One pass of an effect.
+struct Pass {
+  std::string name;
+  graph::Cull cull = graph::Cull::back;
+  Program vertex;
+  Program pixel;
+};
+
+struct Effect {
+  std::string name;
+  std::string document;
+  std::vector<Field> parameters;  ///< with defaults, in the order of the object's record
+  std::vector<Pass> passes;
+};
+
+/// `path` is an effect document.
+std::optional<Effect> compile_effect(const std::string& path, const Options& options,
+                                     support::Diagnostics& diagnostics);
+
+/// `path` is a function document; the program is its eval kernel.
+std::optional<Program> compile_function(const std::string& path, const Options& options,
+                                        support::Diagnostics& diagnostics);
+
+/// The visibility pass's program, the same for every scene.
+const Program& depth_program();
+
+/// An eval program of a function of a module that frame_module() began.
+Program finish_eval(ir::Module module, uint32_t function, std::string name);
+
+}  // namespace isoshade::driver
