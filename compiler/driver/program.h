@@ -24,11 +24,11 @@ struct Field {
 
 struct Program {
   Stage stage = Stage::pixel;
-  std::string name;           ///< of the document: "cook_torrance"
-  std::string document;       ///< its path
-  ir::Module module;          ///< expanded, optimised; `/` and sqrt still native
-  uint32_t entry = 0;         ///< the kernel's index in the module
-  std::vector<Field> inputs;  ///< eval: input columns
+  std::string name;            ///< of the document: "cook_torrance"
+  std::string document;        ///< its path
+  ir::Module module;           ///< expanded, optimised; `/` and sqrt still native
+  uint32_t entry = 0;          ///< the kernel's index in the module
+  std::vector<Field> inputs;   ///< eval: input columns
   std::vector<Field> results;  ///< eval: output columns
 };
 

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/driver/driver.h"
+
+#include "compiler/check/check.h"
+#include "compiler/driver/dumps.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/lower/lower.h"
+#include "compiler/passes/pipeline.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::driver {
+
+namespace {
+
+using support::Diagnostics;
+
+/// JSON text -> Document -> Graph -> TypedGraph.
+std::shared_ptr<const check::TypedGraph> read_graph(const std::string& path, graph::DocumentKind wanted,
+                                                    const Options& options, Diagnostics& diagnostics) {
+  const support::Source source = graph::read_source(path, diagnostics);
+  if (source == nullptr) return nullptr;
+  const auto document = graph::parse_document(source, diagnostics);
+  if (!document) return nullptr;
+  if (options.dump) options.dump("document", [&] { return dump_document(*document); });
+  auto graph = graph::build_graph(*document, diagnostics);
+  if (!graph) return nullptr;
+  if (options.dump) options.dump("graph", [&] { return dump_graph(*graph); });
+  if (graph->kind != wanted) {
+    diagnostics.report(support::Id::wrong_kind, document->span(document->root),
+                       "this is a document of kind \"" + std::string(graph::kind_name(graph->kind)) +
+                           "\"; a \"" + std::string(graph::kind_name(wanted)) + "\" is needed here");
+    return nullptr;
+  }
+  auto typed = check::check(std::move(*graph), *options.library, diagnostics);
+  if (typed == nullptr) return nullptr;
+  if (options.dump) options.dump("typed", [&] { return dump_typed(*typed); });
+  return typed;
+}
+
+/// What lowering made, through all passes; returns where the kernel is then.
+uint32_t finish(ir::Module& module, uint32_t entry, const Options& options) {
+  passes::Entries entries{entry};
+  const auto dump = [&](std::string_view pass, const ir::Module& after) {
+    options.dump(pass, [&] { return dump_module(after); });
+  };
+  if (options.dump) dump("lower", module);
+  passes::run(passes::optimisations(), module, entries, options.dump ? passes::Dump(dump) : passes::Dump());
+  return entries[0];
+}
+
+int words_of(graph::Type type) {
+  const bool one = type == graph::Type::boolean || type == graph::Type::integer;
+  return one ? 1 : graph::float_count(type);
+}
+
+Field field(const std::string& name, graph::Type type) {
+  return {name, std::string(graph::type_name(type)), words_of(type), {}};
+}
+
+/// A parameter's value as an object's record has it: floats, also for booleans (0, 1) and integers.
+std::vector<float> record_words(const graph::Literal& literal, int words) {
+  if (literal.kind == graph::Literal::Kind::boolean) return {literal.boolean ? 1.0f : 0.0f};
+  if (literal.kind == graph::Literal::Kind::numbers) return literal.numbers;
+  return std::vector<float>(static_cast<size_t>(words), literal.number);
+}
+
+std::vector<Field> parameters_of(const check::TypedGraph& typed) {
+  std::vector<Field> fields;
+  for (const graph::Input& input : typed.graph.inputs) {
+    fields.push_back(field(input.name, input.type));
+    fields.back().value = record_words(*input.value, fields.back().words);
+  }
+  return fields;
+}
+
+/// Where each parameter of the emitted function lies in the object's record. A matrix is passed as its columns.
+lower::FieldOffsets offsets_of(const std::vector<Field>& parameters) {
+  lower::FieldOffsets offsets;
+  int word = lower::object_word::parameters;
+  for (const Field& parameter : parameters) {
+    const int columns = parameter.type == "matrix33" ? 3 : parameter.type == "matrix44" ? 4 : 0;
+    if (columns == 0) offsets.emplace_back(parameter.name, word);
+    for (int i = 0; i < columns; ++i)
+      offsets.emplace_back(parameter.name + "_" + std::to_string(i), word + columns * i);
+    word += parameter.words;
+  }
+  return offsets;
+}
+
+Program vertex_program(const check::TypedGraph& typed, const Options& options) {
+  Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
+  program.entry = finish(program.module, lower::add_vertex_kernel(program.module), options);
+  return program;
+}
+
+Program pixel_program(const check::TypedGraph& typed, size_t pass, const std::vector<Field>& parameters,
+                      const Options& options) {
+  Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}};
+  program.module = lower::lower(typed, {pass});
+  program.module.buffers = lower::frame_module().buffers;
+  const uint32_t kernel = lower::add_pixel_kernel(program.module, offsets_of(parameters), options.lights);
+  program.entry = finish(program.module, kernel, options);
+  return program;
+}
+
+}  // namespace
+
+std::optional<Effect> compile_effect(const std::string& path, const Options& options,
+                                     Diagnostics& diagnostics) {
+  const auto typed = read_graph(path, graph::DocumentKind::effect, options, diagnostics);
+  if (typed == nullptr) return std::nullopt;
+  Effect effect{typed->graph.name, typed->document, parameters_of(*typed), {}};
+  for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
+    const graph::Pass& pass = typed->graph.passes[i];
+    effect.passes.push_back({pass.name, pass.cull, vertex_program(*typed, options),
+                             pixel_program(*typed, i, effect.parameters, options)});
+  }
+  return effect;
+}
+
+std::optional<Program> compile_function(const std::string& path, const Options& options,
+                                        Diagnostics& diagnostics) {
+  const auto typed = read_graph(path, graph::DocumentKind::function, options, diagnostics);
+  if (typed == nullptr) return std::nullopt;
+  ir::Module module = lower::lower(*typed);
+  module.buffers = lower::frame_module().buffers;
+  const uint32_t function = module.find(lower::entry_name(*typed));
+  support::check(function != ir::none, "lowering made no function");
+  Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {}};
+  program.entry = finish(program.module, lower::add_eval_kernel(program.module, function), options);
+  for (const graph::Input& input : typed->graph.inputs)
+    program.inputs.push_back(field(input.name, input.type));
+  for (size_t i = 0; i < typed->graph.outputs.size(); ++i)
+    program.results.push_back(field(typed->graph.outputs[i].name, typed->outputs[i].type));
+  return program;
+}
+
+const Program& depth_program() {
+  static const Program program = [] {
+    Program made{lower::Stage::depth, "depth", "", lower::frame_module(), 0, {}, {}};
+    made.entry = finish(made.module, lower::add_depth_kernel(made.module), {});
+    return made;
+  }();
+  return program;
+}
+
+Program finish_eval(ir::Module module, uint32_t function, std::string name) {
+  Program program{lower::Stage::eval, std::move(name), "", std::move(module), 0, {}, {}};
+  program.entry = finish(program.module, lower::add_eval_kernel(program.module, function), {});
+  return program;
+}
+
+}  // namespace isoshade::driver
