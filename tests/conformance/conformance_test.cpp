@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every executor computes the same bits: each program of cases.h, on the same inputs, against the interpreter.
+#include <gtest/gtest.h>
+#include <memory>
+
+#include "backends/cpu/cpu.h"
+#include "backends/interpreter/interpreter.h"
+#include "tests/conformance/cases.h"
+#ifdef ISOSHADE_VULKAN
+#include "backends/vulkan/vulkan.h"
+#endif
+
+namespace isoshade::conformance {
+namespace {
+
+constexpr size_t rows = 100'000;
+
+struct Expected {
+  Case made;
+  std::vector<int32_t> results;
+};
+
+const std::vector<int32_t>& table() {
+  static const std::vector<int32_t> words = inputs(rows);
+  return words;
+}
+
+/// The interpreter's results, computed once.
+const std::vector<Expected>& expected() {
+  static const std::vector<Expected> all = [] {
+    std::vector<Expected> out;
+    support::Diagnostics diagnostics;
+    const auto interpreter = interpreter::create();
+    for (auto* cases : {&op_cases, &function_cases, &idiom_cases})
+      for (Case& made : cases()) {
+        Expected e{std::move(made), {}};
+        EXPECT_TRUE(interpreter->evaluate(e.made.program, table(), rows, e.results, diagnostics))
+            << diagnostics.text();
+        out.push_back(std::move(e));
+      }
+    return out;
+  }();
+  return all;
+}
+
+void expect_same_bits(backends::Backend& backend) {
+  for (const Expected& e : expected()) {
+    SCOPED_TRACE(e.made.name + " on " + backend.description());
+    support::Diagnostics diagnostics;
+    std::vector<int32_t> results;
+    ASSERT_TRUE(backend.evaluate(e.made.program, table(), rows, results, diagnostics)) << diagnostics.text();
+    ASSERT_EQ(results.size(), e.results.size());
+    const size_t words = e.made.words.size();
+    std::vector<size_t> differing(words), first(words);
+    for (size_t i = 0; i < results.size(); ++i) {
+      if (results[i] == e.results[i]) continue;
+      if (differing[i % words]++ == 0) first[i % words] = i / words;
+    }
+    for (size_t w = 0; w < words; ++w) {
+      const int32_t* in = table().data() + first[w] * input_words;
+      EXPECT_EQ(differing[w], 0u) << e.made.words[w] << " first for " << std::hex << in[0] << " " << in[1]
+                                  << " " << in[2] << " " << in[3] << " " << in[4] << ": "
+                                  << results[first[w] * words + w] << ", expected "
+                                  << e.results[first[w] * words + w];
+    }
+  }
+}
+
+class CpuLanes : public testing::TestWithParam<const char*> {};
+
+TEST_P(CpuLanes, ComputeTheInterpretersBits) {
+  support::Diagnostics diagnostics;
+  cpu::Options options;
+  options.lanes = GetParam();
+  const auto backend = cpu::create(options, diagnostics);
+  ASSERT_NE(backend, nullptr) << diagnostics.text();
+  expect_same_bits(*backend);
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, CpuLanes, testing::Values("1", "4", "8", "16", "8x2", "16x2"));
+
+#ifdef ISOSHADE_VULKAN
+class VulkanDivision : public testing::TestWithParam<driver::Division> {};
+
+TEST_P(VulkanDivision, ComputesTheInterpretersBits) {
+  support::Diagnostics diagnostics;
+  vulkan::Options options;
+  options.division = GetParam();
+  const auto backend = vulkan::create(options, diagnostics);
+  ASSERT_NE(backend, nullptr) << diagnostics.text();
+  expect_same_bits(*backend);
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, VulkanDivision,
+                         testing::Values(driver::Division::native, driver::Division::exact));
+#endif
+
+}  // namespace
+}  // namespace isoshade::conformance
