@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/check/check.h"
+
+#include "compiler/check/work.h"
+
+namespace isoshade::check {
+
+using support::Id;
+
+namespace {
+
+/// Reports what documents may ask for in later versions.
+void check_supported(Work& work) {
+  const graph::Graph& graph = work.graph();
+  if (graph.kind == graph::DocumentKind::post)
+    work.report(Id::unsupported, graph.name_place, "post effects cannot be compiled yet");
+  for (const graph::Input& input : graph.inputs) {
+    if (nodes::value_types.has(input.type)) continue;
+    work.report(Id::unsupported, input.place,
+                "an input or parameter of type " + std::string(graph::type_name(input.type)) +
+                    " cannot be compiled yet");
+  }
+  for (const graph::Pass& pass : graph.passes) {
+    if (!pass.position) continue;
+    work.report(Id::unsupported, pass.position->place, "a pass that moves vertices cannot be compiled yet")
+        .suggest("leave out \"position\": vertices then stay where the mesh has them");
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const TypedGraph> check_in(graph::Graph graph, const Scope& scope, Library& library,
+                                           support::Diagnostics& diagnostics) {
+  const size_t errors_before = diagnostics.error_count();
+  const auto typed = std::make_shared<TypedGraph>();
+  typed->graph = std::move(graph);
+  typed->document = scope.document;
+  Work work{*typed, scope, library, diagnostics};
+  check_supported(work);
+  resolve(work);
+  order(work);
+  infer(work);
+  // What nothing reads is no news while links are broken.
+  if (diagnostics.error_count() == errors_before) check_usage(work);
+  return diagnostics.error_count() == errors_before ? typed : nullptr;
+}
+
+std::shared_ptr<const TypedGraph> check(graph::Graph graph, Library& library,
+                                        support::Diagnostics& diagnostics) {
+  const Scope scope = library.scope_of(graph.source->path());
+  return check_in(std::move(graph), scope, library, diagnostics);
+}
+
+void suggest_nearest(support::Diagnostics& diagnostics, support::Diagnostic& report, std::string_view word,
+                     const std::vector<std::string_view>& candidates) {
+  if (diagnostics.full()) return;
+  const std::string_view near = support::nearest(word, candidates);
+  if (!near.empty()) report.suggest("did you mean " + support::quote(near) + "?");
+}
+
+std::string listed(const std::vector<std::string_view>& words) {
+  std::string text;
+  constexpr size_t most = 12;
+  for (size_t i = 0; i < words.size() && i < most; ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    text += support::quote(words[i]);
+  }
+  return words.size() > most ? text + ", ..." : text;
+}
+
+}  // namespace isoshade::check

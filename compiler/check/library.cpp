@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/check/library.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "compiler/check/work.h"
+#include "compiler/graph/document.h"
+#include "compiler/nodes/table.h"
+
+namespace isoshade::check {
+
+namespace fs = std::filesystem;
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+using support::Span;
+
+namespace {
+
+constexpr std::string_view extension = ".json";
+
+/// Absolute, without links and dots, whether or not it exists.
+std::string canonical(const std::string& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path.empty() ? "." : path, error);
+  const fs::path found = fs::weakly_canonical(absolute, error);
+  return (error ? absolute.lexically_normal() : found).string();
+}
+
+bool is_within(const std::string& path, const std::string& folder) {
+  if (folder.empty() || !path.starts_with(folder)) return false;
+  return folder.back() == '/' || path.size() == folder.size() || path[folder.size()] == '/';
+}
+
+std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
+
+std::string joined(const std::string& folder, std::string_view name) {
+  return (fs::path(folder) / name).lexically_normal().string();
+}
+
+/// "brdf/ggx_d": ids between slashes, so that no library name leads out of the library.
+bool is_library_name(std::string_view name) {
+  while (true) {
+    const size_t slash = name.find('/');
+    if (!graph::is_id(name.substr(0, slash))) return false;
+    if (slash == std::string_view::npos) return true;
+    name.remove_prefix(slash + 1);
+  }
+}
+
+/// "a.json -> b.json -> a.json"
+std::string cycle_from(const Scope& last, const std::string& path) {
+  std::vector<const Scope*> users;
+  for (const Scope* scope = &last;; scope = scope->user) {
+    users.push_back(scope);
+    if (scope->path == path) break;
+  }
+  std::string text;
+  for (auto it = users.rbegin(); it != users.rend(); ++it) text += support::visible((*it)->document) + " -> ";
+  return text + support::visible(users.back()->document);
+}
+
+}  // namespace
+
+Library::Library(std::string root) : root_(std::move(root)) {
+  if (!root_.empty()) canonical_root_ = canonical(root_);
+}
+
+void Library::add(const std::string& path, std::string text) {
+  memory_[canonical(path)] = std::make_shared<support::SourceFile>(path, std::move(text));
+}
+
+Scope Library::scope_of(const std::string& path) const {
+  Scope scope;
+  scope.path = canonical(path);
+  scope.folder = folder_of(path);
+  scope.home = is_within(scope.path, canonical_root_) ? canonical_root_ : folder_of(scope.path);
+  scope.document = path;
+  return scope;
+}
+
+Library::Location Library::locate(std::string_view reference, const Scope& from) const {
+  Location location;
+  if (reference.ends_with(extension)) {
+    location.path = joined(from.folder, reference);
+  } else if (!root_.empty()) {
+    location.path = joined(root_, std::string(reference) + std::string(extension));
+  }
+  location.canonical = canonical(location.path);
+  location.in_library = is_within(location.canonical, canonical_root_);
+  return location;
+}
+
+bool Library::exists(const Location& location) const {
+  std::error_code error;
+  return memory_.contains(location.canonical) || fs::is_regular_file(location.path, error);
+}
+
+support::Source Library::read(const Location& location, const Span& where, Diagnostics& diagnostics) const {
+  const auto found = memory_.find(location.canonical);
+  return found != memory_.end() ? found->second : graph::read_source(location.path, diagnostics, where);
+}
+
+std::shared_ptr<const TypedGraph> Library::function(std::string_view reference, const Scope& from,
+                                                    const Span& where, Diagnostics& diagnostics) {
+  const bool is_path = reference.ends_with(extension) && reference.find('\0') == std::string_view::npos;
+  const Location location = is_path || is_library_name(reference) ? locate(reference, from) : Location{};
+  if (is_path && !location.in_library && !is_within(location.canonical, from.home)) {
+    diagnostics.report(Id::outside_reference, where, quote(reference) + " leads out of the folder tree")
+        .note("documents refer to files in the folder of the document that is compiled, and below");
+    return nullptr;
+  }
+  if (!is_path && (location.path.empty() || !exists(location))) {
+    support::Diagnostic& report = diagnostics.report(Id::unknown_node_type, where,
+                                                     "no node type or library function " + quote(reference));
+    if (diagnostics.full()) return nullptr;
+    const std::vector<std::string> functions = names();
+    std::vector<std::string_view> candidates(functions.begin(), functions.end());
+    for (const nodes::Row& row : nodes::table()) candidates.push_back(row.name);
+    suggest_nearest(diagnostics, report, reference, candidates);
+    return nullptr;
+  }
+  for (const Scope* user = &from; user != nullptr; user = user->user) {
+    if (user->path != location.canonical) continue;
+    diagnostics.report(Id::recursion, where,
+                       "the function uses itself: " + cycle_from(from, location.canonical));
+    return nullptr;
+  }
+  const std::pair key(location.canonical, location.in_library ? canonical_root_ : from.home);
+  const auto found = functions_.find(key);
+  if (found == functions_.end()) return functions_[key] = load(location, from, where, diagnostics);
+  // Its errors were reported when it was loaded, but maybe to somebody else.
+  if (found->second == nullptr && !diagnostics.has_errors())
+    diagnostics.report(Id::broken_function, where, quote(location.path) + " has errors");
+  return found->second;
+}
+
+std::shared_ptr<const TypedGraph> Library::load(const Location& location, const Scope& from,
+                                                const Span& where, Diagnostics& diagnostics) {
+  Scope scope;
+  scope.path = location.canonical;
+  scope.folder = folder_of(location.path);
+  scope.home = location.in_library ? canonical_root_ : from.home;
+  scope.document = location.path;
+  if (location.in_library)
+    scope.document = "library/" + location.canonical.substr(canonical_root_.size() + 1);
+  scope.user = &from;
+  scope.depth = from.depth + 1;
+  if (scope.depth > max_document_depth) {
+    diagnostics.report(
+        Id::too_deep, where,
+        "functions use each other more than " + std::to_string(max_document_depth) + " documents deep");
+    return nullptr;
+  }
+  const support::Source source = read(location, where, diagnostics);
+  if (source == nullptr) return nullptr;
+  const std::optional<graph::Document> document = graph::parse_document(source, diagnostics);
+  if (!document) return nullptr;
+  std::optional<graph::Graph> graph = graph::build_graph(*document, diagnostics);
+  if (!graph) return nullptr;
+  if (graph->kind != graph::DocumentKind::function) {
+    diagnostics.report(Id::wrong_kind, where,
+                       "a node can be a function document, but " + quote(location.path) + " is of the kind " +
+                           std::string(graph::kind_name(graph->kind)));
+    return nullptr;
+  }
+  return check_in(std::move(*graph), scope, *this, diagnostics);
+}
+
+std::vector<std::string> Library::names() const {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& canonical_path) {
+    if (!is_within(canonical_path, canonical_root_) || !canonical_path.ends_with(extension)) return;
+    const size_t first = canonical_root_.size() + 1;
+    names.push_back(canonical_path.substr(first, canonical_path.size() - first - extension.size()));
+  };
+  std::error_code error;
+  if (!root_.empty()) {
+    fs::recursive_directory_iterator entry(canonical_root_, error);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
+      add(entry->path().string());
+  }
+  for (const auto& [path, source] : memory_) add(path);
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+}  // namespace isoshade::check

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The function documents that graphs use as nodes: found, loaded and checked, each once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/check/typed_graph.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::check {
+
+/// A document being checked, as the place that references start from.
+struct Scope {
+  std::string path;             ///< canonical
+  std::string folder;           ///< as the user spelled it
+  std::string home;             ///< canonical; the folder tree that relative references stay in
+  std::string document;         ///< TypedGraph::document
+  const Scope* user = nullptr;  ///< the document that uses this one
+  int depth = 0;
+};
+
+class Library {
+ public:
+  /// `root`: the folder of the shipped functions; "brdf/ggx_d" is brdf/ggx_d.json in it. Empty: there are
+  /// none.
+  explicit Library(std::string root = {});
+
+  /// A document that is not read from a file but found under `path` all the same.
+  void add(const std::string& path, std::string text);
+
+  /// The scope of a document that the user named. A library for many compilations sees each document once:
+  /// make a new one after files changed.
+  Scope scope_of(const std::string& path) const;
+
+  /// The function that a node's type refers to: a library name, or a path relative to the document that
+  /// ends in ".json". Reports why there is none.
+  std::shared_ptr<const TypedGraph> function(std::string_view reference, const Scope& from,
+                                             const support::Span& where, support::Diagnostics& diagnostics);
+
+  /// All library names, sorted.
+  std::vector<std::string> names() const;
+
+ private:
+  struct Location {
+    std::string path;  ///< to read and to show
+    std::string canonical;
+    bool in_library = false;
+  };
+  Location locate(std::string_view reference, const Scope& from) const;
+  bool exists(const Location& location) const;
+  support::Source read(const Location& location, const support::Span& where,
+                       support::Diagnostics& diagnostics) const;
+  std::shared_ptr<const TypedGraph> load(const Location& location, const Scope& from,
+                                         const support::Span& where, support::Diagnostics& diagnostics);
+
+  std::string root_;
+  std::string canonical_root_;
+  std::map<std::string, support::Source> memory_;  ///< by canonical path
+  /// By canonical path and home, which decides what the document may refer to; null: it has errors.
+  std::map<std::pair<std::string, std::string>, std::shared_ptr<const TypedGraph>> functions_;
+};
+
+}  // namespace isoshade::check

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "compiler/check/work.h"
+#include "compiler/nodes/table.h"
+
+namespace isoshade::check {
+namespace {
+
+using graph::DocumentKind;
+using graph::Link;
+using graph::Literal;
+using nodes::PortType;
+using support::Id;
+using support::quote;
+
+std::string_view input_word(const graph::Graph& graph) {
+  return graph.kind == DocumentKind::function ? "input" : "parameter";
+}
+
+/// Fills in what the link names; its selectors wait for the types.
+bool resolve_link(Work& work, const Link& link, Operand& operand) {
+  const graph::Graph& graph = work.graph();
+  const auto found = graph.names.find(link.name);
+  if (found != graph.names.end()) {
+    operand.from = found->second.is_input ? Operand::From::input : Operand::From::node;
+    operand.index = found->second.index;
+    return true;
+  }
+  support::Diagnostic& report = work.report(
+      Id::unknown_node, link.place, "no node or " + std::string(input_word(graph)) + " " + quote(link.name));
+  if (work.diagnostics.full()) return false;
+  std::vector<std::string_view> names;
+  for (const graph::Input& input : graph.inputs) names.push_back(input.name);
+  for (const graph::Node& node : graph.nodes) names.push_back(node.id);
+  const std::string_view near = support::nearest(link.name, names);
+  if (near.empty()) return false;
+  const graph::Graph::Name name = graph.names.at(std::string(near));
+  const graph::Place place =
+      name.is_input ? graph.inputs[name.index].name_place : graph.nodes[name.index].id_place;
+  report.suggest("did you mean " + quote(near) + " (" +
+                 (name.is_input ? std::string(input_word(graph)) : "node") + ", line " +
+                 std::to_string(work.span(place).line()) + ")?");
+  return false;
+}
+
+/// The nodes that only an effect has: they speak of its surface or of the scene's lights.
+bool belongs_to_effects(const nodes::Row& row) {
+  return row.is<nodes::Surface>() || row.is<nodes::Light>() || row.is<nodes::SumLights>();
+}
+
+class NodeResolver {
+ public:
+  NodeResolver(Work& work, uint32_t index)
+      : work_(work), node_(work.typed.nodes[index]), source_(work.graph().nodes[index]), index_(index) {}
+
+  void resolve() {
+    node_.row = nodes::find(source_.type);
+    if (node_.row == nullptr) {
+      node_.callee = work_.library.function(source_.type, work_.scope, work_.span(source_.type_place),
+                                            work_.diagnostics);
+      if (node_.callee == nullptr) return fail();
+    }
+    if (node_.row != nullptr && belongs_to_effects(*node_.row) &&
+        work_.graph().kind == DocumentKind::function) {
+      work_
+          .report(Id::misplaced_node, source_.type_place,
+                  "a function document cannot have the node " + quote(source_.type))
+          .suggest("make it an input of the function");
+      fail();
+    }
+    add_operands();
+    for (const graph::Port& port : source_.ports) match(port);
+    for (uint32_t i = 0; i < node_.operand_count; ++i) {
+      if (work_.given[node_.first_operand + i].port == nullptr) check_left_out(i);
+    }
+  }
+
+ private:
+  void fail() { work_.broken[index_] = true; }
+  size_t port_count() const {
+    return node_.row != nullptr ? node_.row->ports.size() : node_.callee->graph.inputs.size();
+  }
+  std::string_view port_name(size_t i) const {
+    return node_.row != nullptr ? node_.row->ports[i].name
+                                : std::string_view(node_.callee->graph.inputs[i].name);
+  }
+
+  void add_operands() {
+    node_.first_operand = static_cast<uint32_t>(work_.typed.operands.size());
+    node_.operand_count = static_cast<uint32_t>(port_count());
+    work_.typed.operands.resize(node_.first_operand + node_.operand_count);
+    work_.given.resize(work_.typed.operands.size());
+  }
+
+  std::optional<uint32_t> find_port(const std::string& name) const {
+    if (node_.row == nullptr) {
+      const auto found = node_.callee->graph.names.find(name);
+      if (found == node_.callee->graph.names.end() || !found->second.is_input) return std::nullopt;
+      return found->second.index;
+    }
+    for (uint32_t i = 0; i < node_.operand_count; ++i) {
+      if (node_.row->ports[i].name == name) return i;
+    }
+    return std::nullopt;
+  }
+
+  void match(const graph::Port& port) {
+    const std::optional<uint32_t> found = find_port(port.name);
+    if (!found) return report_unknown(port);
+    Given& given = work_.given[node_.first_operand + *found];
+    given.port = &port;
+    Operand& operand = work_.typed.operands[node_.first_operand + *found];
+    if (node_.row != nullptr && node_.row->ports[*found].type.kind != PortType::Kind::value) {
+      if (std::holds_alternative<Literal>(port.value)) return;  // infer looks at it
+      work_.report(Id::not_literal, port.place,
+                   quote(port.name) + " of " + quote(source_.type) + " is written in place, not linked");
+      return fail();
+    }
+    given.link = link_in(port);
+    if (given.link != nullptr && !resolve_link(work_, *given.link, operand)) fail();
+  }
+
+  /// The link in a port, if it is one: strings are links where no text is asked for.
+  const Link* link_in(const graph::Port& port) {
+    if (const auto* link = std::get_if<Link>(&port.value)) return link;
+    const Literal& literal = std::get<Literal>(port.value);
+    if (literal.kind != Literal::Kind::string) return nullptr;
+    std::optional<Link> link =
+        graph::parse_link(work_.graph().source, literal.string, port.place, work_.diagnostics);
+    if (!link) {
+      fail();
+      return nullptr;
+    }
+    return &work_.links.emplace_back(std::move(*link));
+  }
+
+  void report_unknown(const graph::Port& port) {
+    fail();
+    support::Diagnostic& report = work_.report(Id::unknown_port, port.name_place,
+                                               quote(source_.type) + " has no port " + quote(port.name));
+    if (work_.diagnostics.full()) return;
+    std::vector<std::string_view> names;
+    for (size_t i = 0; i < node_.operand_count; ++i) names.push_back(port_name(i));
+    suggest_nearest(work_.diagnostics, report, port.name, names);
+    report.note(names.empty() ? "it has no ports" : "its ports are " + listed(names));
+  }
+
+  void check_left_out(uint32_t i) {
+    const bool required = node_.row != nullptr ? node_.row->ports[i].required()
+                                               : !node_.callee->graph.inputs[i].value.has_value();
+    if (!required) return;
+    fail();
+    support::Diagnostic& report = work_.report(
+        Id::missing_port, source_.id_place,
+        "node " + quote(source_.id) + " (" + quote(source_.type) + ") needs " + quote(port_name(i)));
+    if (node_.row != nullptr)
+      report.note(std::string(port_name(i)) + ": " + std::string(node_.row->ports[i].doc));
+  }
+
+  Work& work_;
+  Node& node_;
+  const graph::Node& source_;
+  uint32_t index_;
+};
+
+}  // namespace
+
+void resolve(Work& work) {
+  const graph::Graph& graph = work.graph();
+  work.typed.nodes.resize(graph.nodes.size());
+  work.broken.resize(graph.nodes.size());
+  work.typed.operands.reserve(graph.nodes.size() * 2);
+  for (uint32_t i = 0; i < graph.nodes.size(); ++i) NodeResolver(work, i).resolve();
+
+  for (const graph::Output& output : graph.outputs) work.roots.push_back(&output.link);
+  for (const graph::Pass& pass : graph.passes) work.roots.push_back(&pass.color);
+  work.typed.outputs.resize(work.roots.size());
+  for (size_t i = 0; i < work.roots.size(); ++i) resolve_link(work, *work.roots[i], work.typed.outputs[i]);
+}
+
+}  // namespace isoshade::check

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "compiler/check/work.h"
+
+namespace isoshade::check {
+namespace {
+
+using support::Id;
+using support::quote;
+using From = Operand::From;
+
+bool is_sum(const Node& node) { return node.row != nullptr && node.row->is<nodes::SumLights>(); }
+bool is_light(const Node& node) { return node.row != nullptr && node.row->is<nodes::Light>(); }
+
+uint64_t size_of(const Node& node) { return node.callee != nullptr ? node.callee->expanded_nodes : 1; }
+
+void mark_per_light(TypedGraph& typed) {
+  for (const uint32_t i : typed.order) {
+    Node& node = typed.nodes[i];
+    node.per_light = is_light(node);
+    if (is_sum(node)) continue;
+    for (const Operand& operand : typed.operands_of(node))
+      node.per_light |= operand.from == From::node && typed.nodes[operand.index].per_light;
+  }
+}
+
+/// Reports light nodes from which an output is reached on a way without sum_lights.
+void check_lights(Work& work) {
+  const TypedGraph& typed = work.typed;
+  const graph::Graph& graph = work.graph();
+  constexpr uint32_t not_reached = ~0u;
+  constexpr uint32_t output = not_reached - 1;
+  std::vector<uint32_t> reader(typed.nodes.size(), not_reached);
+  for (const Operand& root : typed.outputs)
+    if (root.from == From::node) reader[root.index] = output;
+  for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
+    const Node& node = typed.nodes[*it];
+    if (reader[*it] == not_reached) continue;
+    if (is_light(node)) {
+      std::string path = graph.nodes[*it].id;
+      for (uint32_t i = reader[*it], shown = 0; i != output; i = reader[i]) {
+        if (++shown > 8) {
+          path += " -> ...";
+          break;
+        }
+        path += " -> " + graph.nodes[i].id;
+      }
+      work.report(Id::light_outside_sum, graph.nodes[*it].type_place,
+                  quote(graph.nodes[*it].type) + " is read outside of sum_lights")
+          .note("it reaches an output by " + path)
+          .suggest("sum what depends on it with a node of type sum_lights");
+    }
+    if (is_sum(node)) continue;
+    for (const Operand& operand : typed.operands_of(node))
+      if (operand.from == From::node) reader[operand.index] = *it;
+  }
+}
+
+/// How many nodes are computed for each light, over all sums; stops counting beyond the limit.
+uint64_t nodes_under_sums(const TypedGraph& typed) {
+  uint64_t total = 0;
+  std::vector<uint32_t> seen_by(typed.nodes.size(), ~0u);
+  std::vector<uint32_t> waiting;
+  for (uint32_t sum = 0; sum < typed.nodes.size(); ++sum) {
+    if (!is_sum(typed.nodes[sum])) continue;
+    waiting.push_back(sum);
+    while (!waiting.empty() && total <= max_expanded_nodes) {
+      const Node& node = typed.nodes[waiting.back()];
+      waiting.pop_back();
+      total += size_of(node);
+      for (const Operand& operand : typed.operands_of(node)) {
+        if (operand.from != From::node || seen_by[operand.index] == sum) continue;
+        if (!typed.nodes[operand.index].per_light) continue;
+        seen_by[operand.index] = sum;
+        waiting.push_back(operand.index);
+      }
+    }
+  }
+  return total;
+}
+
+void check_size(Work& work) {
+  TypedGraph& typed = work.typed;
+  uint64_t total = nodes_under_sums(typed);
+  for (const Node& node : typed.nodes) total = std::min(total + size_of(node), max_expanded_nodes + 1);
+  typed.expanded_nodes = std::max<uint64_t>(total, 1);
+  if (total <= max_expanded_nodes) return;
+  work.report(Id::too_large, work.graph().name_place,
+              "with all calls and sums over lights expanded, the graph has more than " +
+                  std::to_string(max_expanded_nodes) + " nodes");
+}
+
+void warn_unused(Work& work) {
+  const TypedGraph& typed = work.typed;
+  std::vector<bool> used(typed.nodes.size());
+  const auto use = [&](const Operand& operand) {
+    if (operand.from == From::node) used[operand.index] = true;
+  };
+  std::ranges::for_each(typed.outputs, use);
+  for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it)
+    if (used[*it]) std::ranges::for_each(typed.operands_of(typed.nodes[*it]), use);
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) continue;
+    work.report(Id::unused_node, work.graph().nodes[i].id_place,
+                "no output depends on node " + quote(work.graph().nodes[i].id));
+  }
+}
+
+}  // namespace
+
+void check_usage(Work& work) {
+  mark_per_light(work.typed);
+  check_lights(work);
+  check_size(work);
+  warn_unused(work);
+}
+
+}  // namespace isoshade::check

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// One document on its way through checking, and the steps in the order that check.cpp takes them.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/check/check.h"
+#include "compiler/support/visible.h"
+
+namespace isoshade::check {
+
+/// What the author wrote for an operand; both null: nothing.
+struct Given {
+  const graph::Port* port = nullptr;
+  const graph::Link* link = nullptr;
+};
+
+struct Work {
+  TypedGraph& typed;
+  const Scope& scope;
+  Library& library;
+  support::Diagnostics& diagnostics;
+  std::vector<Given> given = {};               ///< of TypedGraph::operands
+  std::vector<const graph::Link*> roots = {};  ///< of TypedGraph::outputs
+  std::deque<graph::Link> links = {};          ///< those made of strings in ports
+  /// Nodes with errors. Their outputs have no type, and what reads them is not complained about again.
+  std::vector<bool> broken = {};
+
+  const graph::Graph& graph() const { return typed.graph; }
+  support::Span span(graph::Place place) const { return graph().span(place); }
+  support::Diagnostic& report(support::Id id, graph::Place place, std::string message) {
+    return diagnostics.report(id, span(place), std::move(message));
+  }
+};
+
+/// Finds what every node is, which ports are given, and which node or input each link names.
+void resolve(Work& work);
+/// Orders the nodes; reports cycles.
+void order(Work& work);
+/// Settles all types, literals and defaults.
+void infer(Work& work);
+/// Reports light nodes outside of sums, graphs that expand without measure, and unused nodes.
+void check_usage(Work& work);
+
+/// Checks a document in its scope.
+std::shared_ptr<const TypedGraph> check_in(graph::Graph graph, const Scope& scope, Library& library,
+                                           support::Diagnostics& diagnostics);
+
+/// Suggests the nearest of `candidates`, if one is near.
+void suggest_nearest(support::Diagnostics& diagnostics, support::Diagnostic& report, std::string_view word,
+                     const std::vector<std::string_view>& candidates);
+
+/// `"a", "b" and "c"`
+std::string listed(const std::vector<std::string_view>& words);
+
+}  // namespace isoshade::check

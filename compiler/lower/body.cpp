@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/lower/body.h"
+
+#include <algorithm>
+
+#include "compiler/support/check.h"
+
+namespace isoshade::lower {
+namespace {
+
+using check::Node;
+using check::Operand;
+using graph::Type;
+using nodes::Value;
+using From = Operand::From;
+
+class Body {
+ public:
+  Body(ir::Builder& builder, const check::TypedGraph& graph, const Environment& environment)
+      : b_(builder),
+        graph_(graph),
+        environment_(environment),
+        values_(graph.types.size()),
+        origins_(graph.nodes.size()),
+        summed_by_(graph.nodes.size(), ir::none) {}
+
+  void make(uint32_t node);
+  Value read(const Operand& operand);
+
+ private:
+  void make_row(const nodes::Row& row, uint32_t node);
+  void make_call(const Node& node);
+  void make_sum(uint32_t node);
+  std::vector<uint32_t> nodes_under(uint32_t sum);
+  Value light(nodes::Light what) const;
+  /// Gives the results of a node its name, but for those that stood before it under another.
+  void name_results(uint32_t node, ir::ValueId first_new);
+  void name_value(const Value& value, uint32_t origin, ir::ValueId first_new);
+  uint32_t origin_of(uint32_t node);
+  std::span<Value> results_of(const Node& node) {
+    return {values_.data() + node.first_type, node.output_count};
+  }
+
+  ir::Builder& b_;
+  const check::TypedGraph& graph_;
+  const Environment& environment_;
+  std::vector<Value> values_;        ///< of TypedGraph::types; of per-light nodes, those of the last loop
+  std::vector<uint32_t> origins_;    ///< of Graph::nodes; 0 until there is one
+  std::vector<uint32_t> summed_by_;  ///< the last sum over lights that met a node
+  std::vector<uint32_t> position_;   ///< in TypedGraph::order
+  std::vector<ir::ValueId> light_;   ///< the results of light_at in the current loop
+};
+
+Value Body::read(const Operand& operand) {
+  Value value;
+  switch (operand.from) {
+    case From::nothing:
+    case From::setting: return value;
+    case From::words:
+      return nodes::constant(b_, operand.needed, std::span(graph_.words).subspan(operand.index));
+    case From::input: value = environment_.inputs[operand.index]; break;
+    case From::node: value = values_[graph_.nodes[operand.index].first_type + operand.output]; break;
+  }
+  if (operand.swizzle_count > 0) {
+    std::array<ir::ValueId, 4> components;
+    for (size_t i = 0; i < operand.swizzle_count; ++i)
+      components[i] = b_.extract(value.id(), operand.swizzle[i]);
+    value = b_.construct(std::span<const ir::ValueId>(components).first(operand.swizzle_count));
+  }
+  return nodes::broadcast(b_, value, operand.type, operand.needed);
+}
+
+uint32_t Body::origin_of(uint32_t node) {
+  const graph::Node& source = graph_.graph.nodes[node];
+  if (origins_[node] == 0)
+    origins_[node] = b_.add_origin(source.id, graph_.graph.span(source.id_place).line());
+  return origins_[node];
+}
+
+void Body::make(uint32_t index) {
+  const Node& node = graph_.nodes[index];
+  b_.set_origin(origin_of(index));
+  const auto first_new = static_cast<ir::ValueId>(b_.function().values.size());
+  if (node.row != nullptr) {
+    make_row(*node.row, index);
+  } else {
+    make_call(node);
+  }
+  name_results(index, first_new);
+  b_.set_origin(0);
+}
+
+void Body::make_row(const nodes::Row& row, uint32_t index) {
+  const Node& node = graph_.nodes[index];
+  const std::span<Value> out = results_of(node);
+  if (const auto* attribute = std::get_if<nodes::Surface>(&row.lowering)) {
+    out[0] = environment_.surface[static_cast<size_t>(*attribute)];
+    return;
+  }
+  if (const auto* what = std::get_if<nodes::Light>(&row.lowering)) {
+    out[0] = light_[static_cast<size_t>(*what)];
+    return;
+  }
+  if (row.is<nodes::SumLights>()) return make_sum(index);
+  constexpr size_t most = 8;
+  std::array<Value, most> in;
+  std::array<Type, most> types{};
+  std::array<uint32_t, most> settings{};
+  const std::span<const Operand> operands = graph_.operands_of(node);
+  const size_t count = operands.size();
+  support::check(count <= most, "a row has more ports than are provided for");
+  for (size_t i = 0; i < count; ++i) {
+    in[i] = read(operands[i]);
+    types[i] = operands[i].needed;
+    if (operands[i].from == From::setting) settings[i] = operands[i].index;
+  }
+  nodes::Site site{b_,
+                   std::span<const Value>(in).first(count),
+                   std::span<const Type>(types).first(count),
+                   std::span<const uint32_t>(settings).first(count),
+                   graph_.types_of(node),
+                   out};
+  nodes::lower(row, site);
+}
+
+void Body::make_call(const Node& node) {
+  std::vector<ir::ValueId> arguments;
+  for (const Operand& operand : graph_.operands_of(node)) {
+    const Value value = read(operand);
+    arguments.insert(arguments.end(), value.ids().begin(), value.ids().end());
+  }
+  const std::vector<ir::ValueId> results = b_.call(environment_.function_of(*node.callee), arguments);
+  std::span<const ir::ValueId> rest(results);
+  const std::span<const Type> types = graph_.types_of(node);
+  for (size_t i = 0; i < types.size(); ++i) {
+    const size_t columns = nodes::column_count(types[i]);
+    results_of(node)[i] = Value(rest.first(columns));
+    rest = rest.subspan(columns);
+  }
+}
+
+std::vector<uint32_t> Body::nodes_under(uint32_t sum) {
+  if (position_.empty()) {
+    position_.resize(graph_.nodes.size());
+    for (uint32_t i = 0; i < graph_.order.size(); ++i) position_[graph_.order[i]] = i;
+  }
+  std::vector<uint32_t> found{sum};
+  for (size_t next = 0; next < found.size(); ++next) {
+    for (const Operand& operand : graph_.operands_of(graph_.nodes[found[next]])) {
+      if (operand.from != From::node || summed_by_[operand.index] == sum) continue;
+      if (!graph_.nodes[operand.index].per_light) continue;
+      summed_by_[operand.index] = sum;
+      found.push_back(operand.index);
+    }
+  }
+  found.erase(found.begin());
+  std::ranges::sort(found, {}, [&](uint32_t node) { return position_[node]; });
+  return found;
+}
+
+void Body::make_sum(uint32_t index) {
+  const Node& node = graph_.nodes[index];
+  const Operand& summand = graph_.operands_of(node)[0];
+  const std::vector<uint32_t> inside = nodes_under(index);
+  const bool asks_light = std::ranges::any_of(inside, [&](uint32_t i) {
+    return graph_.nodes[i].row != nullptr && graph_.nodes[i].row->is<nodes::Light>();
+  });
+  const std::vector<uint32_t> zero(graph::float_count(summand.needed), 0);
+  const Value initial = nodes::constant(b_, summand.needed, zero);
+  const auto body = [&](ir::ValueId light_index, std::span<const ir::ValueId> carried) {
+    if (asks_light) {
+      const std::array arguments{light_index,
+                                 environment_.surface[static_cast<size_t>(nodes::Surface::position)]};
+      light_ = b_.call(environment_.light_at, arguments);
+    }
+    for (const uint32_t i : inside) make(i);
+    b_.set_origin(origin_of(index));
+    const ir::ValueId added = read(summand).id();
+    return std::vector{b_.op(ir::Opcode::fadd, {carried[0], added})};
+  };
+  results_of(node)[0] = b_.loop(environment_.light_count, initial.ids(), body).front();
+}
+
+void Body::name_value(const Value& value, uint32_t origin, ir::ValueId first_new) {
+  for (const ir::ValueId id : value.ids())
+    if (id >= first_new) b_.name(id, origin);
+}
+
+void Body::name_results(uint32_t index, ir::ValueId first_new) {
+  const Node& node = graph_.nodes[index];
+  const std::span<const Value> results = results_of(node);
+  const bool light = node.row != nullptr && node.row->is<nodes::Light>();
+  if (light) {
+    b_.name(results[0].id(), origin_of(index));
+  } else if (results.size() == 1) {
+    name_value(results[0], origin_of(index), first_new);
+  } else {
+    // Several outputs: each is the node's name and its own.
+    const std::string id = graph_.graph.nodes[index].id;
+    const uint32_t line = b_.function().origins[origin_of(index)].line;
+    for (size_t i = 0; i < results.size(); ++i) {
+      const std::string& output = node.callee->graph.outputs[i].name;
+      name_value(results[i], b_.add_origin(id + "_" + output, line), first_new);
+    }
+  }
+}
+
+}  // namespace
+
+Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
+    : nodes(graph.nodes.size()), inputs(graph.graph.inputs.size()) {
+  const auto need = [&](const Operand& operand) {
+    if (operand.from == From::node) nodes[operand.index] = true;
+    if (operand.from == From::input) inputs[operand.index] = true;
+  };
+  std::ranges::for_each(results, need);
+  for (auto it = graph.order.rbegin(); it != graph.order.rend(); ++it) {
+    if (!nodes[*it]) continue;
+    const Node& node = graph.nodes[*it];
+    std::ranges::for_each(graph.operands_of(node), need);
+    if (node.row == nullptr) continue;
+    if (const auto* attribute = std::get_if<nodes::Surface>(&node.row->lowering))
+      surface[static_cast<size_t>(*attribute)] = true;
+    lights |= node.row->is<nodes::SumLights>();
+    light_at |= node.row->is<nodes::Light>();
+  }
+  surface[static_cast<size_t>(nodes::Surface::position)] |= light_at;
+}
+
+std::vector<Value> build_body(ir::Builder& builder, const check::TypedGraph& graph, const Needs& needs,
+                              const Environment& environment, std::span<const Operand> results) {
+  Body body(builder, graph, environment);
+  // Nodes that depend on the light are made inside of the loops that sum them.
+  for (const uint32_t node : graph.order)
+    if (needs.nodes[node] && !graph.nodes[node].per_light) body.make(node);
+  std::vector<Value> values;
+  for (const Operand& result : results) values.push_back(body.read(result));
+  return values;
+}
+
+}  // namespace isoshade::lower

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes of one document as the body of one function.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "compiler/check/typed_graph.h"
+#include "compiler/ir/builder.h"
+#include "compiler/nodes/site.h"
+
+namespace isoshade::lower {
+
+/// The nodes that some operands of a document depend on, and what these nodes need from outside.
+struct Needs {
+  std::vector<bool> nodes;
+  std::vector<bool> inputs;
+  std::array<bool, nodes::surface_count> surface{};
+  bool lights = false;    ///< a sum over lights
+  bool light_at = false;  ///< what a light gives
+
+  Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
+};
+
+/// What the body reads from its function's parameters and calls in its module.
+struct Environment {
+  std::vector<nodes::Value> inputs;  ///< of Graph::inputs; empty where not needed
+  std::array<ir::ValueId, nodes::surface_count> surface{};
+  ir::ValueId light_count = ir::none;
+  uint32_t light_at = ir::none;
+  std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called
+};
+
+/// Makes the needed nodes and returns the results, of the types that they are needed in.
+std::vector<nodes::Value> build_body(ir::Builder& builder, const check::TypedGraph& graph, const Needs& needs,
+                                     const Environment& environment, std::span<const check::Operand> results);
+
+}  // namespace isoshade::lower

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/lower/lower.h"
+
+#include <algorithm>
+#include <iterator>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "compiler/lower/body.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::lower {
+namespace {
+
+using check::Operand;
+using check::TypedGraph;
+using graph::DocumentKind;
+using graph::Type;
+using nodes::Value;
+
+/// What the stages around authored functions are called: no document takes these names.
+constexpr std::string_view names_of_stages[] = {shade_name, light_at_name, "vertex",     "depth",     "pixel",
+                                                "eval",     "edges_at",    "attribute2", "attribute3"};
+
+constexpr std::string_view surface_names[nodes::surface_count] = {"position", "normal", "texcoord",
+                                                                  "view_direction"};
+constexpr ir::Type surface_types[nodes::surface_count] = {ir::vector_type(3), ir::vector_type(3),
+                                                          ir::vector_type(2), ir::vector_type(3)};
+
+/// A name that neither the stages nor library functions have.
+std::string authored_name(const std::string& name) {
+  const bool taken = std::ranges::find(names_of_stages, name) != std::end(names_of_stages);
+  return taken || name.starts_with("iso_") ? "function_" + name : name;
+}
+
+class ModuleLowering {
+ public:
+  ir::Module lower_function(const TypedGraph& graph) {
+    names_.insert(entry_name(graph));
+    add_function(graph, entry_name(graph));
+    return std::move(module_);
+  }
+  ir::Module lower_pass(const TypedGraph& graph, size_t pass);
+
+ private:
+  struct Parameters {
+    ir::Function& function;
+    /// Adds one value's parameters; returns the index of the first.
+    size_t add(const std::string& name, Type type, const std::string& group, bool uniform);
+  };
+
+  /// Lowers the documents that the needed nodes call.
+  void add_callees(const TypedGraph& graph, const Needs& needs);
+  void add_function(const TypedGraph& graph, std::string name);
+  std::string unique_name(const std::string& wanted);
+  uint32_t declare_light_at();
+  std::function<uint32_t(const TypedGraph&)> function_of() {
+    return [this](const TypedGraph& callee) { return functions_.at(&callee); };
+  }
+
+  ir::Module module_;
+  std::unordered_map<const TypedGraph*, uint32_t> functions_;
+  std::unordered_set<std::string> names_;
+};
+
+std::string ModuleLowering::unique_name(const std::string& wanted) {
+  std::string name = wanted;
+  for (int number = 2; !names_.insert(name).second; ++number) name = wanted + "_" + std::to_string(number);
+  return name;
+}
+
+/// The parameter or result names of a value: itself, or one a column.
+std::vector<std::string> column_names(const std::string& name, Type type) {
+  const int count = nodes::column_count(type);
+  if (count == 1) return {name};
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) names.push_back(name + "_" + std::to_string(i));
+  return names;
+}
+
+/// Takes a value's parameters from the function's, beginning with `first`.
+Value parameter_value(ir::Builder& b, size_t first, Type type) {
+  std::array<ir::ValueId, 4> ids;
+  const size_t count = nodes::column_count(type);
+  for (size_t i = 0; i < count; ++i) ids[i] = b.parameter(first + i);
+  return Value(std::span<const ir::ValueId>(ids).first(count));
+}
+
+/// Keeps names apart where the columns of a matrix are called as another input is.
+class SideBySide {
+ public:
+  std::string take(std::string name) {
+    while (!taken_.insert(name).second) name += "_";
+    return name;
+  }
+
+ private:
+  std::unordered_set<std::string> taken_;
+};
+
+size_t ModuleLowering::Parameters::add(const std::string& name, Type type, const std::string& group,
+                                       bool uniform) {
+  const size_t first = function.parameters.size();
+  for (const std::string& column : column_names(name, type))
+    function.parameters.push_back({column, nodes::ir_type(type), group, uniform});
+  return first;
+}
+
+void ModuleLowering::add_callees(const TypedGraph& graph, const Needs& needs) {
+  for (size_t i = 0; i < graph.nodes.size(); ++i) {
+    const TypedGraph* callee = graph.nodes[i].callee.get();
+    if (!needs.nodes[i] || callee == nullptr || functions_.contains(callee)) continue;
+    add_function(*callee, unique_name(authored_name(callee->graph.name)));
+  }
+}
+
+void ModuleLowering::add_function(const TypedGraph& graph, std::string name) {
+  const Needs needs(graph, graph.outputs);
+  add_callees(graph, needs);
+  const auto index = static_cast<uint32_t>(module_.functions.size());
+  functions_[&graph] = index;
+  ir::Function& function = module_.functions.emplace_back();
+  function.name = std::move(name);
+  function.document = graph.document;
+  Parameters parameters{function};
+  std::vector<size_t> first;
+  for (const graph::Input& input : graph.graph.inputs)
+    first.push_back(parameters.add(input.name, input.type, "", false));
+  SideBySide parameter_names;
+  for (ir::Parameter& parameter : function.parameters) parameter.name = parameter_names.take(parameter.name);
+  SideBySide result_names;
+  for (size_t i = 0; i < graph.outputs.size(); ++i) {
+    const Type type = graph.outputs[i].needed;
+    for (const std::string& column : column_names(graph.graph.outputs[i].name, type))
+      function.results.push_back({result_names.take(column), nodes::ir_type(type)});
+  }
+
+  ir::Builder b(module_, index);
+  Environment environment;
+  for (size_t i = 0; i < first.size(); ++i)
+    environment.inputs.push_back(parameter_value(b, first[i], graph.graph.inputs[i].type));
+  environment.function_of = function_of();
+  std::vector<ir::ValueId> results;
+  for (const Value& value : build_body(b, graph, needs, environment, graph.outputs))
+    results.insert(results.end(), value.ids().begin(), value.ids().end());
+  b.finish(results);
+}
+
+uint32_t ModuleLowering::declare_light_at() {
+  ir::Function& function = module_.functions.emplace_back();
+  function.name = light_at_name;
+  function.parameters = {{"index", ir::int_type, "", true}, {"position", ir::vector_type(3), "", false}};
+  function.results = {{"direction", ir::vector_type(3)}, {"color", ir::vector_type(3)}};
+  return static_cast<uint32_t>(module_.functions.size() - 1);
+}
+
+ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
+  const std::span<const Operand> color = std::span(graph.outputs).subspan(pass, 1);
+  const Needs needs(graph, color);
+  names_.insert(shade_name);
+  add_callees(graph, needs);
+  Environment environment;
+  environment.function_of = function_of();
+  if (needs.light_at) environment.light_at = declare_light_at();
+
+  const auto index = static_cast<uint32_t>(module_.functions.size());
+  ir::Function& function = module_.functions.emplace_back();
+  function.name = shade_name;
+  function.document = graph.document;
+  function.results = {{"color", ir::vector_type(4)}};
+  for (size_t i = 0; i < nodes::surface_count; ++i) {
+    if (needs.surface[i])
+      function.parameters.push_back({std::string(surface_names[i]), surface_types[i], "surface", false});
+  }
+  Parameters parameters{function};
+  std::vector<size_t> first(graph.graph.inputs.size());
+  for (size_t i = 0; i < first.size(); ++i) {
+    const graph::Input& input = graph.graph.inputs[i];
+    if (needs.inputs[i]) first[i] = parameters.add(input.name, input.type, "parameters", true);
+  }
+  if (needs.lights) function.parameters.push_back({"light_count", ir::int_type, "", true});
+  const size_t last = function.parameters.size() - 1;
+
+  ir::Builder b(module_, index);
+  size_t next = 0;
+  for (size_t i = 0; i < nodes::surface_count; ++i)
+    if (needs.surface[i]) environment.surface[i] = b.parameter(next++);
+  for (size_t i = 0; i < first.size(); ++i) {
+    environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
+                                                 : Value());
+  }
+  if (needs.lights) environment.light_count = b.parameter(last);
+  ir::ValueId result = build_body(b, graph, needs, environment, color)[0].id();
+  if (color[0].needed == Type::color3) {
+    const std::array rgba{b.extract(result, 0), b.extract(result, 1), b.extract(result, 2), b.constant(1.0f)};
+    result = b.construct(rgba);
+  }
+  b.finish(std::array{result});
+  return std::move(module_);
+}
+
+}  // namespace
+
+std::string entry_name(const TypedGraph& graph) {
+  return graph.graph.kind == DocumentKind::function ? authored_name(graph.graph.name) : shade_name;
+}
+
+ir::Module lower(const TypedGraph& graph, const LowerOptions& options) {
+  if (graph.graph.kind == DocumentKind::function) return ModuleLowering().lower_function(graph);
+  support::check(options.pass < graph.graph.passes.size(), "the effect has no such pass");
+  return ModuleLowering().lower_pass(graph, options.pass);
+}
+
+}  // namespace isoshade::lower

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Choosing between values. Both are computed and one is taken.
+#include "compiler/nodes/site.h"
+#include "compiler/nodes/table.h"
+
+namespace isoshade::nodes {
+namespace {
+
+using ir::Opcode;
+
+void choose(Site& s, ir::ValueId condition) {
+  std::array<ir::ValueId, 4> columns;
+  for (size_t i = 0; i < s.in[2].count; ++i)
+    columns[i] = s.op(Opcode::select, {condition, s.in[2].columns[i], s.in[3].columns[i]});
+  s.out[0] = Value(std::span<const ir::ValueId>(columns).first(s.in[2].count));
+}
+
+template <Opcode comparison>
+void choose_by(Site& s) {
+  choose(s, s.op(comparison, {s[0], s[1]}));
+}
+
+void choose_equal(Site& s) {
+  switch (s.types[0]) {
+    case Type::boolean: return choose(s, s.op(Opcode::bnot, {s.op(Opcode::bxor, {s[0], s[1]})}));
+    case Type::integer: return choose_by<Opcode::ieq>(s);
+    default: return choose_by<Opcode::feq>(s);
+  }
+}
+
+}  // namespace
+
+std::vector<Row> logic_rows() {
+  const PortType equatable{only(Type::boolean) | only(Type::integer) | only(Type::floating), Variable::u};
+  const Port value1{"value1", Float, "the left side of the comparison"};
+  const Port value2{"value2", Float, "the right side of the comparison"};
+  const Port in1{"in1", Any, "the result where it holds"};
+  const Port in2{"in2", Any, "the result where it does not, or where a side is NaN"};
+  return {
+      {"ifgreater",
+       "`in1` where `value1` > `value2`, else `in2`.",
+       {value1, value2, in1, in2},
+       Any,
+       choose_by<Opcode::fgt>},
+      {"ifgreatereq",
+       "`in1` where `value1` >= `value2`, else `in2`.",
+       {value1, value2, in1, in2},
+       Any,
+       choose_by<Opcode::fge>},
+      {"ifequal",
+       "`in1` where `value1` equals `value2`, else `in2`.",
+       {{"value1", equatable, "the left side"}, {"value2", equatable, "the right side"}, in1, in2},
+       Any,
+       choose_equal},
+  };
+}
+
+}  // namespace isoshade::nodes

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arithmetic, componentwise.
+#include "compiler/nodes/site.h"
+#include "compiler/nodes/table.h"
+
+namespace isoshade::nodes {
+
+std::vector<Row> math_rows() {
+  using enum ir::Opcode;
+  const Port in{"in", AnyFloat, "the value"};
+  const Port in1{"in1", AnyFloat, "the first value"};
+  const Port in2{"in2", AnyFloat, "the second value"};
+  return {
+      {"add", "`in1` + `in2`.", {in1, in2}, AnyFloat, fadd},
+      {"subtract", "`in1` - `in2`.", {in1, in2}, AnyFloat, fsub},
+      {"multiply",
+       "`in1` * `in2`; of two matrices their product.",
+       {{"in1", FloatOrMatrix, "the first factor"}, {"in2", FloatOrMatrix, "the second factor"}},
+       FloatOrMatrix,
+       [](Site& s) {
+         s.out[0] = s.in[0].count > 1 ? s.call("mul", {s.in[0], s.in[1]}) : s.op(fmul, {s[0], s[1]});
+       }},
+      {"divide",
+       "`in1` / `in2`, correctly rounded. By zero: infinity, or NaN for 0 / 0.",
+       {in1, in2},
+       AnyFloat,
+       fdiv},
+      {"modulo",
+       "What is left of `in1` when divided by `in2`; it has the sign of `in2`.",
+       {in1, {"in2", AnyFloat, "the divisor", 1.0f}},
+       AnyFloat,
+       Function{"mod"}},
+      {"power",
+       "`in1` to the power of `in2`. NaN for negative `in1`.",
+       {in1, {"in2", AnyFloat, "the exponent", 1.0f}},
+       AnyFloat,
+       Function{"pow"}},
+      {"min", "The lesser.", {in1, in2}, AnyFloat, Function{"min"}},
+      {"max", "The greater.", {in1, in2}, AnyFloat, Function{"max"}},
+      {"clamp",
+       "`in`, but at least `low` and at most `high`.",
+       {in, {"low", AnyFloat, "the least result", 0.0f}, {"high", AnyFloat, "the greatest result", 1.0f}},
+       AnyFloat,
+       Function{"clamp"}},
+      {"saturate", "`in`, but at least 0 and at most 1.", {in}, AnyFloat, Function{"saturate"}},
+      {"absval", "`in` without its sign.", {in}, AnyFloat, fabs},
+      {"sign", "-1, 0 or 1: the sign of `in`.", {in}, AnyFloat, Function{"sign"}},
+      {"floor", "The greatest whole number that is not above `in`.", {in}, AnyFloat, floor},
+      {"fract", "`in` - floor(`in`), in [0, 1).", {in}, AnyFloat, Function{"fract"}},
+      {"invert",
+       "`amount` - `in`.",
+       {in, {"amount", AnyFloat, "what is subtracted from", 1.0f}},
+       AnyFloat,
+       [](Site& s) {
+         s.out[0] = s.op(fsub, {s[1], s[0]});
+       }},
+      {"sqrt", "The square root, correctly rounded. NaN below 0.", {in}, AnyFloat, fsqrt},
+      {"exp", "e to the power of `in`.", {in}, AnyFloat, Function{"exp"}},
+      {"exp2", "2 to the power of `in`.", {in}, AnyFloat, Function{"exp2"}},
+      {"ln", "The natural logarithm. -infinity at 0, NaN below.", {in}, AnyFloat, Function{"log"}},
+      {"log2", "The logarithm to base 2. -infinity at 0, NaN below.", {in}, AnyFloat, Function{"log2"}},
+      {"sin", "The sine of an angle in radians.", {in}, AnyFloat, Function{"sin"}},
+      {"cos", "The cosine of an angle in radians.", {in}, AnyFloat, Function{"cos"}},
+      {"tan", "The tangent of an angle in radians.", {in}, AnyFloat, Function{"tan"}},
+      {"mix",
+       "`bg` at `mix` 0, `fg` at 1, in proportion between; both ends are exact.",
+       {{"fg", AnyFloat, "the value at 1"},
+        {"bg", AnyFloat, "the value at 0"},
+        {"mix", Float, "the share of `fg`"}},
+       AnyFloat,
+       [](Site& s) {
+         s.out[0] = s.call("mix", {s.in[1], s.in[0], s.in[2]});
+       }},
+      {"smoothstep",
+       "0 up to `low`, 1 from `high` on, a smooth rise between.",
+       {in,
+        {"low", AnyFloat, "where it begins to rise", 0.0f},
+        {"high", AnyFloat, "where it reaches 1", 1.0f}},
+       AnyFloat,
+       [](Site& s) {
+         s.out[0] = s.call("smoothstep", {s.in[1], s.in[2], s.in[0]});
+       }},
+      {"step",
+       "0 where `in` is below `edge`, else 1.",
+       {in, {"edge", AnyFloat, "the first value that gives 1", 0.5f}},
+       AnyFloat,
+       [](Site& s) {
+         s.out[0] = s.call("step", {s.in[1], s.in[0]});
+       }},
+  };
+}
+
+}  // namespace isoshade::nodes

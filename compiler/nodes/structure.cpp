@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Making values, taking them apart, changing their type.
+#include "compiler/nodes/site.h"
+#include "compiler/nodes/table.h"
+
+namespace isoshade::nodes {
+namespace {
+
+using graph::float_count;
+using ir::Opcode;
+
+bool is_tuple(Type type) { return (vector_types | color_types).has(type); }
+
+std::optional<Refusal> component_exists(std::span<const Type> types, std::span<const uint32_t> settings,
+                                        Type) {
+  const int count = float_count(types[0]);
+  if (settings[1] < static_cast<uint32_t>(count)) return std::nullopt;
+  return Refusal{support::Id::out_of_range, 1,
+                 "a " + std::string(graph::type_name(types[0])) + " has the components 0 to " +
+                     std::to_string(count - 1)};
+}
+
+/// Numbers and truth values become any type of floats, a tuple a tuple.
+std::optional<Refusal> conversion_exists(std::span<const Type> types, std::span<const uint32_t>, Type out) {
+  const Type in = types[0];
+  if (in == out) return std::nullopt;
+  const bool from_scalar = in == Type::boolean || in == Type::integer || in == Type::floating;
+  if (from_scalar && (out == Type::floating || is_tuple(out))) return std::nullopt;
+  if (in == Type::boolean && out == Type::integer) return std::nullopt;
+  if (is_tuple(in) && is_tuple(out)) return std::nullopt;
+  return Refusal{support::Id::type_mismatch, 0,
+                 "a " + std::string(graph::type_name(in)) + " cannot be converted to " +
+                     std::string(graph::type_name(out))};
+}
+
+void convert(Site& s) {
+  const Type in = s.types[0];
+  const Type out = s.out_types[0];
+  if (in == out) {
+    s.out[0] = s.in[0];
+  } else if (in == Type::boolean && out == Type::integer) {
+    s.out[0] = s.op(Opcode::select, {s[0], s.b.constant(1), s.b.constant(0)});
+  } else if (in == Type::boolean) {
+    const Value number = s.op(Opcode::select, {s[0], s.b.constant(1.0f), s.b.constant(0.0f)});
+    s.out[0] = broadcast(s.b, number, Type::floating, out);
+  } else if (!is_tuple(in)) {
+    s.out[0] = broadcast(s.b, s.in[0], in, out);
+  } else if (float_count(in) == float_count(out)) {
+    s.out[0] = s.in[0];
+  } else {
+    std::array<ir::ValueId, 4> components;
+    const int count = float_count(out);
+    for (int i = 0; i < count; ++i)
+      components[i] = i < float_count(in) ? s.b.extract(s[0], i) : s.b.constant(i == 3 ? 1.0f : 0.0f);
+    s.out[0] = s.b.construct(std::span<const ir::ValueId>(components).first(count));
+  }
+}
+
+void combine(Site& s) {
+  std::array<ir::ValueId, 4> components;
+  size_t count = 0;
+  for (size_t i = 0; i < s.in.size(); ++i)
+    if (s.in[i].count != 0) components[count++] = s[i];
+  s.out[0] = s.b.construct(std::span<const ir::ValueId>(components).first(count));
+}
+
+}  // namespace
+
+std::vector<Row> structure_rows() {
+  const PortType three{only(Type::vector3) | only(Type::color3), Variable::t};
+  const PortType four{only(Type::vector4) | only(Type::color4), Variable::t};
+  const Port in1{"in1", Float, "component 0: x or r", 0.0f};
+  const Port in2{"in2", Float, "component 1: y or g", 0.0f};
+  const Port in3{"in3", Float, "component 2: z or b", 0.0f};
+  const Port in4{"in4", Float, "component 3: w or a", 0.0f};
+  return {
+      {"constant",
+       "A value. Arrays are vectors unless `to` says color3, color4 or a matrix (column by column).",
+       {{"value", Any, "the value"}, {"to", name_of(Any), "its type, where the value does not tell", ""}},
+       Any,
+       [](Site& s) { s.out[0] = s.in[0]; }},
+      {"convert",
+       "`in` as another type. Numbers fill every component; tuples lose components, or gain 0 and as fourth "
+       "1.",
+       {{"in", Any, "the value"}, {"to", name_of(Other), "the type to convert to"}},
+       Other,
+       convert,
+       conversion_exists},
+      {"combine2", "A vector2 of two floats.", {in1, in2}, Vector2, combine},
+      {"combine3",
+       "A vector3 or color3 of three floats.",
+       {in1, in2, in3, {"to", name_of(three), "vector3 or color3", "vector3"}},
+       three,
+       combine},
+      {"combine4",
+       "A vector4 or color4 of four floats.",
+       {in1, in2, in3, in4, {"to", name_of(four), "vector4 or color4", "vector4"}},
+       four,
+       combine},
+      {"extract",
+       "One component of `in`. The same as a link \"node.x\".",
+       {{"in", VectorOrColor, "a vector or colour"},
+        {"index", component_of(VectorOrColor), "which one, from 0", 0.0f}},
+       Float,
+       [](Site& s) { s.out[0] = s.b.extract(s[0], s.settings[1]); },
+       component_exists},
+  };
+}
+
+}  // namespace isoshade::nodes

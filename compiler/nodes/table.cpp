@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/nodes/table.h"
+
+#include <unordered_map>
+
+#include "compiler/support/check.h"
+
+namespace isoshade::nodes {
+
+const std::vector<Row>& table() {
+  static const std::vector<Row> rows = [] {
+    std::vector<Row> all;
+    const auto add = [&](std::string_view group, std::vector<Row> rows) {
+      for (Row& row : rows) {
+        row.group = group;
+        all.push_back(std::move(row));
+      }
+    };
+    add("structure", structure_rows());
+    add("math", math_rows());
+    add("vector", vector_rows());
+    add("logic", logic_rows());
+    add("geometry", geometry_rows());
+    add("light", light_rows());
+    return all;
+  }();
+  return rows;
+}
+
+const Row* find(std::string_view name) {
+  static const std::unordered_map<std::string_view, const Row*> by_name = [] {
+    std::unordered_map<std::string_view, const Row*> map;
+    for (const Row& row : table()) support::check(map.emplace(row.name, &row).second, row.name);
+    return map;
+  }();
+  const auto found = by_name.find(name);
+  return found == by_name.end() ? nullptr : found->second;
+}
+
+}  // namespace isoshade::nodes

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// THE node library.
+#pragma once
+
+#include "compiler/nodes/row.h"
+
+namespace isoshade::nodes {
+
+/// Every node, group by group, in the order that the manual lists them.
+const std::vector<Row>& table();
+
+/// The row of a name, or null.
+const Row* find(std::string_view name);
+
+// The groups, one file each.
+std::vector<Row> structure_rows();
+std::vector<Row> math_rows();
+std::vector<Row> vector_rows();
+std::vector<Row> logic_rows();
+std::vector<Row> geometry_rows();
+std::vector<Row> light_rows();
+
+}  // namespace isoshade::nodes
