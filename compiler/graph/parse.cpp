@@ -101,8 +101,7 @@ class Builder {
     if (json != nullptr) json->string = std::move(value);
     return json != nullptr;
   }
-  bool binary(std::string&) { return false; }  // not in JSON texts
-  bool binary(nlohmann::json::binary_t&) { return false; }
+  bool binary(nlohmann::json::binary_t&) { return false; }  // not in JSON texts
   bool start_object(size_t) { return open(Json::Kind::object); }
   bool start_array(size_t) { return open(Json::Kind::array); }
   bool end_object() {

@@ -162,7 +162,7 @@ size_t ObjectReader::choice(std::string_view key, const std::vector<std::string_
   const auto place = std::find(choices.begin(), choices.end(), found->string);
   if (place != choices.end()) return static_cast<size_t>(place - choices.begin());
   diagnostics_.report_unknown(
-      Id::out_of_range, document_.span(*found),
+      Id::unknown_choice, document_.span(*found),
       quote(key) + " of " + what_ + " is one of " + join(choices) + ", not " + quote(found->string),
       found->string, choices);
   return fallback.value_or(0);

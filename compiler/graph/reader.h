@@ -29,7 +29,8 @@ struct Range {
 ///     if (!reader.finish()) return std::nullopt;               // reports unknown keys
 ///
 /// A read of a key that is missing (and required) or wrong reports so and returns the fallback, or an empty
-/// value; go on reading, so that an author sees all errors of an object in one run. "extras" is free.
+/// value; go on reading, so that an author sees all errors of an object in one run. "extras" is free. Keys are
+/// literals: the reader keeps views of them. The document must outlive the reader.
 class ObjectReader {
  public:
   /// `what` names the object in messages: "a camera", "pass \"base\"". Reports a `json` that is no object;

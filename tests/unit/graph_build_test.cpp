@@ -269,7 +269,7 @@ TEST(Build, PassesMustMakeSense) {
   EXPECT_EQ(first(with_pass(R"({"name": "b c", "color": "x"})")),
             "bad-id: \"b c\" cannot name a pass | \"b c\"");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cull": "bak"})")),
-            "out-of-range: \"cull\" of a pass is one of none, back, front, not \"bak\" | \"bak\" | did you "
+            "unknown-choice: \"cull\" of a pass is one of none, back, front, not \"bak\" | \"bak\" | did you "
             "mean \"back\"?");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": 1})")),
             "wrong-type: \"color\" is a link, not a number | 1");

@@ -121,7 +121,7 @@ TEST_F(Reader, ReportsWordsThatAreNoChoice) {
   reader.choice("cull", {"none", "back", "front"});
   EXPECT_FALSE(reader.finish());
   EXPECT_EQ(said(),
-            R"(a.json:1:10: error[out-of-range]: "cull" of a camera is one of none, back, front, not "bakc"
+            R"(a.json:1:10: error[unknown-choice]: "cull" of a camera is one of none, back, front, not "bakc"
   1 | {"cull": "bakc"}
     |          ^^^^^^ did you mean "back"?
 )");

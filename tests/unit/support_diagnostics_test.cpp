@@ -125,6 +125,31 @@ TEST(Diagnostics, ErrorsPastTheLimitAreCounted) {
       "error[missing-file]: m0\n  note: n\nerror[missing-file]: m1\n  note: n\n3 more errors not shown\n");
 }
 
+TEST(Diagnostics, WarningsAreNoErrorsUnlessAskedFor) {
+  Diagnostics diagnostics(2);
+  for (int i = 0; i < 3; ++i) diagnostics.report(Id::unused_node, "m" + std::to_string(i));
+  EXPECT_FALSE(diagnostics.has_errors());
+  EXPECT_EQ(diagnostics.text(),
+            "warning[unused-node]: m0\nwarning[unused-node]: m1\n1 more warning not shown\n");
+
+  Diagnostics strict;
+  strict.warnings_as_errors(true);
+  strict.report(Id::unused_node, "m");
+  EXPECT_EQ(strict.error_count(), 1u);
+  EXPECT_EQ(strict.text(), "error[unused-node]: m\n");
+}
+
+TEST(Diagnostics, WarningsCanBeDisabledAndErrorsCannot) {
+  Diagnostics diagnostics;
+  diagnostics.warnings_as_errors(true);
+  diagnostics.disable(Id::unused_node);
+  diagnostics.disable(Id::syntax);
+  diagnostics.report(Id::unused_node, "m").note("n");
+  EXPECT_EQ(diagnostics.text(), "");
+  diagnostics.report(Id::syntax, "m");
+  EXPECT_EQ(diagnostics.text(), "error[syntax]: m\n");
+}
+
 TEST(Diagnostics, UnknownNamesComeWithTheNearest) {
   Diagnostics diagnostics(2);
   const auto fix = [&](std::string_view word) {
