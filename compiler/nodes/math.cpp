@@ -4,6 +4,16 @@
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
+namespace {
+
+std::optional<Refusal> share_fits(std::span<const Type> types, std::span<const uint32_t>, Type out) {
+  if (types[2] == Type::floating || types[2] == out) return std::nullopt;
+  return Refusal{support::Id::type_mismatch, 2,
+                 "\"mix\" is float or " + std::string(graph::type_name(out)) + ", not " +
+                     std::string(graph::type_name(types[2]))};
+}
+
+}  // namespace
 
 std::vector<Row> math_rows() {
   using enum ir::Opcode;
@@ -18,7 +28,7 @@ std::vector<Row> math_rows() {
        {{"in1", FloatOrMatrix, "the first factor"}, {"in2", FloatOrMatrix, "the second factor"}},
        FloatOrMatrix,
        [](Site& s) {
-         s.out[0] = s.in[0].count > 1 ? s.call("mul", {s.in[0], s.in[1]}) : s.op(fmul, {s[0], s[1]});
+         s.out[0] = s.in[0].count > 1 ? s.call("matmul", {s.in[0], s.in[1]}) : s.op(fmul, {s[0], s[1]});
        }},
       {"divide",
        "`in1` / `in2`, correctly rounded. By zero: infinity, or NaN for 0 / 0.",
@@ -66,11 +76,12 @@ std::vector<Row> math_rows() {
        "`bg` at `mix` 0, `fg` at 1, in proportion between; both ends are exact.",
        {{"fg", AnyFloat, "the value at 1"},
         {"bg", AnyFloat, "the value at 0"},
-        {"mix", Float, "the share of `fg`"}},
+        {"mix", {float_types, Variable::u}, "the share of `fg`: a float, or one for each component"}},
        AnyFloat,
        [](Site& s) {
          s.out[0] = s.call("mix", {s.in[1], s.in[0], s.in[2]});
-       }},
+       },
+       share_fits},
       {"smoothstep",
        "0 up to `low`, 1 from `high` on, a smooth rise between.",
        {in,

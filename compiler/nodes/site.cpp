@@ -39,10 +39,12 @@ Value constant(ir::Builder& b, Type type, std::span<const uint32_t> bits) {
   std::array<ir::ValueId, 4> columns;
   const size_t count = column_count(type);
   for (size_t c = 0; c < count; ++c) {
+    const std::span<const uint32_t> words = bits.subspan(c * column.width, column.width);
     std::array<ir::ValueId, 4> floats;
-    for (size_t i = 0; i < column.width; ++i)
-      floats[i] = b.constant(std::bit_cast<float>(bits[c * column.width + i]));
-    columns[c] = b.construct(std::span(floats).first(column.width));
+    for (size_t i = 0; i < words.size(); ++i)
+      floats[i] =
+          i > 0 && words[i] == words[i - 1] ? floats[i - 1] : b.constant(std::bit_cast<float>(words[i]));
+    columns[c] = b.construct(std::span(floats).first(words.size()));
   }
   return Value(std::span<const ir::ValueId>(columns).first(count));
 }

@@ -34,13 +34,7 @@ std::vector<Row> vector_rows() {
        Vector,
        Function{"normalize"}},
       {"magnitude", "The length of `in`.", {{"in", Vector, "the vector"}}, Float, Function{"length"}},
-      {"distance",
-       "The length of `in1` - `in2`.",
-       {in1, in2},
-       Float,
-       [](Site& s) {
-         s.out[0] = s.call("length", {s.op(ir::Opcode::fsub, {s[0], s[1]})});
-       }},
+      {"distance", "The length of `in1` - `in2`.", {in1, in2}, Float, Function{"distance"}},
       {"reflect",
        "`in` mirrored at the plane with this normal: `in` - 2 (`normal` . `in`) `normal`.",
        {{"in", Vector, "a direction towards the surface"}, {"normal", Vector, "unit length"}},
@@ -59,7 +53,7 @@ std::vector<Row> vector_rows() {
         {"mat", {matrix_types, Variable::u}, "the matrix; literals are written column by column"}},
        {{"out", {only(Type::vector3) | only(Type::vector4), Variable::t}}},
        [](Site& s) {
-         s.out[0] = s.call("mul", {s.in[1], s.in[0]});
+         s.out[0] = s.call("transform", {s.in[1], s.in[0]});
        },
        matrix_fits},
   };
