@@ -16,7 +16,10 @@ constexpr int vertex_stride = lower::vertex_word::stride;
 constexpr uint32_t not_yet_stored = ~0u;
 constexpr float units = 256.0f;         // a pixel
 constexpr float farthest = 2097152.0f;  // 2^21: what a record holds, in units
-constexpr float guard = 8190.0f;        // pixels; what rasterisers were measured to be exact for
+// The guard band in pixels. Before the first pixel it is narrower: lavapipe keeps edge functions of triangles
+// that end in the first 64 x 64 pixels to 39 bits, which some that begin beyond -2832 exceed.
+constexpr float guard_before = max_before_image;
+constexpr float guard = 8190.0f;
 
 struct Point {
   float x, y, z, w;
@@ -54,9 +57,9 @@ class Viewport {
         half_width_(lanes::to_float(width) * 0.5f),
         half_height_(lanes::to_float(height) * 0.5f),
         right_(beyond(std::max(guard, lanes::to_float(width)) - half_width_, half_width_)),
-        left_(beyond(guard + half_width_, half_width_)),
+        left_(beyond(guard_before + half_width_, half_width_)),
         bottom_(beyond(std::max(guard, lanes::to_float(height)) - half_height_, half_height_)),
-        top_(beyond(guard + half_height_, half_height_)) {}
+        top_(beyond(guard_before + half_height_, half_height_)) {}
 
   Box pixels() const { return {0, 0, width_ - 1, height_ - 1}; }
 

@@ -14,6 +14,8 @@ enum class Cull : uint8_t { none, back, front };
 
 /// The largest image that positions in 1/256 pixel reach.
 inline constexpr int max_image_size = 8192;
+/// How far positions reach to the left of and above the image, in pixels.
+inline constexpr int max_before_image = 2048;
 
 /// One object after its vertex stage.
 struct Surface {
@@ -30,9 +32,9 @@ struct Surface {
 /// pixels.
 ///
 /// Left out are triangles that are culled, have no area, cover no pixel centre of the image, or have a vertex
-/// that is not finite. Vertices outside of the near plane or more than 8190 pixels left or right of, above or
-/// below the image's first pixel are clipped away. Triangles that share an edge share the two ends of what is
-/// left of it.
+/// that is not finite. Vertices outside of the near plane, more than 2048 pixels left of or above the image's
+/// first pixel, or more than 8190 right of or below it are clipped away. Triangles that share an edge share the
+/// two ends of what is left of it.
 void clip_and_snap(const Surface& surface, int width, int height, std::vector<float>& vertices,
                    std::vector<int32_t>& triangles);
 

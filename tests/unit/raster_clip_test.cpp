@@ -179,7 +179,10 @@ TEST(ClipAndSnap, KeepsPositionsWithinTheGuardBand) {
         clip.insert(clip.end(), {wide(random), wide(random), depth(random), wide(random)});
       const Clipped result = run(clip, one_triangle, Cull::none, size, size);
       for (int t = 0; t < result.count(); ++t)
-        for (int k = 0; k < 6; ++k) ASSERT_LE(std::abs(result.at(t, word::position + k)), 1 << 21);
+        for (int k = 0; k < 6; ++k) {
+          ASSERT_GE(result.at(t, word::position + k), -256 * max_before_image - 1);
+          ASSERT_LE(result.at(t, word::position + k), 1 << 21);
+        }
     }
 }
 
