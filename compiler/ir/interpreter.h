@@ -31,6 +31,8 @@ class Interpreter {
   /// The next runs stop after about this many steps in all. No limit unless set.
   void limit_steps(uint64_t steps) { steps_left_ = steps; }
 
+  uint64_t steps_left() const { return steps_left_; }
+
   /// Runs a function all of whose callees have bodies. Arguments and results are words, vectors flattened,
   /// bools 0 or 1; denormal float arguments are flushed, NaN results are 0x7fc00000. False if the steps did
   /// not suffice. After a function's first run, runs of it allocate nothing.

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/fold.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "compiler/ir/call_graph.h"
+#include "compiler/ir/evaluate.h"
+#include "compiler/ir/interpreter.h"
+#include "compiler/passes/editor.h"
+#include "compiler/passes/identities.h"
+#include "runtime/lanes/float_rules.h"
+
+namespace isoshade::passes {
+
+namespace {
+
+using namespace ir;
+
+// What a fold of a whole module may spend on calls, so that no document makes it hang.
+constexpr uint64_t step_budget = 20'000'000;
+constexpr uint64_t steps_per_call = 1'000'000;
+
+// Evaluates calls on constants. The copy of the module with all bodies is made for the first one.
+class CallEvaluator {
+ public:
+  CallEvaluator(const Module& module, Expand expand) : module_(module), expand_(expand) {}
+
+  /// False if the call must stay.
+  bool evaluate(uint32_t callee, std::span<const uint32_t> arguments, std::span<uint32_t> results) {
+    if (budget_ == 0 || (module_.functions[callee].is_declaration() && expand_ == nullptr)) return false;
+    if (!interpreter_) {
+      executable_ = module_;
+      if (expand_ != nullptr) expand_(executable_);
+      interpreter_.emplace(executable_, Preconditions::report);
+    }
+    if (!runnable(callee)) return false;
+    const uint64_t limit = std::min(budget_, steps_per_call);
+    interpreter_->limit_steps(limit);
+    const uint64_t breaches = interpreter_->breaches();
+    const bool ended = interpreter_->run(callee, arguments, results);
+    budget_ -= limit - interpreter_->steps_left();
+    return ended && interpreter_->breaches() == breaches;
+  }
+
+ private:
+  // Whether a function reaches no declaration and no buffer.
+  bool runnable(uint32_t function) {
+    if (runnable_.empty()) runnable_.resize(executable_.functions.size());
+    std::optional<bool>& known = runnable_[function];
+    if (!known) {
+      const std::array entries{function};
+      const auto reached = callees_first(executable_, entries);
+      known = std::all_of(reached->begin(), reached->end(), [&](uint32_t f) {
+        const auto& made = executable_.functions[f].instructions;
+        return !executable_.functions[f].is_declaration() &&
+               std::none_of(made.begin(), made.end(),
+                            [](const Instruction& i) { return i.op == Opcode::load; });
+      });
+    }
+    return *known;
+  }
+
+  const Module& module_;
+  Expand expand_;
+  Module executable_;
+  std::optional<Interpreter> interpreter_;
+  std::vector<std::optional<bool>> runnable_;  ///< by function
+  uint64_t budget_ = step_budget;
+};
+
+class Folder {
+ public:
+  Folder(Function& f, CallEvaluator& calls) : f_(f), edit_(f), calls_(calls) {}
+
+  void run() {
+    edit_.run([this](InstructionId id) { visit(id); });
+  }
+
+ private:
+  void visit(InstructionId id) {
+    const Instruction made = f_.instructions[id];
+    switch (made.op) {
+      case Opcode::constant:
+      case Opcode::load: return edit_.keep(id);
+      case Opcode::construct: return replace_or_keep(id, whole_vector(made));
+      case Opcode::extract: return replace_or_keep(id, component(made));
+      case Opcode::call: return call(id, made);
+      case Opcode::branch: return branch(id, made);
+      case Opcode::loop: return loop(id, made);
+      default: {
+        auto same = evaluated(made);
+        if (!same) same = identity(edit_, made);
+        return replace_or_keep(id, same);
+      }
+    }
+  }
+
+  void replace_or_keep(InstructionId id, std::optional<ValueId> with) {
+    if (with)
+      edit_.replace(f_.instructions[id].first_result, *with);
+    else
+      edit_.keep(id);
+  }
+
+  std::optional<ValueId> evaluated(const Instruction& made) {
+    const Type type = f_.type(made.first_result);
+    const OpInfo& row = info(made.op);
+    std::array<uint32_t, 4> words{};
+    for (uint32_t c = 0; c < type.width; ++c) {
+      std::array<uint32_t, 3> operands{};
+      for (uint32_t i = 0; i < made.operand_count; ++i) {
+        const ValueId operand = edit_.operand(made, i);
+        const auto bits = edit_.known(operand, f_.type(operand).width == 1 ? 0 : c);
+        if (!bits) return std::nullopt;
+        operands[i] = *bits;
+      }
+      if (!holds(row.precondition, operands[0], operands[1])) return std::nullopt;
+      words[c] = evaluate(made.op, operands[0], operands[1], operands[2]);
+    }
+    return edit_.constant(type, std::span(words).first(type.width));
+  }
+
+  // The vector all of whose components, in order, this constructs.
+  std::optional<ValueId> whole_vector(const Instruction& made) {
+    std::optional<ValueId> vector;
+    for (uint32_t c = 0; c < made.operand_count; ++c) {
+      const Instruction* from = edit_.definition(edit_.operand(made, c), Opcode::extract);
+      if (from == nullptr || from->imm != c) return std::nullopt;
+      const ValueId source = edit_.operand(*from, 0);
+      if (f_.type(source).width != made.operand_count || (vector && *vector != source)) return std::nullopt;
+      vector = source;
+    }
+    return vector;
+  }
+
+  std::optional<ValueId> component(const Instruction& made) {
+    const Instruction* vector = edit_.definition(edit_.operand(made, 0), Opcode::construct);
+    return vector != nullptr ? std::optional(edit_.operand(*vector, made.imm)) : std::nullopt;
+  }
+
+  void call(InstructionId id, const Instruction& made) {
+    std::vector<uint32_t> arguments;
+    for (uint32_t i = 0; i < made.operand_count; ++i) {
+      const ValueId operand = edit_.operand(made, i);
+      for (uint32_t c = 0; c < f_.type(operand).width; ++c) {
+        const auto bits = edit_.known(operand, c);
+        if (!bits) return edit_.keep(id);
+        arguments.push_back(*bits);
+      }
+    }
+    size_t size = 0;
+    for (uint32_t k = 0; k < made.result_count; ++k) size += f_.type(made.first_result + k).width;
+    std::vector<uint32_t> results(size);
+    if (!calls_.evaluate(made.imm, arguments, results)) return edit_.keep(id);
+    std::span<const uint32_t> rest(results);
+    for (uint32_t k = 0; k < made.result_count; ++k) {
+      const Type type = f_.type(made.first_result + k);
+      edit_.replace(made.first_result + k, edit_.constant(type, rest.first(type.width)));
+      rest = rest.subspan(type.width);
+    }
+  }
+
+  void branch(InstructionId id, const Instruction& made) {
+    if (const auto condition = edit_.known(edit_.operand(made, 0), 0))
+      return inline_block(made, made.blocks[*condition != 0 ? 0 : 1]);
+    edit_.keep(id);
+    edit_.descend(id);
+    for (uint32_t k = 0; k < made.result_count; ++k) {
+      const ValueId value = f_.blocks[made.blocks[0]].yields[k];
+      if (value == f_.blocks[made.blocks[1]].yields[k]) edit_.replace(made.first_result + k, value);
+    }
+  }
+
+  void loop(InstructionId id, const Instruction& made) {
+    const auto count = edit_.known(edit_.operand(made, 0), 0);
+    const bool never = count && static_cast<int32_t>(*count) <= 0;
+    const bool once = count && *count == 1;
+    if (never) {
+      for (uint32_t k = 0; k < made.result_count; ++k)
+        edit_.replace(made.first_result + k, edit_.operand(made, k + 1));
+    } else if (once) {
+      const std::vector<ValueId> parameters = f_.blocks[made.blocks[0]].parameters;
+      edit_.replace(parameters[0], edit_.constant(int_type, 0));
+      for (uint32_t k = 0; k < made.result_count; ++k)
+        edit_.replace(parameters[k + 1], edit_.operand(made, k + 1));
+      inline_block(made, made.blocks[0]);
+    } else {
+      edit_.keep(id);
+      edit_.descend(id);
+    }
+  }
+
+  void inline_block(const Instruction& made, BlockId block) {
+    edit_.inline_block(block);
+    for (uint32_t k = 0; k < made.result_count; ++k)
+      edit_.replace(made.first_result + k, f_.blocks[block].yields[k]);
+  }
+
+  Function& f_;
+  Editor edit_;
+  CallEvaluator& calls_;
+};
+
+}  // namespace
+
+void fold(ir::Module& module, Expand expand) {
+  const lanes::FpGuard guard;
+  CallEvaluator calls(module, expand);
+  for (Function& function : module.functions) {
+    if (function.is_declaration()) continue;
+    Function folded = function;  // the evaluator may copy the module meanwhile, and needs it whole
+    Folder(folded, calls).run();
+    function = std::move(folded);
+  }
+}
+
+}  // namespace isoshade::passes

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "compiler/ir/module.h"
+
+namespace isoshade::passes {
+
+/// Gives every declaration of a module its body; functions may be appended, the others keep their indices.
+/// Null: calls of declarations are not folded.
+using Expand = void (*)(ir::Module&);
+
+/// Replaces what is known before run time:
+/// - ops and calls on constants, by the interpreter (calls that read buffers or take very long remain), but
+/// not
+///   where a precondition fails;
+/// - what equals one of its operands, or a cheaper op, for every value of the language: NaN, infinities and
+/// both
+///   zeros included (identities.h);
+/// - a branch whose condition is constant by its side; results that both sides yield alike; a loop that runs
+/// never
+///   or once by its initial values or its body.
+/// Needs: a valid module. Leaves: the replaced instructions in no block (renumber drops them).
+void fold(ir::Module& module, Expand expand = nullptr);
+
+}  // namespace isoshade::passes

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/hide_foldables.h"
+
+#include <array>
+#include <optional>
+
+#include "compiler/ir/evaluate.h"
+#include "compiler/passes/editor.h"
+#include "runtime/lanes/float_rules.h"
+
+namespace isoshade::passes {
+
+namespace {
+
+using namespace ir;
+using Bits = std::optional<uint32_t>;
+
+bool is_zero(Bits bits) { return bits && (*bits & ~sign_bit) == 0; }
+
+// Whether an op on operands of which these bits are known leaves a driver something to fold.
+bool is_foldable(Opcode op, int arity, Bits a, Bits b) {
+  if (a && (arity == 1 || b)) return true;
+  switch (op) {
+    case Opcode::fmul: return is_zero(a) || is_zero(b);
+    case Opcode::fadd: return a == 0u || b == 0u;
+    case Opcode::fsub: return is_zero(a) || b == sign_bit;
+    default: return false;
+  }
+}
+
+class Hider {
+ public:
+  explicit Hider(Function& f) : f_(f), edit_(f) {}
+
+  void run() {
+    edit_.run([this](InstructionId id) { visit(id); });
+  }
+
+ private:
+  void visit(InstructionId id) {
+    const Instruction made = f_.instructions[id];
+    if (made.blocks[0] != none) {
+      edit_.keep(id);
+      return edit_.descend(id);
+    }
+    if (made.op == Opcode::ftoi) {
+      const Instruction* from = edit_.definition(edit_.operand(made, 0), Opcode::itof);
+      if (from != nullptr) return edit_.replace(made.first_result, truncated(edit_.operand(*from, 0)));
+    }
+    if (!is_primitive(made.op) || info(made.op).rule != Rule::same || !has_foldable(made))
+      return edit_.keep(id);
+    const uint32_t width = f_.type(made.first_result).width;
+    std::array<ValueId, 4> components;
+    for (uint32_t c = 0; c < width; ++c) components[c] = component(made, c);
+    edit_.replace(made.first_result, width == 1
+                                         ? components[0]
+                                         : edit_.make(Opcode::construct, std::span(components).first(width)));
+  }
+
+  Bits known(const Instruction& made, uint32_t operand, uint32_t component) const {
+    return operand < made.operand_count ? edit_.known(edit_.operand(made, operand), component) : std::nullopt;
+  }
+
+  bool has_foldable(const Instruction& made) const {
+    for (uint32_t c = 0; c < f_.type(made.first_result).width; ++c)
+      if (is_foldable(made.op, info(made.op).arity, known(made, 0, c), known(made, 1, c))) return true;
+    return false;
+  }
+
+  // One component of the result, without the shape.
+  ValueId component(const Instruction& made, uint32_t c) {
+    const Bits a = known(made, 0, c), b = known(made, 1, c);
+    const auto operand = [&](uint32_t i) { return edit_.component(edit_.operand(made, i), c); };
+    if (made.operand_count == 1)
+      return a ? literal(evaluate(made.op, *a, 0, 0)) : edit_.make(made.op, {operand(0)});
+    if (a && b) return literal(evaluate(made.op, *a, *b, 0));
+    switch (is_foldable(made.op, 2, a, b) ? made.op : Opcode::fdiv) {
+      case Opcode::fmul: return a ? times_zero(operand(1), *a) : times_zero(operand(0), *b);
+      case Opcode::fadd: return plus_zero(operand(a ? 1 : 0));
+      case Opcode::fsub: {
+        if (b) return plus_zero(operand(0));
+        const ValueId negative = edit_.make(Opcode::fneg, {operand(1)});
+        return *a == 0 ? plus_zero(negative) : negative;
+      }
+      default: return edit_.make(made.op, {operand(0), operand(1)});
+    }
+  }
+
+  ValueId literal(uint32_t bits) { return edit_.constant(float_type, bits); }
+  ValueId integer(uint32_t bits) { return edit_.constant(int_type, bits); }
+
+  ValueId times_zero(ValueId x, uint32_t zero) {
+    const ValueId bits = edit_.make(Opcode::fbits, {x});
+    const ValueId exponent = edit_.make(Opcode::iand, {bits, integer(infinity_bits)});
+    const ValueId huge = edit_.make(Opcode::ieq, {exponent, integer(infinity_bits)});
+    ValueId sign = edit_.make(Opcode::iand, {bits, integer(sign_bit)});
+    if (zero != 0) sign = edit_.make(Opcode::ixor, {sign, integer(sign_bit)});
+    const ValueId result = edit_.make(Opcode::select, {huge, integer(nan_bits), sign});
+    return edit_.make(Opcode::bitsf_normal, {result});
+  }
+
+  ValueId plus_zero(ValueId x) {
+    const ValueId bits = edit_.make(Opcode::fbits, {x});
+    const ValueId is_minus_zero = edit_.make(Opcode::ieq, {bits, integer(sign_bit)});
+    return edit_.make(Opcode::select, {is_minus_zero, literal(0), x});
+  }
+
+  ValueId truncated(ValueId i) {
+    const ValueId high = edit_.make(Opcode::itof, {edit_.make(Opcode::isar, {i, integer(16)})});
+    const ValueId low = edit_.make(Opcode::itof, {edit_.make(Opcode::iand, {i, integer(0xffff)})});
+    const ValueId scaled = edit_.make(Opcode::fmul, {high, literal(0x47800000)});  // 65536
+    return edit_.make(Opcode::ftoi, {edit_.make(Opcode::fadd, {scaled, low})});
+  }
+
+  Function& f_;
+  Editor edit_;
+};
+
+}  // namespace
+
+void hide_foldables(ir::Module& module) {
+  const lanes::FpGuard guard;
+  for (Function& function : module.functions)
+    if (!function.is_declaration()) Hider(function).run();
+}
+
+}  // namespace isoshade::passes

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/pipeline.h"
+
+#include <string>
+
+#include "compiler/functions/library.h"
+#include "compiler/ir/printer.h"
+#include "compiler/ir/validator.h"
+#include "compiler/passes/cse.h"
+#include "compiler/passes/dce.h"
+#include "compiler/passes/exact_division.h"
+#include "compiler/passes/fold.h"
+#include "compiler/passes/hide_foldables.h"
+#include "compiler/passes/renumber.h"
+#include "compiler/passes/specialize.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::passes {
+
+namespace {
+
+void run_renumber(ir::Module& m, Entries&) { renumber(m); }
+void run_fold(ir::Module& m, Entries&) { fold(m, functions::expand); }
+void run_cse(ir::Module& m, Entries&) { cse(m); }
+void run_expand(ir::Module& m, Entries&) { functions::expand(m); }
+void run_specialize(ir::Module& m, Entries&) { specialize(m); }
+void run_hide(ir::Module& m, Entries&) { hide_foldables(m); }
+void run_exact_division(ir::Module& m, Entries&) { exact_division(m); }
+
+constexpr Pass optimisation_table[] = {
+    {"renumber", run_renumber,
+     "lowering leaves the order open; all after it sees one order and nothing dead"},
+    {"fold", run_fold, "functions of constants are evaluated whole, while calls are calls"},
+    {"cse", run_cse, "folding makes equal constants and operands"},
+    {"renumber", run_renumber, "drops what fold and cse replaced, and the calls in it"},
+    {"dce", dce, "no body is made for what nobody calls"},
+    {"expand", run_expand, "all that reasons about functions has seen them"},
+    {"fold", run_fold, "bodies are templates: they have constants to fold"},
+    {"specialize", run_specialize, "only bodies can take constants in"},
+    {"hide_foldables", run_hide, "after the last fold, which could bring the shapes back"},
+    {"cse", run_cse, "bodies compute things twice, and hidden shapes share their bits"},
+    {"renumber", run_renumber, "what is printed is in canonical order"},
+    {"dce", dce, "no function that folding made useless, callees before callers"},
+};
+
+constexpr Pass division_table[] = {
+    {"exact_division", run_exact_division, "calls instead of the two ops"},
+    {"expand", run_expand, "the called functions"},
+    {"fold", run_fold,
+     "their constants; folding cannot have a division of constants left, so none is hidden again"},
+    {"specialize", run_specialize, "1 / x calls with a constant"},
+    {"hide_foldables", run_hide, "shapes in the new bodies"},
+    {"cse", run_cse, "the new bodies compute things twice"},
+    {"renumber", run_renumber, "canonical order"},
+    {"dce", dce, "callees before callers"},
+};
+
+#ifdef NDEBUG
+constexpr bool always_check = false;
+#else
+constexpr bool always_check = true;
+#endif
+
+}  // namespace
+
+std::span<const Pass> optimisations() { return optimisation_table; }
+std::span<const Pass> division_lowering() { return division_table; }
+
+void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, const Dump& dump, bool check) {
+  for (const Pass& pass : passes) {
+    pass.run(module, entries);
+    if (dump) dump(pass.name, module);
+    if (!check && !always_check) continue;
+    if (const std::string breach = ir::validate(module); !breach.empty())
+      support::bug(std::string(pass.name) + " left an invalid module: " + breach);
+  }
+}
+
+}  // namespace isoshade::passes

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The passes in their order.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "compiler/ir/module.h"
+
+namespace isoshade::passes {
+
+/// The functions that are run from outside; dce changes the indices.
+using Entries = std::vector<uint32_t>;
+
+/// One line of a pipeline.
+struct Pass {
+  std::string_view name;
+  void (*run)(ir::Module&, Entries&);
+  std::string_view reason;  ///< why it stands where it stands
+};
+
+/// From what lowering made to what is printed: no declaration, nothing dead, nothing that a driver would
+/// fold.
+std::span<const Pass> optimisations();
+/// After `optimisations`, for devices whose `/` and `sqrt` are not correctly rounded.
+std::span<const Pass> division_lowering();
+
+/// Called after each pass with its name.
+using Dump = std::function<void(std::string_view pass, const ir::Module&)>;
+
+/// Runs the passes in order. With `check` (always in debug builds) a pass that leaves an invalid module is a
+/// bug.
+void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, const Dump& dump = {},
+         bool check = false);
+
+}  // namespace isoshade::passes

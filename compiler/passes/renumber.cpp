@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/renumber.h"
+
+#include <map>
+#include <utility>
+
+namespace isoshade::passes {
+
+namespace {
+
+using namespace ir;
+
+// Where a value is defined.
+struct Place {
+  BlockId block = none;
+  InstructionId instruction = none;  ///< whose result it is, or whose block's parameter; none: the function's
+  uint32_t position = 0;             ///< among the results or parameters
+  bool is_parameter = false;
+};
+
+std::vector<Place> find_places(const Function& f) {
+  std::vector<Place> places(f.values.size());
+  const auto enter = [&](const auto& self, BlockId block, InstructionId owner) -> void {
+    const std::vector<ValueId>& parameters = f.blocks[block].parameters;
+    for (uint32_t k = 0; k < parameters.size(); ++k) places[parameters[k]] = {block, owner, k, true};
+    for (InstructionId id : f.blocks[block].instructions) {
+      const Instruction& made = f.instructions[id];
+      for (uint32_t k = 0; k < made.result_count; ++k) places[made.first_result + k] = {block, id, k, false};
+      for (BlockId inner : made.blocks)
+        if (inner != none) self(self, inner, id);
+    }
+  };
+  enter(enter, 0, none);
+  return places;
+}
+
+// Which values are needed, each by itself: an unused result of a branch or loop does not keep its yields
+// alive.
+class Liveness {
+ public:
+  Liveness(const Function& f, const std::vector<Place>& places)
+      : f_(f), places_(places), live_(f.values.size(), false) {
+    for (ValueId value : f.blocks[0].yields) mark(value);
+    while (!work_.empty()) {
+      const Place& place = places_[work_.back()];
+      work_.pop_back();
+      if (place.instruction != none) follow(place);
+    }
+  }
+
+  /// Whether a branch or loop keeps its k-th result.
+  bool keeps(const Instruction& made, uint32_t k) const {
+    return live_[made.first_result + k] ||
+           (made.op == Opcode::loop && live_[f_.blocks[made.blocks[0]].parameters[k + 1]]);
+  }
+
+ private:
+  void mark(ValueId value) {
+    if (live_[value]) return;
+    live_[value] = true;
+    work_.push_back(value);
+  }
+
+  void follow(const Place& place) {
+    const Instruction& made = f_.instructions[place.instruction];
+    const auto operands = f_.operands_of(made);
+    if (made.op == Opcode::branch) {
+      mark(operands[0]);
+      for (BlockId side : made.blocks) mark(f_.blocks[side].yields[place.position]);
+    } else if (made.op == Opcode::loop) {
+      const Block& body = f_.blocks[made.blocks[0]];
+      mark(operands[0]);
+      if (place.is_parameter && place.position == 0) return;
+      const uint32_t k = place.is_parameter ? place.position - 1 : place.position;
+      mark(operands[k + 1]);
+      mark(body.yields[k]);
+      mark(body.parameters[k + 1]);
+    } else {
+      for (ValueId operand : operands) mark(operand);
+    }
+  }
+
+  const Function& f_;
+  const std::vector<Place>& places_;
+  std::vector<bool> live_;
+  std::vector<ValueId> work_;
+};
+
+class Renumberer {
+ public:
+  explicit Renumberer(const Function& f)
+      : f_(f),
+        places_(find_places(f)),
+        live_(f, places_),
+        uses_(f.instructions.size()),
+        order_(f.blocks.size()) {}
+
+  Function run() {
+    out_.name = f_.name;
+    out_.document = f_.document;
+    out_.library = f_.library;
+    out_.parameters = f_.parameters;
+    out_.results = f_.results;
+    values_.assign(f_.values.size(), none);
+    arrange(0, none);
+    out_.blocks.emplace_back();
+    for (ValueId parameter : f_.blocks[0].parameters)
+      out_.blocks[0].parameters.push_back(add_value(parameter));
+    emit(0, 0, none);
+    return std::move(out_);
+  }
+
+ private:
+  // What of a branch's or loop's yields remains; every other list remains whole.
+  template <class Use>
+  void for_live(InstructionId owner, std::span<const ValueId> list, uint32_t skip, Use use) const {
+    for (uint32_t i = 0; i < list.size(); ++i)
+      if (owner == none || i < skip || live_.keeps(f_.instructions[owner], i - skip)) use(list[i]);
+  }
+
+  // Puts the needed instructions of a block in order; returns what it uses from outside, in order of first
+  // use.
+  std::vector<ValueId> arrange(BlockId block, InstructionId owner) {
+    std::vector<ValueId> outer;
+    struct Visit {
+      InstructionId instruction;
+      size_t next;
+    };
+    std::vector<Visit> path;
+    const auto reach = [&](ValueId value) {
+      const Place& place = places_[value];
+      if (place.block != block) {
+        outer.push_back(value);
+      } else if (!place.is_parameter && uses_[place.instruction].empty()) {
+        open(place.instruction);
+        path.push_back({place.instruction, 0});
+      }
+    };
+    for_live(owner, f_.blocks[block].yields, 0, [&](ValueId yield) {
+      reach(yield);
+      while (!path.empty()) {
+        Visit& visit = path.back();
+        const std::vector<ValueId>& uses = uses_[visit.instruction];
+        if (uses[visit.next] != none) {
+          reach(uses[visit.next++]);
+        } else {
+          order_[block].push_back(visit.instruction);
+          path.pop_back();
+        }
+      }
+    });
+    return unique(outer, block);
+  }
+
+  // Lists what an instruction uses: its operands, then what its blocks use from outside; ends with `none`.
+  void open(InstructionId id) {
+    const Instruction& made = f_.instructions[id];
+    std::vector<ValueId> uses;
+    const bool is_loop = made.op == Opcode::loop;
+    for_live(is_loop ? id : none, f_.operands_of(made), 1, [&](ValueId value) { uses.push_back(value); });
+    for (BlockId inner : made.blocks) {
+      if (inner == none) continue;
+      const std::vector<ValueId> outer = arrange(inner, id);
+      uses.insert(uses.end(), outer.begin(), outer.end());
+    }
+    uses.push_back(none);
+    uses_[id] = std::move(uses);
+  }
+
+  std::vector<ValueId> unique(const std::vector<ValueId>& list, BlockId block) {
+    if (seen_in_.empty()) seen_in_.assign(f_.values.size(), none);
+    std::vector<ValueId> once;
+    for (ValueId value : list)
+      if (std::exchange(seen_in_[value], block) != block) once.push_back(value);
+    return once;
+  }
+
+  ValueId add_value(ValueId old) {
+    out_.values.push_back(f_.values[old]);
+    return values_[old] = static_cast<ValueId>(out_.values.size() - 1);
+  }
+
+  uint32_t origin(uint32_t old) {
+    if (old == 0) return 0;
+    const Origin& origin = f_.origins[old];
+    const auto [it, added] = origins_.try_emplace({origin.node, origin.line}, out_.origins.size());
+    if (added) out_.origins.push_back(origin);
+    return it->second;
+  }
+  void rename(ValueId value) { out_.values[value].names = origin(out_.values[value].names); }
+
+  void emit(BlockId from, BlockId to, InstructionId owner) {
+    for (InstructionId id : order_[from]) {
+      const Instruction& made = f_.instructions[id];
+      const bool is_loop = made.op == Opcode::loop;
+      Instruction copy = made;
+      copy.origin = origin(made.origin);
+      copy.first_operand = static_cast<uint32_t>(out_.operands.size());
+      for_live(is_loop ? id : none, f_.operands_of(made), 1,
+               [&](ValueId v) { out_.operands.push_back(values_[v]); });
+      copy.operand_count = static_cast<uint32_t>(out_.operands.size()) - copy.first_operand;
+      copy.first_result = static_cast<ValueId>(out_.values.size());
+      copy.result_count = 0;
+      for (uint32_t k = 0; k < made.result_count; ++k) {
+        if (made.blocks[0] != none && !live_.keeps(made, k)) continue;
+        rename(add_value(made.first_result + k));
+        ++copy.result_count;
+      }
+      copy.blocks = {none, none};
+      const auto copied = static_cast<InstructionId>(out_.instructions.size());
+      out_.instructions.push_back(copy);
+      out_.blocks[to].instructions.push_back(copied);
+      for (size_t side = 0; side < made.blocks.size() && made.blocks[side] != none; ++side) {
+        const auto inner = static_cast<BlockId>(out_.blocks.size());
+        out_.blocks.emplace_back();
+        out_.instructions[copied].blocks[side] = inner;
+        for_live(id, f_.blocks[made.blocks[side]].parameters, 1, [&](ValueId parameter) {
+          out_.blocks[inner].parameters.push_back(add_value(parameter));
+          rename(values_[parameter]);
+        });
+        emit(made.blocks[side], inner, id);
+      }
+    }
+    for_live(owner, f_.blocks[from].yields, 0,
+             [&](ValueId v) { out_.blocks[to].yields.push_back(values_[v]); });
+  }
+
+  const Function& f_;
+  const std::vector<Place> places_;
+  const Liveness live_;
+  std::vector<std::vector<ValueId>>
+      uses_;  ///< by instruction: empty until it is reached, then ends with none
+  std::vector<std::vector<InstructionId>> order_;  ///< by block
+  std::vector<BlockId> seen_in_;                   ///< by value: the last block found to use it from outside
+  std::vector<ValueId> values_;                    ///< by old value: the new one
+  std::map<std::pair<std::string, uint32_t>, uint32_t> origins_;
+  Function out_;
+};
+
+}  // namespace
+
+void renumber(ir::Module& module) {
+  for (Function& function : module.functions)
+    if (!function.is_declaration()) function = Renumberer(function).run();
+}
+
+}  // namespace isoshade::passes

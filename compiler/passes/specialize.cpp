@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/specialize.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "compiler/passes/fold.h"
+#include "compiler/passes/renumber.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::passes {
+
+namespace {
+
+/// The words of a constant argument; nothing: it is no constant.
+using Words = std::optional<std::vector<uint32_t>>;
+
+class Specializer {
+ public:
+  explicit Specializer(ir::Module& module) : module_(module) {}
+
+  /// One level of calls; whether there was any to specialize.
+  bool step() {
+    find_arithmetic();
+    bool changed = false;
+    // Clones go to the end of the list; their own calls are the next step's.
+    const size_t count = module_.functions.size();
+    for (size_t f = 0; f < count; ++f) changed |= specialize_calls(f);
+    return changed;
+  }
+
+ private:
+  static bool is_arithmetic(ir::Opcode op) {
+    return ir::is_primitive(op) && ir::info(op).rule == ir::Rule::same && op != ir::Opcode::fneg &&
+           op != ir::Opcode::fabs && op != ir::Opcode::floor;
+  }
+
+  void find_arithmetic() {
+    arithmetic_.assign(module_.functions.size(), std::nullopt);
+    for (size_t f = 0; f < module_.functions.size(); ++f) has_arithmetic(f);
+  }
+
+  bool has_arithmetic(size_t f) {
+    if (arithmetic_[f]) return *arithmetic_[f];
+    bool found = false;
+    for (const ir::Instruction& instruction : module_.functions[f].instructions)
+      found = found || is_arithmetic(instruction.op) ||
+              (instruction.op == ir::Opcode::call && has_arithmetic(instruction.imm));
+    arithmetic_[f] = found;
+    return found;
+  }
+
+  /// The instruction that makes each value; none for parameters.
+  static std::vector<ir::InstructionId> definitions(const ir::Function& function) {
+    std::vector<ir::InstructionId> made(function.values.size(), ir::none);
+    for (ir::InstructionId id = 0; id < function.instructions.size(); ++id) {
+      const ir::Instruction& instruction = function.instructions[id];
+      for (uint32_t i = 0; i < instruction.result_count; ++i) made[instruction.first_result + i] = id;
+    }
+    return made;
+  }
+
+  static Words constant_words(const ir::Function& function, const std::vector<ir::InstructionId>& made,
+                              ir::ValueId value) {
+    if (made[value] == ir::none) return std::nullopt;
+    const ir::Instruction& instruction = function.instructions[made[value]];
+    if (instruction.op == ir::Opcode::constant) return std::vector{instruction.imm};
+    if (instruction.op != ir::Opcode::construct) return std::nullopt;
+    std::vector<uint32_t> words;
+    for (ir::ValueId component : function.operands_of(instruction)) {
+      const Words word = constant_words(function, made, component);
+      if (!word) return std::nullopt;
+      words.push_back(word->front());
+    }
+    return words;
+  }
+
+  bool specialize_calls(size_t f) {
+    bool changed = false;
+    std::vector<ir::InstructionId> made;
+    for (size_t i = 0; i < module_.functions[f].instructions.size(); ++i) {
+      const ir::Instruction call = module_.functions[f].instructions[i];
+      if (call.op != ir::Opcode::call || !has_arithmetic(call.imm)) continue;
+      if (made.empty()) made = definitions(module_.functions[f]);
+      std::vector<Words> arguments;
+      bool any = false;
+      for (ir::ValueId operand : module_.functions[f].operands_of(call)) {
+        arguments.push_back(constant_words(module_.functions[f], made, operand));
+        any = any || arguments.back().has_value();
+      }
+      if (!any || call.operand_count == 0) continue;
+      const uint32_t callee = clone_for(call.imm, arguments);
+      // The remaining arguments move to the front of the call's operands.
+      ir::Function& caller = module_.functions[f];
+      ir::Instruction& instruction = caller.instructions[i];
+      instruction.imm = callee;
+      uint32_t kept = 0;
+      for (uint32_t a = 0; a < call.operand_count; ++a)
+        if (!arguments[a]) caller.operands[call.first_operand + kept++] = caller.operands[call.first_operand + a];
+      instruction.operand_count = kept;
+      changed = true;
+    }
+    return changed;
+  }
+
+  uint32_t clone_for(uint32_t callee, const std::vector<Words>& arguments) {
+    const auto [entry, is_new] = clones_.try_emplace({callee, arguments}, 0);
+    if (!is_new) return entry->second;
+    ir::Function clone = module_.functions[callee];
+    clone.library.clear();
+    clone.name = free_name(clone.name);
+    bind(clone, arguments);
+    module_.functions.push_back(std::move(clone));
+    arithmetic_.push_back(arithmetic_[callee]);
+    return entry->second = static_cast<uint32_t>(module_.functions.size() - 1);
+  }
+
+  std::string free_name(const std::string& name) {
+    std::string free;
+    do {
+      free = name + "_" + std::to_string(++numbers_[name]);
+    } while (module_.find(free) != ir::none);
+    return free;
+  }
+
+  /// Makes parameters constants: each keeps its value's id, which an instruction at the head now defines.
+  static void bind(ir::Function& function, const std::vector<Words>& arguments) {
+    std::vector<ir::Parameter> parameters;
+    std::vector<ir::ValueId> values;
+    std::vector<ir::InstructionId> head;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+      const ir::ValueId value = function.blocks[0].parameters[i];
+      if (!arguments[i]) {
+        parameters.push_back(function.parameters[i]);
+        values.push_back(value);
+      } else {
+        define(function, value, *arguments[i], head);
+      }
+    }
+    function.parameters = std::move(parameters);
+    function.blocks[0].parameters = std::move(values);
+    auto& instructions = function.blocks[0].instructions;
+    instructions.insert(instructions.begin(), head.begin(), head.end());
+  }
+
+  static void define(ir::Function& function, ir::ValueId value, const std::vector<uint32_t>& words,
+                     std::vector<ir::InstructionId>& head) {
+    const auto append = [&](const ir::Instruction& instruction) {
+      function.instructions.push_back(instruction);
+      head.push_back(static_cast<ir::InstructionId>(function.instructions.size() - 1));
+    };
+    ir::Instruction constant;
+    constant.op = ir::Opcode::constant;
+    if (words.size() == 1) {
+      constant.imm = words[0];
+      constant.first_result = value;
+      return append(constant);
+    }
+    ir::Instruction construct;
+    construct.op = ir::Opcode::construct;
+    construct.first_operand = static_cast<uint32_t>(function.operands.size());
+    construct.operand_count = static_cast<uint32_t>(words.size());
+    construct.first_result = value;
+    for (uint32_t word : words) {
+      function.values.push_back({ir::float_type, 0});
+      constant.imm = word;
+      constant.first_result = static_cast<ir::ValueId>(function.values.size() - 1);
+      append(constant);
+    }
+    for (size_t i = 0; i < words.size(); ++i)
+      function.operands.push_back(static_cast<ir::ValueId>(function.values.size() - words.size() + i));
+    append(construct);
+  }
+
+  ir::Module& module_;
+  std::vector<std::optional<bool>> arithmetic_;
+  std::map<std::pair<uint32_t, std::vector<Words>>, uint32_t> clones_;
+  std::map<std::string, int> numbers_;
+};
+
+}  // namespace
+
+void specialize(ir::Module& module) {
+  Specializer specializer(module);
+  // Folding a clone makes further arguments constant, one level of calls deeper each time.
+  while (specializer.step()) {
+    fold(module);
+    renumber(module);
+  }
+}
+
+}  // namespace isoshade::passes

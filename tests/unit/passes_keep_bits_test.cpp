@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// The promise of every pass: no bit of any result changes, whatever the module and the inputs.
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "compiler/functions/library.h"
+#include "compiler/ir/interpreter.h"
+#include "compiler/ir/printer.h"
+#include "compiler/ir/validator.h"
+#include "compiler/passes/cse.h"
+#include "compiler/passes/dce.h"
+#include "compiler/passes/fold.h"
+#include "compiler/passes/hide_foldables.h"
+#include "compiler/passes/pipeline.h"
+#include "compiler/passes/renumber.h"
+#include "tests/unit/random_module.h"
+
+namespace isoshade::passes {
+namespace {
+
+using ir::Module;
+using ir::RandomModule;
+using Words = std::vector<uint32_t>;
+
+constexpr int inputs_per_module = 24;
+
+// What the module's `main` gives on random inputs.
+std::vector<Words> outcomes(const Module& module, uint64_t seed) {
+  RandomModule random(seed);
+  const uint32_t main = module.find("main");
+  const ir::Function& function = module.functions[main];
+  const Words floats = random.buffer_words(5), ints = random.buffer_words(7);
+  ir::Interpreter interpreter(module, ir::Preconditions::report);
+  interpreter.bind(0, floats);
+  interpreter.bind(1, ints);
+  size_t size = 0;
+  for (const ir::Result& result : function.results) size += result.type.width;
+  std::vector<Words> all;
+  for (int i = 0; i < inputs_per_module; ++i) {
+    all.emplace_back(size);
+    EXPECT_TRUE(interpreter.run(main, random.words(function.parameters), all.back()));
+  }
+  return all;
+}
+
+Module with_bodies(Module module) {
+  functions::expand(module);
+  return module;
+}
+
+template <class Change>
+void expect_same_bits(int modules, bool library_calls, Change change) {
+  for (int seed = 0; seed < modules; ++seed) {
+    const Module before = RandomModule(static_cast<uint64_t>(seed)).make(library_calls);
+    ASSERT_EQ(ir::validate(before), "") << ir::print(before);
+    Module after = before;
+    change(after, static_cast<uint64_t>(seed));
+    ASSERT_EQ(ir::validate(after), "") << "seed " << seed << "\n" << ir::print(before) << ir::print(after);
+    const auto input_seed = static_cast<uint64_t>(seed) + 1'000'000;
+    ASSERT_EQ(outcomes(with_bodies(before), input_seed), outcomes(with_bodies(after), input_seed))
+        << "seed " << seed << "\n"
+        << ir::print(before) << "\nbecame\n\n"
+        << ir::print(after);
+  }
+}
+
+TEST(PassesKeepEveryBit, Renumber) {
+  expect_same_bits(1500, false, [](Module& m, uint64_t) { renumber(m); });
+}
+
+TEST(PassesKeepEveryBit, Cse) {
+  expect_same_bits(1500, false, [](Module& m, uint64_t) { cse(m); });
+}
+
+TEST(PassesKeepEveryBit, Fold) {
+  expect_same_bits(3000, false, [](Module& m, uint64_t) { fold(m); });
+}
+
+TEST(PassesKeepEveryBit, FoldOfLibraryCalls) {
+  expect_same_bits(1000, true, [](Module& m, uint64_t) { fold(m, functions::expand); });
+}
+
+TEST(PassesKeepEveryBit, HideFoldables) {
+  expect_same_bits(3000, false, [](Module& m, uint64_t) { hide_foldables(m); });
+}
+
+TEST(PassesKeepEveryBit, AnySequence) {
+  expect_same_bits(3000, false, [](Module& m, uint64_t seed) {
+    RandomModule random(seed + 77);
+    for (int i = 0; i < 8; ++i) {
+      Entries entries{m.find("main")};
+      switch (random.below(5)) {
+        case 0: renumber(m); break;
+        case 1: cse(m); break;
+        case 2: fold(m); break;
+        case 3: hide_foldables(m); break;
+        default: renumber(m), dce(m, entries);
+      }
+      ASSERT_EQ(ir::validate(m), "");
+    }
+  });
+}
+
+TEST(PassesKeepEveryBit, BothPipelines) {
+  expect_same_bits(1000, true, [](Module& m, uint64_t) {
+    Entries entries{m.find("main")};
+    run(optimisations(), m, entries, {}, true);
+    EXPECT_EQ(m.functions[entries[0]].name, "main");
+    run(division_lowering(), m, entries, {}, true);
+    for (const ir::Function& function : m.functions)
+      for (const ir::Instruction& instruction : function.instructions)
+        EXPECT_TRUE(instruction.op != ir::Opcode::fdiv && instruction.op != ir::Opcode::fsqrt);
+  });
+}
+
+}  // namespace
+}  // namespace isoshade::passes
