@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/vulkan/backend.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+
+#include "backends/vulkan/device.h"
+#include "backends/vulkan/limits.h"
+#include "backends/vulkan/shaders.h"
+#include "compiler/driver/driver.h"
+#include "compiler/support/check.h"
+#include "compiler/support/visible.h"
+
+namespace isoshade::vulkan {
+
+namespace {
+
+using backends::Draw;
+using backends::Frame;
+using backends::Image;
+using driver::Program;
+using driver::Stage;
+using lower::FrameBuffer;
+using support::Diagnostics;
+
+size_t words(const std::vector<driver::Field>& fields) {
+  size_t sum = 0;
+  for (const driver::Field& field : fields) sum += static_cast<size_t>(field.words);
+  return sum;
+}
+
+/// Uploads an array, or reports that it is larger than the device allows.
+template <class T>
+bool upload(Device& device, FrameBuffer buffer, std::span<const T> data, Diagnostics& diagnostics) {
+  if (data.size_bytes() > device.max_buffer_bytes()) {
+    const std::string name(lower::frame_buffers[static_cast<size_t>(buffer)].name);
+    diagnostics.report(support::Id::device_limit, "the " + name + " of the scene take " +
+                                                      std::to_string(data.size_bytes()) + " bytes; " +
+                                                      device.info().name + " allows " +
+                                                      std::to_string(device.max_buffer_bytes()));
+    return false;
+  }
+  device.upload(buffer, data.data(), data.size_bytes());
+  return true;
+}
+
+/// The pixels that triangles of each program may cover, within the frame.
+std::vector<Rect> bounds_of_programs(const Frame& frame, std::span<const int32_t> triangles) {
+  struct Bounds {
+    int x0 = guard_band, y0 = guard_band, x1 = 0, y1 = 0;
+  };
+  std::vector<Bounds> bounds(frame.programs.size());
+  for (size_t at = 0; at < triangles.size(); at += lower::triangle_word::stride) {
+    const int32_t* triangle = triangles.data() + at;
+    const auto object = static_cast<size_t>(triangle[lower::triangle_word::object] >> 1);
+    const auto program = static_cast<size_t>(frame.objects[object + lower::object_word::program]);
+    support::check(program < bounds.size(), "an object has a program that the frame lacks");
+    Bounds& box = bounds[program];
+    for (int corner = 0; corner < 3; ++corner) {
+      const int32_t* position = triangle + lower::triangle_word::position + 2 * corner;
+      box.x0 = std::min(box.x0, position[0] >> 8);
+      box.y0 = std::min(box.y0, position[1] >> 8);
+      box.x1 = std::max(box.x1, (position[0] >> 8) + 1);
+      box.y1 = std::max(box.y1, (position[1] >> 8) + 1);
+    }
+  }
+  std::vector<Rect> rects;
+  for (const Bounds& box : bounds) {
+    const int x0 = std::max(box.x0, 0), y0 = std::max(box.y0, 0);
+    const int x1 = std::min(box.x1, frame.width), y1 = std::min(box.y1, frame.height);
+    rects.push_back({x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)});
+  }
+  return rects;
+}
+
+/// The vertices [first, first + count) of draw `draw`, and where their positions come to lie.
+struct VertexChunk {
+  size_t draw;
+  uint32_t first;
+  uint32_t count;
+  size_t output;  ///< in vertices
+};
+
+/// Cuts the draws into runs of at most `capacity` vertices.
+std::vector<std::vector<VertexChunk>> vertex_runs(const Frame& frame, size_t capacity) {
+  std::vector<std::vector<VertexChunk>> runs;
+  size_t used = capacity;
+  for (size_t d = 0; d < frame.draws.size(); ++d) {
+    uint32_t done = 0;
+    while (done < frame.draws[d].vertex_count) {
+      if (used == capacity) {
+        runs.emplace_back();
+        used = 0;
+      }
+      const auto count =
+          static_cast<uint32_t>(std::min<size_t>(frame.draws[d].vertex_count - done, capacity - used));
+      runs.back().push_back({d, done, count, used});
+      done += count;
+      used += count;
+    }
+  }
+  return runs;
+}
+
+}  // namespace
+
+VulkanBackend::VulkanBackend(Options options, std::unique_ptr<Device> device)
+    : options_(std::move(options)), device_(std::move(device)) {}
+
+VulkanBackend::~VulkanBackend() = default;
+
+const DeviceInfo& VulkanBackend::device() const { return device_->info(); }
+
+std::string VulkanBackend::description() const {
+  return device().name + ", " + device().driver + ", " +
+         (division_ == driver::Division::native ? "native" : "exact") + " division" +
+         (device_->validates() ? ", validated" : "");
+}
+
+/// Runs `work`; what Vulkan threw or the validation layers said becomes a diagnostic.
+template <class Work>
+bool VulkanBackend::guarded(Diagnostics& diagnostics, Work work) {
+  bool succeeded = false;
+  try {
+    succeeded = work();
+  } catch (const std::exception& error) {
+    diagnostics.report(support::Id::device_failed, device().name + ": " + error.what());
+  }
+  for (const std::string& message : device_->take_messages()) {
+    diagnostics.report(support::Id::validation, support::visible(message));
+    succeeded = false;
+  }
+  return succeeded;
+}
+
+bool VulkanBackend::upload_frame(const Frame& frame, std::span<const float> vertices,
+                                 Diagnostics& diagnostics) {
+  return upload(*device_, FrameBuffer::vertices, vertices, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::objects, frame.objects, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::lights, frame.lights, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::frame, frame.frame, diagnostics);
+}
+
+bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+                              Diagnostics& diagnostics) {
+  return guarded(diagnostics, [&] {
+    if (!upload_frame(frame, frame.vertices, diagnostics)) return false;
+    std::vector<std::optional<PipelineIndex>> pipelines(frame.programs.size());
+    clip.resize(frame.draws.size());
+    for (size_t d = 0; d < frame.draws.size(); ++d) {
+      clip[d].resize(size_t{4} * frame.draws[d].vertex_count);
+      std::optional<PipelineIndex>& pipeline = pipelines[frame.draws[d].vertex_program];
+      if (pipeline) continue;
+      const Program& program = *frame.programs[frame.draws[d].vertex_program];
+      pipeline = device_->pipeline({Target::buffer, 0, options_.glsl(program, division_), {}}, diagnostics);
+      if (!pipeline) return false;
+    }
+
+    const size_t capacity = std::min(max_output_words, device_->max_buffer_bytes() / sizeof(int32_t)) / 4;
+    std::vector<int32_t> output;
+    for (const std::vector<VertexChunk>& run : vertex_runs(frame, capacity)) {
+      std::vector<Call> calls;
+      for (const VertexChunk& chunk : run) {
+        const Draw& draw = frame.draws[chunk.draw];
+        const uint32_t first = draw.first_vertex + chunk.first;
+        calls.push_back({.pipeline = *pipelines[draw.vertex_program],
+                         .push = {.object = draw.object,
+                                  .light_count = frame.light_count,
+                                  .first = static_cast<int32_t>(first),
+                                  .count = static_cast<int32_t>(chunk.output)},
+                         .first_vertex = first,
+                         .vertex_count = chunk.count,
+                         .scissor = {0, 0, 1, 1}});
+      }
+      output.resize(4 * (run.back().output + run.back().count));
+      device_->run_vertices(calls, output);
+      for (const VertexChunk& chunk : run)
+        std::memcpy(clip[chunk.draw].data() + size_t{4} * chunk.first, output.data() + 4 * chunk.output,
+                    size_t{4} * chunk.count * sizeof(float));
+    }
+    return true;
+  });
+}
+
+bool VulkanBackend::draw(const Frame& frame, std::span<const float> vertices,
+                         std::span<const int32_t> triangles, Image& image, Diagnostics& diagnostics) {
+  return guarded(diagnostics, [&] {
+    if (std::max(frame.width, frame.height) > device_->max_frame_side()) {
+      diagnostics.report(support::Id::device_limit, "a frame on " + device().name + " has at most " +
+                                                        std::to_string(device_->max_frame_side()) +
+                                                        " pixels a side");
+      return false;
+    }
+    image.resize(frame.width, frame.height);
+    std::vector<Call> visibility, color;
+    if (!triangles.empty()) {
+      if (!upload_frame(frame, vertices, diagnostics) ||
+          !upload(*device_, FrameBuffer::triangles, triangles, diagnostics))
+        return false;
+      const auto pipeline = device_->pipeline(
+          {Target::visibility, 1, triangle_vertex(), options_.glsl(driver::depth_program(), division_)},
+          diagnostics);
+      if (!pipeline) return false;
+      const auto corners = static_cast<uint32_t>(3 * (triangles.size() / lower::triangle_word::stride));
+      visibility.push_back({.pipeline = *pipeline,
+                            .push = {.light_count = frame.light_count},
+                            .vertex_count = corners,
+                            .scissor = {0, 0, frame.width, frame.height}});
+    }
+
+    const std::vector<Rect> bounds = bounds_of_programs(frame, triangles);
+    for (size_t p = 0; p < bounds.size(); ++p) {
+      if (bounds[p].width == 0 || bounds[p].height == 0) continue;
+      const auto pipeline = device_->pipeline(
+          {Target::color, 1, full_screen_vertex(), options_.glsl(*frame.programs[p], division_)},
+          diagnostics);
+      if (!pipeline) return false;
+      color.push_back({.pipeline = *pipeline,
+                       .push = {.light_count = frame.light_count, .program = static_cast<int32_t>(p)},
+                       .scissor = bounds[p]});
+    }
+    device_->render(visibility, color, frame.background, image);
+    return true;
+  });
+}
+
+bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
+                             std::vector<int32_t>& outputs, Diagnostics& diagnostics) {
+  const size_t input_words = words(program.inputs), result_words = words(program.results);
+  support::check(inputs.size() == rows * input_words, "an eval table of a wrong size");
+  const bool in_vertex = options_.eval_stage == EvalStage::vertex;
+  if (result_words > max_result_words && !in_vertex) {
+    diagnostics.report(support::Id::device_limit,
+                       "function " + support::quote(program.name) + " gives " + std::to_string(result_words) +
+                           " words; on vulkan eval takes at most " + std::to_string(max_result_words));
+    return false;
+  }
+  outputs.resize(rows * result_words);
+  if (outputs.empty()) return true;
+
+  return guarded(diagnostics, [&] {
+    const auto attachments = static_cast<uint32_t>((result_words + 3) / 4);
+    std::string text = options_.glsl(program, division_);
+    const auto pipeline = device_->pipeline(
+        in_vertex ? PipelineSource{Target::buffer, 0, std::move(text), {}}
+                  : PipelineSource{Target::words, attachments, full_screen_vertex(), std::move(text)},
+        diagnostics);
+    if (!pipeline) return false;
+
+    const size_t largest_record = std::max({input_words, result_words, size_t{1}}) * sizeof(int32_t);
+    const size_t chunk = std::min(max_table_rows, device_->max_buffer_bytes() / largest_record);
+    for (size_t first = 0; first < rows; first += chunk) {
+      const size_t count = std::min(chunk, rows - first);
+      device_->upload(FrameBuffer::inputs, inputs.data() + first * input_words,
+                      count * input_words * sizeof(int32_t));
+      int32_t* results = outputs.data() + first * result_words;
+      if (in_vertex)
+        device_->run_vertices(std::array{Call{.pipeline = *pipeline,
+                                              .push = {.count = static_cast<int32_t>(count)},
+                                              .vertex_count = static_cast<uint32_t>(count),
+                                              .scissor = {0, 0, 1, 1}}},
+                              {results, count * result_words});
+      else
+        device_->run_table(*pipeline, attachments, count, result_words, {results, count * result_words});
+    }
+    return true;
+  });
+}
+
+std::unique_ptr<VulkanBackend> create(const Options& options, Diagnostics& diagnostics) {
+  try {
+    auto device = Device::open(options.device, diagnostics);
+    if (!device) return nullptr;
+    std::unique_ptr<VulkanBackend> backend(new VulkanBackend(options, std::move(device)));
+    const bool ran = backend->guarded(diagnostics, [&] {
+      auto probe = run_probe(*backend->device_, diagnostics);
+      if (!probe) return false;
+      backend->probe_ = std::move(*probe);
+      return true;
+    });
+    if (!ran) return nullptr;
+    backend->division_ = options.division.value_or(backend->probe_.division);
+    if (backend->probe_.passed() || options.allow_unproven) return backend;
+
+    support::Diagnostic* report = nullptr;
+    for (const Check& check : backend->probe_.checks) {
+      if (check.passed) continue;
+      const std::string failure = "fails the check \"" + check.name + "\": " + check.detail;
+      if (report == nullptr)
+        report = &diagnostics.report(
+            support::Id::unproven_device,
+            backend->device().name + " " + failure + "; its images cannot be claimed to be identical");
+      else
+        report->note("it also " + failure);
+    }
+    report->suggest("choose another device");
+  } catch (const std::exception& error) { report_unusable(error.what(), diagnostics); }
+  return nullptr;
+}
+
+}  // namespace isoshade::vulkan

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Vulkan backend: any device with Vulkan 1.1 and VK_KHR_shader_float_controls that passes the probe.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/backend.h"
+#include "backends/vulkan/device_info.h"
+#include "backends/vulkan/probe.h"
+#include "compiler/driver/program.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::vulkan {
+
+class Device;
+
+/// Where eval programs run. Pixels are computed in fragment shaders, positions in vertex shaders.
+enum class EvalStage : uint8_t { fragment, vertex };
+
+struct Options {
+  /// A device's index or a part of its name, case ignored. Empty: the first software device (lavapipe), else
+  /// the first device.
+  std::string device;
+  /// Use a device that fails the probe; its images may differ.
+  bool allow_unproven = false;
+  /// Instead of what the probe finds.
+  std::optional<driver::Division> division;
+  /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
+  /// one record after another, to `layout(std430, set = 0, binding = 6) writeonly buffer { int words[]; }`.
+  EvalStage eval_stage = EvalStage::fragment;
+  /// The text of a program's stage; see emit/stages.h for the interface it must have.
+  std::function<std::string(const driver::Program&, driver::Division)> glsl = driver::glsl;
+};
+
+class VulkanBackend : public backends::Backend {
+ public:
+  ~VulkanBackend() override;
+
+  std::string_view name() const override { return "vulkan"; }
+  std::string description() const override;
+
+  bool transform(const backends::Frame& frame, std::vector<std::vector<float>>& clip,
+                 support::Diagnostics& diagnostics) override;
+  bool draw(const backends::Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
+            backends::Image& image, support::Diagnostics& diagnostics) override;
+  bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
+                std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) override;
+
+  const DeviceInfo& device() const;
+  const Probe& probe() const { return probe_; }
+  driver::Division division() const { return division_; }
+
+ private:
+  friend std::unique_ptr<VulkanBackend> create(const Options& options, support::Diagnostics& diagnostics);
+  VulkanBackend(Options options, std::unique_ptr<Device> device);
+
+  template <class Work>
+  bool guarded(support::Diagnostics& diagnostics, Work work);
+  bool upload_frame(const backends::Frame& frame, std::span<const float> vertices,
+                    support::Diagnostics& diagnostics);
+
+  Options options_;
+  std::unique_ptr<Device> device_;
+  Probe probe_;
+  driver::Division division_ = driver::Division::exact;
+};
+
+/// Opens a device and probes it. Null, with a diagnostic, where there is no such device, or where it fails a
+/// check and the options do not allow that. Not thread-safe: one thread at a time uses a backend.
+std::unique_ptr<VulkanBackend> create(const Options& options, support::Diagnostics& diagnostics);
+
+}  // namespace isoshade::vulkan

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is behind Device. Internal: reads Vulkan-Hpp.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <map>
+#include <unordered_map>
+
+#include "backends/vulkan/device.h"
+#include "backends/vulkan/instance.h"
+#include "backends/vulkan/limits.h"
+
+namespace isoshade::vulkan {
+
+inline constexpr vk::Format ids_format = vk::Format::eR32Sint;
+inline constexpr vk::Format depth_format = vk::Format::eD32Sfloat;
+inline constexpr vk::Format color_format = vk::Format::eR32G32B32A32Sfloat;
+inline constexpr vk::Format words_format = vk::Format::eR32G32B32A32Sint;
+
+/// All of an image that has one level and one layer.
+inline vk::ImageSubresourceRange whole(vk::Format format) {
+  return {.aspectMask =
+              format == depth_format ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor,
+          .levelCount = 1,
+          .layerCount = 1};
+}
+
+// Members that own memory stand before what lies in it: they are destroyed in reverse.
+
+struct Buffer {
+  vk::raii::DeviceMemory memory{nullptr};
+  vk::raii::Buffer buffer{nullptr};
+  void* data = nullptr;  ///< mapped for good
+  size_t bytes = 0;
+};
+
+struct Attachment {
+  vk::raii::DeviceMemory memory{nullptr};
+  vk::raii::Image image{nullptr};
+  vk::raii::ImageView view{nullptr};
+};
+
+/// The attachments of a frame; made anew when its size changes.
+struct FrameTarget {
+  int width = 0;
+  int height = 0;
+  Attachment ids, depth, color;
+  vk::raii::Framebuffer visibility{nullptr};
+  vk::raii::Framebuffer shading{nullptr};
+};
+
+/// The attachments of tables with as many result words; grows with the rows.
+struct TableTarget {
+  int height = 0;
+  std::vector<Attachment> attachments;
+  vk::raii::Framebuffer framebuffer{nullptr};
+};
+
+struct Device::Impl {
+  /// The device of this index, which has no shortcomings.
+  Impl(std::unique_ptr<Instance> instance, int index);
+
+  vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags required,
+                                  vk::MemoryPropertyFlags preferred);
+  Buffer make_buffer(size_t bytes, vk::MemoryPropertyFlags preferred);
+  Attachment make_attachment(vk::Format format, int width, int height, vk::ImageUsageFlags usage);
+  /// A buffer that only grows, at least `bytes` long.
+  void reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags preferred);
+
+  /// The render pass of a target; it clears every attachment and keeps it. Made once.
+  const vk::raii::RenderPass& render_pass(Target target, uint32_t attachments);
+  vk::raii::Pipeline make_pipeline(const PipelineSource& source, std::span<const uint32_t> vertex,
+                                   std::span<const uint32_t> fragment);
+
+  void prepare_frame(int width, int height);
+  TableTarget& prepare_table(uint32_t attachments, int height);
+
+  /// Points the descriptor set at the buffers as they are now. Every descriptor is always written: lavapipe
+  /// crashes on one that is not, even if no shader uses it.
+  void write_descriptors();
+  void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
+
+  /// Records, submits and waits. What the device wrote is then visible to the host.
+  template <class Record>
+  void submit(Record record);
+
+  std::unique_ptr<Instance> instance;
+  vk::raii::PhysicalDevice physical;
+  DeviceInfo info;
+  vk::PhysicalDeviceLimits limits;
+  vk::PhysicalDeviceMemoryProperties memory;
+
+  vk::raii::Device device{nullptr};
+  vk::raii::Queue queue{nullptr};
+  vk::raii::CommandPool pool{nullptr};
+  vk::raii::CommandBuffer commands{nullptr};
+  vk::raii::Fence fence{nullptr};
+
+  vk::raii::DescriptorSetLayout set_layout{nullptr};
+  vk::raii::PipelineLayout layout{nullptr};
+  vk::raii::DescriptorPool descriptor_pool{nullptr};
+  vk::raii::DescriptorSet set{nullptr};
+  vk::raii::Sampler sampler{nullptr};
+
+  std::array<Buffer, storage_bindings> buffers;
+  Buffer readback;
+  FrameTarget frame;
+  vk::raii::Framebuffer no_target{nullptr};
+  std::map<uint32_t, TableTarget> tables;  ///< by attachments
+
+  std::map<std::pair<Target, uint32_t>, vk::raii::RenderPass> render_passes;
+  std::vector<vk::raii::Pipeline> pipelines;
+  std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
+};
+
+template <class Record>
+void Device::Impl::submit(Record record) {
+  write_descriptors();
+  commands.reset();
+  commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  record(commands);
+  const vk::MemoryBarrier to_host{.srcAccessMask = vk::AccessFlagBits::eMemoryWrite,
+                                  .dstAccessMask = vk::AccessFlagBits::eHostRead};
+  commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
+                           to_host, {}, {});
+  commands.end();
+  const vk::CommandBuffer handle = *commands;
+  queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &handle}, *fence);
+  const auto result = device.waitForFences(*fence, true, std::numeric_limits<uint64_t>::max());
+  if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not finish");
+  device.resetFences(*fence);
+}
+
+}  // namespace isoshade::vulkan

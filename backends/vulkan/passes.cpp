@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is recorded: vertex kernels, the passes of a frame, a table; and what comes back.
+#include <algorithm>
+#include <cstring>
+
+#include "backends/vulkan/device_impl.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::vulkan {
+
+namespace {
+
+constexpr size_t pixel_bytes = 4 * sizeof(float);
+constexpr size_t depth_bytes = sizeof(float);
+
+vk::Rect2D area(int width, int height) {
+  return {.extent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height)}};
+}
+
+vk::Rect2D area(const Rect& rect) {
+  return {.offset = {rect.x, rect.y}, .extent = area(rect.width, rect.height).extent};
+}
+
+/// Rows [first, first + count) of an image to a place in a buffer.
+void copy_rows(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format,
+               int first, int count, int width, const Buffer& to, size_t offset) {
+  const vk::ImageSubresourceRange range = whole(format);
+  const vk::BufferImageCopy copy{
+      .bufferOffset = offset,
+      .imageSubresource = {.aspectMask = range.aspectMask, .layerCount = 1},
+      .imageOffset = {0, first, 0},
+      .imageExtent = {static_cast<uint32_t>(width), static_cast<uint32_t>(count), 1}};
+  commands.copyImageToBuffer(*image, vk::ImageLayout::eTransferSrcOptimal, *to.buffer, copy);
+}
+
+class Pass {
+ public:
+  Pass(const vk::raii::CommandBuffer& commands, const vk::raii::RenderPass& pass,
+       const vk::raii::Framebuffer& framebuffer, const vk::Rect2D& whole_area,
+       std::span<const vk::ClearValue> clear)
+      : commands_(commands) {
+    commands.beginRenderPass({.renderPass = *pass,
+                              .framebuffer = *framebuffer,
+                              .renderArea = whole_area,
+                              .clearValueCount = static_cast<uint32_t>(clear.size()),
+                              .pClearValues = clear.data()},
+                             vk::SubpassContents::eInline);
+  }
+  ~Pass() { commands_.endRenderPass(); }
+  Pass(const Pass&) = delete;
+  Pass& operator=(const Pass&) = delete;
+
+ private:
+  const vk::raii::CommandBuffer& commands_;
+};
+
+}  // namespace
+
+void Device::Impl::record(const vk::raii::CommandBuffer& to, const Call& call) const {
+  to.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
+  to.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, *set, {});
+  to.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
+                         call.push);
+  to.setScissor(0, area(call.scissor));
+  to.draw(call.vertex_count, 1, call.first_vertex, 0);
+}
+
+void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output) {
+  Buffer& results = impl_->buffers[output_binding];
+  impl_->reserve(results, output.size_bytes(), vk::MemoryPropertyFlagBits::eHostCached);
+  impl_->submit([&](const vk::raii::CommandBuffer& commands) {
+    const Pass pass(commands, impl_->render_pass(Target::buffer, 0), impl_->no_target, area(1, 1), {});
+    for (const Call& call : calls) impl_->record(commands, call);
+  });
+  std::memcpy(output.data(), results.data, output.size_bytes());
+}
+
+void Device::Impl::prepare_frame(int width, int height) {
+  if (frame.width == width && frame.height == height) return;
+  using Usage = vk::ImageUsageFlagBits;
+  frame = {};  // before the new one: both might not fit
+  frame.ids = make_attachment(ids_format, width, height, Usage::eSampled);
+  frame.depth = make_attachment(depth_format, width, height, Usage::eTransferSrc);
+  frame.color = make_attachment(color_format, width, height, Usage::eTransferSrc);
+  const auto framebuffer = [&](Target target, std::span<const vk::ImageView> views) {
+    return vk::raii::Framebuffer(device, {.renderPass = *render_pass(target, 1),
+                                          .attachmentCount = static_cast<uint32_t>(views.size()),
+                                          .pAttachments = views.data(),
+                                          .width = static_cast<uint32_t>(width),
+                                          .height = static_cast<uint32_t>(height),
+                                          .layers = 1});
+  };
+  frame.visibility = framebuffer(Target::visibility, std::array{*frame.ids.view, *frame.depth.view});
+  frame.shading = framebuffer(Target::color, std::array{*frame.color.view});
+  frame.width = width;
+  frame.height = height;
+}
+
+void Device::render(std::span<const Call> visibility, std::span<const Call> color,
+                    const float (&background)[4], backends::Image& image) {
+  const int width = image.width, height = image.height;
+  impl_->prepare_frame(width, height);
+  const FrameTarget& frame = impl_->frame;
+
+  const size_t row_bytes = static_cast<size_t>(width) * (pixel_bytes + depth_bytes);
+  const int band =
+      static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
+  const size_t depth_at = static_cast<size_t>(band) * static_cast<size_t>(width) * pixel_bytes;
+  impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
+                 vk::MemoryPropertyFlagBits::eHostCached);
+
+  for (int first = 0; first < height; first += band) {
+    const int rows = std::min(band, height - first);
+    impl_->submit([&](const vk::raii::CommandBuffer& commands) {
+      if (first == 0) {
+        const std::array<vk::ClearValue, 2> nothing{};
+        const vk::ClearValue backdrop{
+            vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
+        {
+          const Pass pass(commands, impl_->render_pass(Target::visibility, 1), frame.visibility,
+                          area(width, height), nothing);
+          for (const Call& call : visibility) impl_->record(commands, call);
+        }
+        const Pass pass(commands, impl_->render_pass(Target::color, 1), frame.shading, area(width, height),
+                        {&backdrop, 1});
+        for (const Call& call : color) impl_->record(commands, call);
+      }
+      copy_rows(commands, frame.color.image, color_format, first, rows, width, impl_->readback, 0);
+      copy_rows(commands, frame.depth.image, depth_format, first, rows, width, impl_->readback, depth_at);
+    });
+    const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
+    const size_t pixels = static_cast<size_t>(rows) * static_cast<size_t>(width);
+    const char* data = static_cast<const char*>(impl_->readback.data);
+    std::memcpy(image.rgba.data() + 4 * pixel, data, pixels * pixel_bytes);
+    std::memcpy(image.depth.data() + pixel, data + depth_at, pixels * depth_bytes);
+  }
+}
+
+TableTarget& Device::Impl::prepare_table(uint32_t attachments, int height) {
+  TableTarget& table = tables[attachments];
+  if (table.height >= height) return table;
+  table = {};
+  std::vector<vk::ImageView> views;
+  for (uint32_t i = 0; i < attachments; ++i) {
+    table.attachments.push_back(
+        make_attachment(words_format, table_width, height, vk::ImageUsageFlagBits::eTransferSrc));
+    views.push_back(*table.attachments.back().view);
+  }
+  table.framebuffer = vk::raii::Framebuffer(device, {.renderPass = *render_pass(Target::words, attachments),
+                                                     .attachmentCount = attachments,
+                                                     .pAttachments = views.data(),
+                                                     .width = table_width,
+                                                     .height = static_cast<uint32_t>(height),
+                                                     .layers = 1});
+  table.height = height;
+  return table;
+}
+
+void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows, size_t record_words,
+                       std::span<int32_t> output) {
+  support::check(rows > 0 && rows <= max_table_rows && output.size() == rows * record_words,
+                 "a table chunk of a wrong size");
+  const int height = static_cast<int>((rows + table_width - 1) / table_width);
+  const TableTarget& table = impl_->prepare_table(attachments, height);
+  const size_t attachment_bytes = static_cast<size_t>(height) * table_width * pixel_bytes;
+  impl_->reserve(impl_->readback, attachments * attachment_bytes, vk::MemoryPropertyFlagBits::eHostCached);
+
+  Call call{.pipeline = pipeline, .scissor = {0, 0, table_width, height}};
+  call.push.count = static_cast<int32_t>(rows);
+  call.push.width = table_width;
+  impl_->submit([&](const vk::raii::CommandBuffer& commands) {
+    {
+      const std::vector<vk::ClearValue> nothing(attachments, vk::ClearValue{});
+      const Pass pass(commands, impl_->render_pass(Target::words, attachments), table.framebuffer,
+                      area(table_width, height), nothing);
+      impl_->record(commands, call);
+    }
+    for (uint32_t i = 0; i < attachments; ++i)
+      copy_rows(commands, table.attachments[i].image, words_format, 0, height, table_width, impl_->readback,
+                i * attachment_bytes);
+  });
+
+  const char* data = static_cast<const char*>(impl_->readback.data);
+  for (size_t word = 0; word < record_words; word += 4) {
+    const size_t words = std::min<size_t>(4, record_words - word);
+    const char* from = data + word / 4 * attachment_bytes;
+    for (size_t row = 0; row < rows; ++row)
+      std::memcpy(output.data() + row * record_words + word, from + row * pixel_bytes,
+                  words * sizeof(int32_t));
+  }
+}
+
+}  // namespace isoshade::vulkan

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Render passes and pipelines: the fixed state that each kind of target implies.
+#include <stdexcept>
+
+#include "backends/vulkan/device_impl.h"
+#include "compiler/emit/spirv.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::vulkan {
+
+namespace {
+
+/// Device work is submitted and awaited piece by piece, so dependencies that order everything cost nothing.
+std::array<vk::SubpassDependency, 2> order_everything() {
+  using Stage = vk::PipelineStageFlagBits;
+  constexpr auto any_access = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+  const vk::SubpassDependency before{.srcSubpass = VK_SUBPASS_EXTERNAL,
+                                     .dstSubpass = 0,
+                                     .srcStageMask = Stage::eAllCommands,
+                                     .dstStageMask = Stage::eAllGraphics,
+                                     .srcAccessMask = any_access,
+                                     .dstAccessMask = any_access};
+  vk::SubpassDependency after = before;
+  std::swap(after.srcSubpass, after.dstSubpass);
+  std::swap(after.srcStageMask, after.dstStageMask);
+  return {before, after};
+}
+
+vk::raii::RenderPass make_render_pass(const vk::raii::Device& device, std::span<const vk::Format> colors,
+                                      vk::ImageLayout colors_end_as, bool depth) {
+  std::vector<vk::AttachmentDescription> attachments;
+  std::vector<vk::AttachmentReference> references;
+  const auto add = [&](vk::Format format, vk::ImageLayout drawn_as, vk::ImageLayout ends_as) {
+    references.push_back({static_cast<uint32_t>(attachments.size()), drawn_as});
+    attachments.push_back({.format = format,
+                           .samples = vk::SampleCountFlagBits::e1,
+                           .loadOp = vk::AttachmentLoadOp::eClear,
+                           .storeOp = vk::AttachmentStoreOp::eStore,
+                           .stencilLoadOp = vk::AttachmentLoadOp::eDontCare,
+                           .stencilStoreOp = vk::AttachmentStoreOp::eDontCare,
+                           .finalLayout = ends_as});
+  };
+  for (const vk::Format format : colors) add(format, vk::ImageLayout::eColorAttachmentOptimal, colors_end_as);
+  if (depth)
+    add(depth_format, vk::ImageLayout::eDepthStencilAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);
+
+  const vk::SubpassDescription subpass{.pipelineBindPoint = vk::PipelineBindPoint::eGraphics,
+                                       .colorAttachmentCount = static_cast<uint32_t>(colors.size()),
+                                       .pColorAttachments = references.data(),
+                                       .pDepthStencilAttachment = depth ? &references.back() : nullptr};
+  const auto order = order_everything();
+  return {device, vk::RenderPassCreateInfo{.attachmentCount = static_cast<uint32_t>(attachments.size()),
+                                           .pAttachments = attachments.data(),
+                                           .subpassCount = 1,
+                                           .pSubpasses = &subpass,
+                                           .dependencyCount = static_cast<uint32_t>(order.size()),
+                                           .pDependencies = order.data()}};
+}
+
+vk::raii::ShaderModule make_module(const vk::raii::Device& device, std::span<const uint32_t> spirv) {
+  return {device, vk::ShaderModuleCreateInfo{.codeSize = spirv.size_bytes(), .pCode = spirv.data()}};
+}
+
+/// Texts hold no NUL, so parts cannot run into each other.
+std::string key(const PipelineSource& source) {
+  std::string text{static_cast<char>('0' + static_cast<int>(source.target)),
+                   static_cast<char>('0' + source.attachments)};
+  return text + source.vertex_glsl + '\0' + source.fragment_glsl;
+}
+
+}  // namespace
+
+const vk::raii::RenderPass& Device::Impl::render_pass(Target target, uint32_t attachments) {
+  const std::pair which{target, attachments};
+  if (const auto found = render_passes.find(which); found != render_passes.end()) return found->second;
+
+  using Layout = vk::ImageLayout;
+  std::vector<vk::Format> colors;
+  Layout ends_as = Layout::eTransferSrcOptimal;
+  switch (target) {
+    case Target::buffer: break;
+    case Target::visibility:
+      colors = {ids_format};
+      ends_as = Layout::eShaderReadOnlyOptimal;
+      break;
+    case Target::color: colors = {color_format}; break;
+    case Target::words: colors.assign(attachments, words_format); break;
+  }
+  auto made = make_render_pass(device, colors, ends_as, target == Target::visibility);
+  return render_passes.emplace(which, std::move(made)).first->second;
+}
+
+vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std::span<const uint32_t> vertex,
+                                               std::span<const uint32_t> fragment) {
+  const bool rasterises = source.target != Target::buffer;
+  const vk::raii::ShaderModule vertex_module = make_module(device, vertex);
+  vk::raii::ShaderModule fragment_module{nullptr};
+  std::vector<vk::PipelineShaderStageCreateInfo> stages{
+      {.stage = vk::ShaderStageFlagBits::eVertex, .module = *vertex_module, .pName = "main"}};
+  if (rasterises) {
+    fragment_module = make_module(device, fragment);
+    stages.push_back(
+        {.stage = vk::ShaderStageFlagBits::eFragment, .module = *fragment_module, .pName = "main"});
+  }
+
+  const vk::PipelineVertexInputStateCreateInfo vertex_input{};
+  const vk::PipelineInputAssemblyStateCreateInfo assembly{
+      .topology = rasterises ? vk::PrimitiveTopology::eTriangleList : vk::PrimitiveTopology::ePointList};
+  // The natural viewport of a frame does not map clip space exactly to 1/256 pixel; a power of two does.
+  constexpr float edge = guard_band;
+  const vk::Viewport viewport{
+      .x = -edge, .y = -edge, .width = 2 * edge, .height = 2 * edge, .minDepth = 0, .maxDepth = 1};
+  const vk::PipelineViewportStateCreateInfo view{
+      .viewportCount = 1, .pViewports = &viewport, .scissorCount = 1};
+  const vk::PipelineRasterizationStateCreateInfo raster{.rasterizerDiscardEnable = !rasterises,
+                                                        .polygonMode = vk::PolygonMode::eFill,
+                                                        .cullMode = vk::CullModeFlagBits::eNone,
+                                                        .lineWidth = 1};
+  const vk::PipelineMultisampleStateCreateInfo samples{.rasterizationSamples = vk::SampleCountFlagBits::e1};
+  const vk::Bool32 depth = source.target == Target::visibility;
+  const vk::PipelineDepthStencilStateCreateInfo depth_test{
+      .depthTestEnable = depth, .depthWriteEnable = depth, .depthCompareOp = vk::CompareOp::eGreater};
+  using Component = vk::ColorComponentFlagBits;
+  const std::vector<vk::PipelineColorBlendAttachmentState> written(
+      rasterises ? source.attachments : 0,
+      {.colorWriteMask = Component::eR | Component::eG | Component::eB | Component::eA});
+  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = static_cast<uint32_t>(written.size()),
+                                                    .pAttachments = written.data()};
+  const vk::DynamicState scissor = vk::DynamicState::eScissor;
+  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = 1, .pDynamicStates = &scissor};
+
+  return {device, nullptr,
+          vk::GraphicsPipelineCreateInfo{.stageCount = static_cast<uint32_t>(stages.size()),
+                                         .pStages = stages.data(),
+                                         .pVertexInputState = &vertex_input,
+                                         .pInputAssemblyState = &assembly,
+                                         .pViewportState = &view,
+                                         .pRasterizationState = &raster,
+                                         .pMultisampleState = &samples,
+                                         .pDepthStencilState = &depth_test,
+                                         .pColorBlendState = &blend,
+                                         .pDynamicState = &dynamic,
+                                         .layout = *layout,
+                                         .renderPass = *render_pass(source.target, source.attachments)}};
+}
+
+std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
+                                              support::Diagnostics& diagnostics) {
+  std::string source_key = key(source);
+  if (const auto found = impl_->pipeline_of.find(source_key); found != impl_->pipeline_of.end())
+    return found->second;
+
+  const auto vertex = emit::compile_spirv(source.vertex_glsl, emit::ShaderKind::vertex, diagnostics);
+  if (!vertex) return std::nullopt;
+  std::optional<std::vector<uint32_t>> fragment{std::in_place};
+  if (source.target != Target::buffer)
+    fragment = emit::compile_spirv(source.fragment_glsl, emit::ShaderKind::fragment, diagnostics);
+  if (!fragment) return std::nullopt;
+
+  impl_->pipelines.push_back(impl_->make_pipeline(source, *vertex, *fragment));
+  const auto made = static_cast<PipelineIndex>(impl_->pipelines.size() - 1);
+  impl_->pipeline_of.emplace(std::move(source_key), made);
+  return made;
+}
+
+}  // namespace isoshade::vulkan

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a device computes what the contract says: small shaders run on it, and the host compares every bit.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/driver/program.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::vulkan {
+
+class Device;
+
+struct Check {
+  std::string name;  ///< "comparisons (fragment)"
+  bool passed = false;
+  std::string detail;  ///< what was seen
+};
+
+struct Probe {
+  /// Native where the device rounds every probed quotient and root correctly.
+  driver::Division division = driver::Division::exact;
+  std::vector<Check> checks;
+
+  /// Whether images of the device are those of every other.
+  bool passed() const {
+    return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed; });
+  }
+};
+
+/// Throws std::exception where Vulkan fails; nothing, with a diagnostic, where a shader does not compile.
+std::optional<Probe> run_probe(Device& device, support::Diagnostics& diagnostics);
+
+}  // namespace isoshade::vulkan
