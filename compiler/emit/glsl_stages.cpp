@@ -51,6 +51,7 @@ std::string vertex_main() {
          "\nvoid main() {\n"
          "  precise vec4 position = vertex(gl_VertexIndex, push.object);\n"
          "  clip[gl_VertexIndex - push.first + push.count] = uvec4(canonical(position));\n"
+         "  gl_PointSize = 1.0;\n"
          "}\n";
 }
 
