@@ -16,6 +16,8 @@
 // The flags in lanes.h are the contract. These repeat as much of it as a file can say, for one compiled
 // without them: no a*b+c becomes an fma, no constant is folded in another mode than the one at run time, ints
 // wrap. They hold to the end of the file that includes this, because that is where the shaders are.
+// Even with the flags, g++ folds what is exact, and an exact product of two literals may be a denormal, where
+// the processor gives zero. So leave no operation on two constants whose result could be one.
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #else

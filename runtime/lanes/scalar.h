@@ -64,7 +64,7 @@ ISOSHADE_INLINE float from_bits(int x) {
   return from_bits_normal((x & exponent_bits) == 0 ? x & sign_bit : x);
 }
 
-/// Toward zero. Outside the range of int: 0x80000000.
+/// Toward zero. x within the range of int.
 ISOSHADE_INLINE int to_int(float x) {
   typedef float Floats __attribute__((vector_size(16)));
   return __builtin_ia32_cvttss2si(Floats{x, 0, 0, 0});
