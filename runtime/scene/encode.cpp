@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/scene/encode.h"
+
+#include "compiler/functions/color.h"
+
+namespace isoshade::scene {
+namespace {
+
+uint8_t quantise(float x) {
+  // NaN is not above 0.
+  const float clamped = x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
+  return static_cast<uint8_t>(lanes::to_int(lanes::floor(clamped * 255.0f + 0.5f)));
+}
+
+}  // namespace
+
+std::vector<uint8_t> encode(std::span<const float> rgba, Encoding encoding, float exposure) {
+  std::vector<uint8_t> bytes(rgba.size());
+  const lanes::FpGuard guard;
+  for (size_t i = 0; i < rgba.size(); ++i) {
+    const bool alpha = i % 4 == 3;
+    const float exposed = alpha ? rgba[i] : rgba[i] * exposure;
+    const bool curve = encoding == Encoding::srgb && !alpha;
+    bytes[i] = quantise(curve ? functions::srgb_encode(exposed) : exposed);
+  }
+  return bytes;
+}
+
+}  // namespace isoshade::scene

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/scene/image_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "compiler/support/visible.h"
+#include "runtime/scene/image_codecs.h"
+#include "runtime/scene/output_file.h"
+
+namespace isoshade::scene {
+
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+
+namespace {
+
+enum class Format { png, exr, unknown };
+
+Format format_of(const std::string& path) {
+  if (path == "-") return Format::png;
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".png" || extension == ".PNG") return Format::png;
+  if (extension == ".exr" || extension == ".EXR") return Format::exr;
+  return Format::unknown;
+}
+
+std::optional<std::string> read_bytes(const std::string& path, Diagnostics& diagnostics) {
+  constexpr uintmax_t most = uintmax_t{2} << 30;  // stb counts in int
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    diagnostics.report(Id::missing_file, "there is no file " + quote(path));
+    return std::nullopt;
+  }
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size >= most) {
+    diagnostics.report(Id::too_large, quote(path) + " has more than 2 GiB");
+    return std::nullopt;
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(file), {});
+  if (!error && file.is_open() && !file.bad()) return bytes;
+  diagnostics.report(Id::unreadable_file, "cannot read " + quote(path));
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool check_image_path(const std::string& path, Diagnostics& diagnostics) {
+  if (format_of(path) != Format::unknown) return true;
+  diagnostics.report(Id::unwritable_file, "no image format is written to " + quote(path))
+      .suggest("end the name in .png or .exr");
+  return false;
+}
+
+bool write_image(const std::string& path, const ImageView& image, Encoding encoding, float exposure,
+                 Diagnostics& diagnostics) {
+  if (!check_image_path(path, diagnostics)) return false;
+  if (format_of(path) == Format::exr) return write_file(path, exr(image), diagnostics);
+  return write_file(path, png(image.width, image.height, encode(image.rgba, encoding, exposure)),
+                    diagnostics);
+}
+
+std::optional<FloatImage> read_image(const std::string& path, Diagnostics& diagnostics) {
+  const Format format = format_of(path);
+  if (format == Format::unknown || path == "-") {
+    diagnostics.report(Id::bad_image,
+                       "an image is read from a file that ends in .png or .exr, not from " + quote(path));
+    return std::nullopt;
+  }
+  const std::optional<std::string> bytes = read_bytes(path, diagnostics);
+  if (!bytes) return std::nullopt;
+  Decoded decoded = format == Format::png ? decode_png(*bytes) : decode_exr(*bytes);
+  if (!decoded.image) {
+    diagnostics.report(Id::bad_image,
+                       "cannot read the image " + quote(path) + ": " + support::visible(decoded.reason));
+  }
+  return std::move(decoded.image);
+}
+
+}  // namespace isoshade::scene

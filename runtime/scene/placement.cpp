@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/scene/placement.h"
+
+#include <algorithm>
+
+#include "runtime/scene/host_math.h"
+
+namespace isoshade::scene {
+namespace {
+
+/// World space to a space with the camera at the origin, looking along -z, y up.
+glm::mat4 view_matrix(const glm::vec3& right, const glm::vec3& up, const glm::vec3& back,
+                      const glm::vec3& position) {
+  glm::mat4 view(1);
+  const glm::vec3 rows[3] = {right, up, back};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) view[c][r] = rows[r][c];
+    view[3][r] = -dot(rows[r], position);
+  }
+  return view;
+}
+
+glm::mat4 projection_matrix(const Camera& camera, float aspect) {
+  glm::mat4 projection(0);
+  if (camera.projection == Projection::perspective) {
+    const SinCos half = sin_cos_of_degrees(camera.fov * 0.5f);
+    const float scale = half.cos / half.sin;
+    projection[0][0] = scale / aspect;
+    projection[1][1] = scale;
+    projection[3][2] = camera.near;
+    projection[2][3] = -1;
+  } else {
+    const float scale = 2.0f / camera.height;
+    const float inverse_depth = 1.0f / (camera.far - camera.near);
+    projection[0][0] = scale / aspect;
+    projection[1][1] = scale;
+    projection[2][2] = inverse_depth;
+    projection[3][2] = camera.far * inverse_depth;
+    projection[3][3] = 1;
+  }
+  return projection;
+}
+
+glm::mat3 rotation_about(int axis, float degrees) {
+  const SinCos angle = sin_cos_of_degrees(degrees);
+  const int next = (axis + 1) % 3;
+  const int after = (axis + 2) % 3;
+  glm::mat3 rotation(1);
+  rotation[next][next] = rotation[after][after] = angle.cos;
+  rotation[next][after] = angle.sin;
+  rotation[after][next] = -angle.sin;
+  return rotation;
+}
+
+glm::mat3 rotation_of_quaternion(const std::array<float, 4>& quaternion) {
+  const glm::vec4 q = normalize(glm::vec4(quaternion[0], quaternion[1], quaternion[2], quaternion[3]));
+  const float x = q.x, y = q.y, z = q.z, w = q.w;
+  glm::mat3 rotation;
+  rotation[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+  rotation[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+  rotation[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+  return rotation;
+}
+
+glm::mat3 rotation_of(const Transform& transform) {
+  if (transform.rotation) return rotation_of_quaternion(*transform.rotation);
+  return multiply(rotation_about(2, transform.rotate.z),
+                  multiply(rotation_about(1, transform.rotate.y), rotation_about(0, transform.rotate.x)));
+}
+
+}  // namespace
+
+View make_view(const Camera& camera, int width, int height) {
+  const glm::vec3 back = normalize(camera.position - camera.target);
+  const glm::vec3 right = normalize(cross(camera.up, back));
+  const glm::vec3 up = cross(back, right);
+  const float aspect = static_cast<float>(width) / static_cast<float>(height);
+  View view;
+  view.projection =
+      multiply(projection_matrix(camera, aspect), view_matrix(right, up, back, camera.position));
+  view.eye =
+      camera.projection == Projection::perspective ? glm::vec4(camera.position, 1) : glm::vec4(back, 0);
+  return view;
+}
+
+glm::mat4 model_matrix(const Object& object, const Instance& instance) {
+  const glm::mat3 rotation = rotation_of(object.transform);
+  glm::mat4 model(1);
+  for (int c = 0; c < 3; ++c) model[c] = glm::vec4(rotation[c] * object.transform.scale[c], 0);
+  model[3] = glm::vec4(instance_translation(object, instance), 1);
+  return model;
+}
+
+std::array<float, lower::light_word::stride> light_record(const Light& light) {
+  namespace word = lower::light_word;
+  std::array<float, word::stride> record{};
+  const auto store = [&](int at, const glm::vec3& value) {
+    for (int i = 0; i < 3; ++i) record[static_cast<size_t>(at + i)] = value[i];
+  };
+  record[word::kind] = static_cast<float>(light.kind);
+  if (light.kind != LightKind::point) store(word::direction, normalize(-light.direction));
+  if (light.kind != LightKind::directional) store(word::position, light.position);
+  store(word::color, light.color * light.intensity);
+  record[word::cone_offset] = 1;  // no cone: a falloff of 1 at every angle
+  if (light.kind == LightKind::spot) {
+    const float inner = sin_cos_of_degrees(light.inner_angle).cos;
+    const float outer = sin_cos_of_degrees(light.outer_angle).cos;
+    // The least difference is that of glTF's KHR_lights_punctual.
+    const float scale = 1.0f / std::max(0.001f, inner - outer);
+    record[word::cone_scale] = scale;
+    record[word::cone_offset] = -outer * scale;
+  }
+  if (light.range > 0) record[word::range] = 1.0f / (light.range * light.range);
+  for (float& value : record) value = canonical(value);
+  return record;
+}
+
+}  // namespace isoshade::scene

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where things stand: the matrices and light records of a frame. Computed under lanes::FpGuard, which the
+// callers hold.
+#pragma once
+
+#include <array>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "compiler/lower/frame_layout.h"
+#include "runtime/scene/scene.h"
+
+namespace isoshade::scene {
+
+/// World space to clip space, y up. Depth is reversed: z = w on the near plane; in perspective z is near and
+/// w the distance along the view, in orthographic projection w is 1 and z falls to 0 at `far`.
+struct View {
+  glm::mat4 projection;  ///< world space -> clip space
+  glm::vec4 eye;         ///< frame_word::eye
+};
+View make_view(const Camera& camera, int width, int height);
+
+/// Object space to world space.
+glm::mat4 model_matrix(const Object& object, const Instance& instance);
+
+/// A record of lower::light_word.
+std::array<float, lower::light_word::stride> light_record(const Light& light);
+
+}  // namespace isoshade::scene

@@ -1,0 +1,15 @@
+isoshade_test(scene_test
+  SOURCES
+    unit/scene_image_file_test.cpp
+    unit/scene_mesh_test.cpp
+    unit/scene_parse_test.cpp
+    unit/scene_placement_test.cpp
+    unit/scene_settings_test.cpp
+  LINKS isoshade_scene)
+
+isoshade_test(compare_test
+  SOURCES
+    unit/compare_golden_test.cpp
+    unit/compare_report_test.cpp
+    unit/compare_test.cpp
+  LINKS isoshade_compare)

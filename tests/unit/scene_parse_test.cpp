@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "runtime/lanes/float_rules.h"
+#include "tests/unit/scene_documents.h"
+
+namespace isoshade {
+namespace {
+
+using scene::Instance;
+using scene::Object;
+using testing::parse_members;
+using testing::parse_text;
+using testing::ParsedScene;
+
+constexpr const char* ball = R"("objects": {"ball": {"mesh": "sphere", "effect": "e.json"}})";
+
+TEST(ParseScene, ReadsEveryPart) {
+  const ParsedScene parsed = parse_text(R"({
+    "$schema": "../schema/isoshade.schema.json", "isoshade": 1, "scene": "all", "doc": "All there is.",
+    "size": [320, 200], "background": [0.1, 0.2, 0.3, 0.5], "posts": [], "extras": {"free": [1]},
+    "camera": {"type": "orthographic", "position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1],
+               "height": 7, "near": 0.5, "far": 50},
+    "lights": {
+      "sun": {"type": "directional", "direction": [1, -1, 0], "color": [1, 0.5, 0.25], "intensity": 3},
+      "lamp": {"type": "point", "position": [1, 2, 3], "range": 9},
+      "torch": {"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0],
+                "inner_angle": 10, "outer_angle": 20}},
+    "objects": {
+      "floor": {"mesh": {"type": "plane", "size": [8, 6], "segments": 4}, "effect": "../materials/m.json",
+                "transform": {"translate": [0, -1, 0], "rotate": [90, 0, 45], "scale": 2},
+                "parameters": {"roughness": 0.25, "base_color": [1, 0, 0], "flat": true, "map": "a.png"}},
+      "crate": {"mesh": {"type": "box", "size": [1, 2, 3]}, "effect": "/abs/m.json",
+                "transform": {"rotate": [0, 0, 0, 1], "scale": [1, -2, 3]}}},
+    "output": {"encoding": "linear", "exposure": 2}})");
+  ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+  const scene::Scene& scene = *parsed.scene;
+  EXPECT_EQ(scene.name, "all");
+  EXPECT_EQ(scene.width, 320);
+  EXPECT_EQ(scene.height, 200);
+  EXPECT_EQ(scene.background[3], 0.5f);
+  EXPECT_EQ(scene.camera.projection, scene::Projection::orthographic);
+  EXPECT_EQ(scene.camera.up, glm::vec3(0, 0, 1));
+  EXPECT_EQ(scene.camera.far, 50.0f);
+  ASSERT_EQ(scene.lights.size(), 3u);
+  EXPECT_EQ(scene.lights[0].name, "sun");
+  EXPECT_EQ(scene.lights[1].range, 9.0f);
+  EXPECT_EQ(scene.lights[2].kind, scene::LightKind::spot);
+  EXPECT_EQ(scene.lights[2].outer_angle, 20.0f);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  const Object& floor = scene.objects[0];
+  EXPECT_EQ(floor.effect, "materials/m.json");  // beside scenes/test.json
+  EXPECT_EQ(floor.mesh.kind, scene::MeshKind::plane);
+  EXPECT_EQ(floor.mesh.segments, 4);
+  EXPECT_EQ(floor.transform.scale, glm::vec3(2));
+  EXPECT_EQ(floor.transform.rotate, glm::vec3(90, 0, 45));
+  ASSERT_EQ(floor.parameters.size(), 4u);
+  EXPECT_EQ(floor.parameters[1].value.numbers, (std::vector<float>{1, 0, 0}));
+  EXPECT_TRUE(floor.parameters[2].value.boolean);
+  EXPECT_EQ(scene.objects[1].effect, "/abs/m.json");
+  EXPECT_TRUE(scene.objects[1].transform.rotation);
+  EXPECT_EQ(scene.output.encoding, scene::Encoding::linear);
+}
+
+TEST(ParseScene, NeedsOnlyACamera) {
+  const ParsedScene parsed = parse_members("");
+  ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+  EXPECT_EQ(parsed.scene->background, (std::array<float, 4>{0, 0, 0, 1}));
+  EXPECT_TRUE(parse_text(R"({"isoshade": 1, "scene": "s"})").fails_with("missing-key"));
+}
+
+TEST(ParseScene, RefusesOtherKindsOfDocument) {
+  EXPECT_TRUE(parse_text(R"({"isoshade": 1, "effect": "e"})").fails_with("wrong-kind"));
+  EXPECT_TRUE(parse_text(R"([1])").fails_with("wrong-type"));
+}
+
+TEST(ParseScene, GridsCountTheFirstAxisFastest) {
+  const ParsedScene parsed = parse_members(R"("objects": {"balls": {"mesh": "sphere", "effect": "e.json",
+    "transform": {"translate": [10, 0, 0]},
+    "repeat": [{"count": 3, "step": [2, 0, 0], "parameters": {"roughness": {"from": 0.1, "to": 0.7}}},
+               {"count": 2, "step": [0, -4, 0], "parameters": {"tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
+  ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+  const Object& balls = parsed.scene->objects[0];
+  ASSERT_EQ(scene::instance_count(balls), 6);
+  const lanes::FpGuard guard;
+  const Instance last = scene::instance(balls, 5);
+  EXPECT_EQ(scene::instance_name(balls, last), "balls[2,1]");
+  EXPECT_EQ(scene::instance_name(balls, scene::instance(balls, 1)), "balls[1,0]");
+  EXPECT_EQ(scene::instance_translation(balls, last), glm::vec3(14, -4, 0));
+  const scene::Variation& roughness = balls.repeat[0].variations[0];
+  EXPECT_EQ(scene::variation_value(roughness, 0, 3).number, 0.1f);  // the ends exactly
+  EXPECT_EQ(scene::variation_value(roughness, 1, 3).number, 0.4f);
+  EXPECT_EQ(scene::variation_value(roughness, 2, 3).number, 0.7f);
+  EXPECT_EQ(scene::variation_value(roughness, 0, 1).number, 0.1f);
+  EXPECT_EQ(scene::variation_value(balls.repeat[1].variations[0], 1, 2).numbers,
+            (std::vector<float>{0, 1, 0}));
+}
+
+TEST(ParseScene, SuggestsTheKeyThatWasMeant) {
+  const ParsedScene parsed = parse_members(R"("objects": {"ball": {"mesh": "sphere", "efect": "e.json"}})");
+  EXPECT_FALSE(parsed.scene);
+  EXPECT_NE(parsed.diagnostics.text().find("\"effect\""), std::string::npos) << parsed.diagnostics.text();
+  EXPECT_TRUE(parse_members(R"("objects": {"b": {"mesh": "shpere", "effect": "e"}})").fails_with("shpere"));
+}
+
+TEST(ParseScene, ReportsSeveralErrorsWithTheirPlaces) {
+  const ParsedScene parsed =
+      parse_members("\"size\": [0, 1],\n\"background\": [1],\n\"lights\": {\"1x\": {}}");
+  EXPECT_FALSE(parsed.scene);
+  EXPECT_GE(parsed.diagnostics.error_count(), 4u);
+  for (const support::Diagnostic& diagnostic : parsed.diagnostics.all())
+    EXPECT_GT(diagnostic.where.line(), 0u) << diagnostic.message;
+}
+
+TEST(ParseScene, RefusesViewsWithoutDirection) {
+  const auto camera = [](const std::string& members) {
+    return parse_members("\"camera\": {" + members + "}");
+  };
+  EXPECT_TRUE(camera(R"("position": [1, 2, 3], "target": [1, 2, 3])").fails_with("degenerate"));
+  EXPECT_TRUE(camera(R"("position": [0, 5, 0], "target": [0, 0, 0])").fails_with("degenerate"));
+  EXPECT_TRUE(
+      camera(R"("position": [0, 0, 5], "target": [0, 0, 0], "up": [0, 0, 0])").fails_with("degenerate"));
+  EXPECT_TRUE(
+      camera(R"("position": [0, 0, 5], "target": [0, 0, 0], "up": [0, 1e-9, -1])").fails_with("degenerate"));
+  EXPECT_TRUE(camera(R"("position": [0, 0, 1e9], "target": [0, 0, 0], "up": [0, 1e-30, 0])").scene);
+  EXPECT_TRUE(camera(R"("position": [0, 0, 5], "target": [0, 0, 0], "fov": 180)").fails_with("out-of-range"));
+  EXPECT_TRUE(camera(R"("position": [0, 0, 5], "target": [0, 0, 0], "near": 0)").fails_with("out-of-range"));
+  EXPECT_TRUE(camera(R"("type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": 1,
+                        "near": 5, "far": 5)")
+                  .fails_with("\"far\""));
+}
+
+TEST(ParseScene, RefusesWhatHasNoExtentOrDirection) {
+  const auto transform = [](const std::string& members) {
+    return parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e", "transform": {)" + members +
+                         "}}}");
+  };
+  EXPECT_TRUE(transform(R"("scale": 0)").fails_with("degenerate"));
+  EXPECT_TRUE(transform(R"("scale": [1, 0, 1])").fails_with("degenerate"));
+  EXPECT_TRUE(transform(R"("scale": [1, 1e-44, 1])").fails_with("degenerate"));
+  EXPECT_TRUE(transform(R"("rotate": [0, 0, 0, 0])").fails_with("quaternion"));
+  EXPECT_TRUE(transform(R"("rotate": [1e9, 0, 0])").fails_with("out-of-range"));
+  EXPECT_TRUE(parse_members(R"("lights": {"l": {"type": "directional", "direction": [0, 0, 0]}})")
+                  .fails_with("degenerate"));
+  EXPECT_TRUE(parse_members(R"("lights": {"l": {"type": "spot", "direction": [0, 0, 1], "position": [0, 0, 0],
+                                                "inner_angle": 30, "outer_angle": 30}})")
+                  .fails_with("outer_angle"));
+}
+
+TEST(ParseScene, RefusesNumbersBeyondItsLimits) {
+  EXPECT_TRUE(parse_members(R"("size": [8193, 1])").fails_with("out-of-range"));
+  EXPECT_TRUE(parse_members(R"("size": [99999999999999999999, 1])").fails_with("wrong-type"));
+  EXPECT_TRUE(parse_members(R"("size": [1.5, 1])").fails_with("wrong-type"));
+  EXPECT_TRUE(parse_members(R"("background": [1e39, 0, 0, 1])").fails_with("out-of-range"));
+  EXPECT_TRUE(parse_members(R"("background": [null, 0, 0, 1])").fails_with("wrong-type"));
+  EXPECT_TRUE(parse_members(R"("objects": {"b": {"mesh": {"type": "sphere", "segments": 2000000000},
+                                                 "effect": "e"}})")
+                  .fails_with("out-of-range"));
+  EXPECT_TRUE(parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e", "parameters": {"p": 1e300}}})")
+                  .fails_with("out-of-range"));
+}
+
+TEST(ParseScene, BoundsTheCopiesOfAScene) {
+  const auto grid = [](const std::string& count) {
+    const std::string axis = R"({"count": )" + count + R"(, "step": [1, 0, 0]})";
+    return parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e", "repeat": [)" + axis + "," +
+                         axis + "," + axis + "]}}");
+  };
+  EXPECT_TRUE(grid("1000000000").fails_with("out-of-range"));
+  EXPECT_TRUE(grid("65536").fails_with("too-large"));
+  EXPECT_TRUE(grid("40").scene);
+  EXPECT_TRUE(grid("0").fails_with("out-of-range"));
+  EXPECT_TRUE(grid("-1").fails_with("out-of-range"));
+}
+
+TEST(ParseScene, BoundsTheLightsOfAScene) {
+  std::string lights;
+  for (size_t i = 0; i <= scene::max_lights; ++i) {
+    lights += (i == 0 ? "" : ",") + ("\"l" + std::to_string(i)) +
+              R"(": {"type": "directional", "direction": [0, -1, 0]})";
+  }
+  EXPECT_TRUE(parse_members("\"lights\": {" + lights + "}").fails_with("too-large"));
+}
+
+TEST(ParseScene, GivesAParameterOneSource) {
+  const ParsedScene parsed = parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e",
+    "parameters": {"roughness": 0.5},
+    "repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"roughness": {"from": 0, "to": 1}}}]}})");
+  EXPECT_TRUE(parsed.fails_with("duplicate-name")) << parsed.first_error();
+}
+
+TEST(ParseScene, ChecksVariations) {
+  const auto varied = [](const std::string& variation) {
+    return parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e",
+      "repeat": [{"count": 3, "step": [1, 0, 0], "parameters": {"p": )" +
+                         variation + "}}]}}");
+  };
+  EXPECT_TRUE(varied(R"({"values": [1, 2]})").fails_with("3 places"));
+  EXPECT_TRUE(varied(R"({"from": 1})").fails_with("missing-key"));
+  EXPECT_TRUE(varied(R"({"from": 1, "to": [1, 2]})").fails_with("differ in size"));
+  EXPECT_TRUE(varied(R"({"from": true, "to": false})").fails_with("wrong-type"));
+  EXPECT_TRUE(varied(R"([0, 1])").fails_with("wrong-type"));
+  EXPECT_TRUE(varied(R"({"values": [true, false, true]})").scene);
+}
+
+TEST(ParseScene, KeepsNamesApart) {
+  EXPECT_TRUE(parse_members(std::string(ball) +
+                            R"(, "lights": {"ball": {"type": "directional", "direction": [0, -1, 0]}})")
+                  .fails_with("duplicate-name"));
+  EXPECT_TRUE(parse_members(R"("objects": {"output": {"mesh": "box", "effect": "e"}})").fails_with("bad-id"));
+  EXPECT_TRUE(parse_members(R"("objects": {"a b": {"mesh": "box", "effect": "e"}})").fails_with("bad-id"));
+}
+
+TEST(ParseScene, SaysThatPostsAreNotRun) {
+  EXPECT_TRUE(parse_members(R"("posts": ["fog.json"])").fails_with("unsupported"));
+}
+
+}  // namespace
+}  // namespace isoshade
