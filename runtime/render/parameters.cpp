@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/parameters.h"
+
+#include <algorithm>
+
+#include "compiler/support/check.h"
+#include "compiler/support/visible.h"
+#include "runtime/scene/host_math.h"
+
+namespace isoshade::render {
+
+using graph::Literal;
+using graph::Type;
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+
+namespace {
+
+/// A field of the record by name, with the word where it begins.
+struct Found {
+  Type type = Type::floating;
+  size_t first_word = 0;
+};
+
+std::optional<Found> find_field(const driver::Effect& effect, const std::string& name) {
+  size_t word = 0;
+  for (const driver::Field& field : effect.parameters) {
+    if (field.name == name) {
+      const std::optional<Type> type = graph::find_type(field.type);
+      support::check(type.has_value(), "a parameter of a type that does not exist");
+      return Found{*type, word};
+    }
+    word += static_cast<size_t>(field.words);
+  }
+  return std::nullopt;
+}
+
+void report_unknown(const scene::Object& object, const driver::Effect& effect, const std::string& name,
+                    const support::Span& where, Diagnostics& diagnostics) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const driver::Field& field : effect.parameters) {
+    names.push_back(field.name);
+    list.append(list.empty() ? "" : ", ").append(field.name);
+  }
+  support::Diagnostic& report = diagnostics.report_unknown(
+      Id::unknown_parameter, where,
+      "the effect of " + quote(object.name) + " has no parameter " + quote(name), name, names);
+  if (report.fix.empty()) report.note(list.empty() ? "it has none at all" : "it has " + list);
+}
+
+bool check_fit(Type type, const Literal& literal, const std::string& name, const support::Span& where,
+               Diagnostics& diagnostics) {
+  if (graph::fits(type, literal)) return true;
+  const int floats = graph::float_count(type);
+  std::string expected = std::string(graph::type_name(type));
+  if (floats == 1) expected += ", a number";
+  if (floats > 1) expected += ", an array of " + std::to_string(floats) + " numbers";
+  diagnostics.report(Id::wrong_type, where, "the parameter " + quote(name) + " is of type " + expected);
+  return false;
+}
+
+void store(Type type, const Literal& literal, float* words) {
+  switch (type) {
+    case Type::boolean: words[0] = literal.boolean ? 1.0f : 0.0f; break;
+    case Type::integer: words[0] = static_cast<float>(literal.integer); break;
+    case Type::floating: words[0] = literal.number; break;
+    case Type::filename:
+    case Type::string: break;  // not in the record
+    default: std::copy(literal.numbers.begin(), literal.numbers.end(), words);
+  }
+}
+
+}  // namespace
+
+std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& object,
+                                                          const driver::Effect& effect,
+                                                          Diagnostics& diagnostics) {
+  const size_t errors_before = diagnostics.error_count();
+  ObjectParameters result;
+  for (const driver::Field& field : effect.parameters)
+    result.common_.insert(result.common_.end(), field.value.begin(), field.value.end());
+
+  for (const scene::Parameter& parameter : object.parameters) {
+    if (diagnostics.full()) break;
+    const auto found = find_field(effect, parameter.name);
+    if (!found) {
+      report_unknown(object, effect, parameter.name, parameter.name_where, diagnostics);
+    } else if (check_fit(found->type, parameter.value, parameter.name, parameter.value_where, diagnostics)) {
+      store(found->type, parameter.value, result.common_.data() + found->first_word);
+    }
+  }
+  for (size_t axis = 0; axis < object.repeat.size(); ++axis) {
+    const std::vector<scene::Variation>& variations = object.repeat[axis].variations;
+    for (size_t i = 0; i < variations.size() && !diagnostics.full(); ++i) {
+      const scene::Variation& variation = variations[i];
+      const auto found = find_field(effect, variation.name);
+      if (!found) {
+        report_unknown(object, effect, variation.name, variation.name_where, diagnostics);
+        continue;
+      }
+      for (const Literal& value : variation.values)
+        if (!check_fit(found->type, value, variation.name, variation.value_where, diagnostics)) break;
+      if (!variation.listed && found->type == Type::integer) {
+        diagnostics.report(Id::wrong_type, variation.value_where,
+                           "the parameter " + quote(variation.name) + " is an integer: list its values");
+      }
+      result.varying_.push_back({axis, i, found->type, found->first_word});
+    }
+  }
+  if (diagnostics.error_count() != errors_before) return std::nullopt;
+  return result;
+}
+
+std::vector<float> ObjectParameters::words(const scene::Object& object,
+                                           const scene::Instance& instance) const {
+  std::vector<float> words = common_;
+  for (const Varying& varying : varying_) {
+    const scene::Repeat& repeat = object.repeat[varying.axis];
+    const Literal value = scene::variation_value(repeat.variations[varying.variation],
+                                                 instance.place[varying.axis], repeat.count);
+    store(varying.type, value, words.data() + varying.first_word);
+  }
+  for (float& word : words) word = scene::canonical(word);
+  return words;
+}
+
+}  // namespace isoshade::render

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/plan.h"
+
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "compiler/ir/printer.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/support/visible.h"
+#include "runtime/lanes/float_rules.h"
+#include "runtime/render/clock.h"
+#include "runtime/render/parameters.h"
+#include "runtime/render/visibility.h"
+#include "runtime/scene/host_math.h"
+#include "runtime/scene/placement.h"
+
+namespace isoshade::render {
+
+using scene::Instance;
+using scene::Object;
+using scene::Scene;
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+
+namespace {
+
+lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
+  lower::LightKinds kinds{false, false, false};
+  for (const scene::Light& light : lights) {
+    kinds.directional |= light.kind == scene::LightKind::directional;
+    kinds.point |= light.kind == scene::LightKind::point;
+    kinds.spot |= light.kind == scene::LightKind::spot;
+  }
+  return kinds;
+}
+
+/// What culling means for a mesh that a mirroring transform turns inside out.
+backends::Cull cull_of(graph::Cull cull, bool mirrored) {
+  switch (cull) {
+    case graph::Cull::none: return backends::Cull::none;
+    case graph::Cull::back: return mirrored ? backends::Cull::front : backends::Cull::back;
+    case graph::Cull::front: return mirrored ? backends::Cull::back : backends::Cull::front;
+  }
+  return backends::Cull::none;
+}
+
+class Planner {
+ public:
+  Planner(const Scene& scene, const Options& options, Diagnostics& diagnostics)
+      : scene_(scene), options_(options), diagnostics_(diagnostics) {}
+
+  std::optional<Plan> plan();
+
+ private:
+  struct PassPrograms {
+    uint32_t vertex, pixel;  // in Frame::programs
+  };
+
+  bool compile_effects();
+  uint32_t add_program(const driver::Program& program);
+  bool resolve_parameters();
+  bool check_limits();
+  void make_meshes();
+  void place_object(size_t o);
+  void place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
+                  const glm::mat4& projected);
+
+  const Scene& scene_;
+  const Options& options_;
+  Diagnostics& diagnostics_;
+  Plan plan_;
+  scene::View view_;
+  std::vector<size_t> effect_of_object_;
+  std::vector<std::vector<PassPrograms>> programs_of_effect_;
+  std::map<std::string, uint32_t> program_by_text_;
+  std::vector<ObjectParameters> parameters_;
+  std::vector<size_t> mesh_of_object_;
+};
+
+bool Planner::compile_effects() {
+  driver::Options options = options_.compiler;
+  options.lights = kinds_of(scene_.lights);
+  std::map<std::string, size_t> known;
+  bool good = true;
+  for (const Object& object : scene_.objects) {
+    const auto [found, is_new] = known.try_emplace(object.effect, plan_.effects.size());
+    effect_of_object_.push_back(found->second);
+    if (!is_new) continue;
+    auto effect = driver::compile_effect(object.effect, options, diagnostics_);
+    if (!effect && !diagnostics_.full() && !diagnostics_.all().empty()) {
+      diagnostics_.all().back().note(object.effect_where, "the effect of " + quote(object.name));
+    }
+    good = good && effect.has_value();
+    plan_.effects.push_back(effect ? *std::move(effect) : driver::Effect{});
+  }
+  if (!good) return false;
+  // Only now, when no effect moves any more.
+  for (const driver::Effect& effect : plan_.effects) {
+    std::vector<PassPrograms>& programs = programs_of_effect_.emplace_back();
+    for (const driver::Pass& pass : effect.passes)
+      programs.push_back({add_program(pass.vertex), add_program(pass.pixel)});
+  }
+  return true;
+}
+
+/// Programs that do the same are run as one: the vertex programs of most effects are.
+uint32_t Planner::add_program(const driver::Program& program) {
+  std::string text = std::to_string(static_cast<int>(program.stage)) + "\n" + std::to_string(program.entry) +
+                     "\n" + ir::print(program.module);
+  const auto next = static_cast<uint32_t>(plan_.frame.programs.size());
+  const auto [found, is_new] = program_by_text_.try_emplace(std::move(text), next);
+  if (is_new) plan_.frame.programs.push_back(&program);
+  return found->second;
+}
+
+bool Planner::resolve_parameters() {
+  bool good = true;
+  for (size_t o = 0; o < scene_.objects.size(); ++o) {
+    auto parameters =
+        ObjectParameters::resolve(scene_.objects[o], plan_.effects[effect_of_object_[o]], diagnostics_);
+    good = good && parameters.has_value();
+    if (good) parameters_.push_back(*std::move(parameters));
+  }
+  return good;
+}
+
+bool Planner::check_limits() {
+  struct Count {
+    std::string_view what;
+    int64_t limit;
+    int64_t total = 0;
+  };
+  Count vertices{"vertices", max_drawn_vertices};
+  Count triangles{"triangles", max_drawn_triangles};
+  Count words{"words of object records", max_object_words};
+  for (size_t o = 0; o < scene_.objects.size(); ++o) {
+    const Object& object = scene_.objects[o];
+    const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+    const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
+    vertices.total += draws * scene::vertex_count(object.mesh);
+    triangles.total += draws * scene::triangle_count(object.mesh);
+    words.total += draws * (lower::object_word::parameters + parameters_[o].word_count());
+    for (const Count* count : {&vertices, &triangles, &words}) {
+      if (count->total <= count->limit) continue;
+      diagnostics_
+          .report(Id::too_large, object.name_where,
+                  "with object " + quote(object.name) + " the scene has more than " +
+                      std::to_string(count->limit) + " " + std::string(count->what) + " to draw")
+          .suggest("draw fewer copies, or meshes of fewer segments");
+      return false;
+    }
+  }
+  return true;
+}
+
+void Planner::make_meshes() {
+  using Key = std::tuple<scene::MeshKind, float, float, float, int, int>;
+  std::map<Key, size_t> known;
+  std::vector<float>& vertices = plan_.frame.vertices;
+  for (const Object& object : scene_.objects) {
+    const scene::MeshShape& shape = object.mesh;
+    const Key key{shape.kind, shape.size.x, shape.size.y, shape.size.z, shape.segments, shape.rings};
+    const auto [found, is_new] = known.try_emplace(key, plan_.meshes.size());
+    mesh_of_object_.push_back(found->second);
+    if (!is_new) continue;
+    scene::Mesh mesh = scene::make_mesh(shape);
+    StoredMesh stored;
+    stored.first_vertex = static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride);
+    stored.vertex_count = static_cast<uint32_t>(mesh.vertices.size() / lower::vertex_word::stride);
+    stored.indices = std::move(mesh.indices);
+    stored.low = mesh.low;
+    stored.high = mesh.high;
+    vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    plan_.meshes.push_back(std::move(stored));
+  }
+}
+
+void Planner::place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
+                         const glm::mat4& projected) {
+  namespace word = lower::object_word;
+  const glm::mat3 normal = scene::normal_matrix(model);
+  const std::vector<float> parameters = parameters_[o].words(object, instance);
+  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+  const glm::vec3& scale = object.transform.scale;
+  const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
+  for (size_t p = 0; p < effect.passes.size(); ++p) {
+    const PassPrograms& programs = programs_of_effect_[effect_of_object_[o]][p];
+    const size_t first = plan_.frame.objects.size();
+    plan_.frame.objects.resize(first + word::parameters);
+    float* record = &plan_.frame.objects[first];
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 3; ++r) record[word::model + 3 * c + r] = scene::canonical(model[c][r]);
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) record[word::normal + 3 * c + r] = scene::canonical(normal[c][r]);
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 4; ++r) record[word::projected + 4 * c + r] = scene::canonical(projected[c][r]);
+    record[word::program] = static_cast<float>(programs.pixel);
+    plan_.frame.objects.insert(plan_.frame.objects.end(), parameters.begin(), parameters.end());
+
+    backends::Draw draw;
+    draw.vertex_program = programs.vertex;
+    draw.pixel_program = programs.pixel;
+    draw.object = static_cast<int>(first);
+    draw.first_vertex = mesh.first_vertex;
+    draw.vertex_count = mesh.vertex_count;
+    draw.indices = mesh.indices;
+    draw.cull = cull_of(effect.passes[p].cull, mirrored);
+    plan_.frame.draws.push_back(draw);
+    plan_.stats.vertices += draw.vertex_count;
+    plan_.stats.triangles += static_cast<int64_t>(mesh.indices.size() / 3);
+  }
+}
+
+void Planner::place_object(size_t o) {
+  const Object& object = scene_.objects[o];
+  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+  const int64_t count = scene::instance_count(object);
+  int64_t unseen = 0;
+  for (int64_t i = 0; i < count; ++i) {
+    const Instance instance = scene::instance(object, i);
+    const glm::mat4 model = scene::model_matrix(object, instance);
+    const glm::mat4 projected = scene::multiply(view_.projection, model);
+    if (options_.skip &&
+        outside_view(mesh.low, mesh.high, projected, plan_.frame.width, plan_.frame.height)) {
+      ++unseen;
+    } else {
+      place_copy(object, o, instance, model, projected);
+    }
+  }
+  plan_.stats.copies += count;
+  if (unseen == 0) return;
+  const std::string what =
+      count == 1 ? object.name
+                 : std::to_string(unseen) + " of " + std::to_string(count) + " copies of " + object.name;
+  plan_.stats.skips.push_back({what, "outside of the view"});
+}
+
+std::optional<Plan> Planner::plan() {
+  Clock clock;
+  if (!compile_effects()) return std::nullopt;
+  plan_.stats.compile_seconds = clock.lap();
+  if (!resolve_parameters() || !check_limits()) return std::nullopt;
+
+  backends::Frame& frame = plan_.frame;
+  frame.width = options_.width > 0 ? options_.width : scene_.width;
+  frame.height = options_.height > 0 ? options_.height : scene_.height;
+  make_meshes();
+  {
+    const lanes::FpGuard guard;
+    view_ = scene::make_view(scene_.camera, frame.width, frame.height);
+    for (int i = 0; i < lower::frame_word::count; ++i) frame.frame.push_back(scene::canonical(view_.eye[i]));
+    for (const scene::Light& light : scene_.lights) {
+      const auto record = scene::light_record(light);
+      frame.lights.insert(frame.lights.end(), record.begin(), record.end());
+    }
+    for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
+    for (size_t i = 0; i < 4; ++i) frame.background[i] = scene::canonical(scene_.background[i]);
+  }
+  frame.light_count = static_cast<int>(scene_.lights.size());
+
+  PlanStats& stats = plan_.stats;
+  stats.draws = static_cast<int64_t>(frame.draws.size());
+  stats.meshes = static_cast<int64_t>(plan_.meshes.size());
+  stats.mesh_vertices = static_cast<int64_t>(frame.vertices.size()) / lower::vertex_word::stride;
+  stats.effects = static_cast<int64_t>(plan_.effects.size());
+  stats.programs = static_cast<int64_t>(frame.programs.size());
+  stats.lights = frame.light_count;
+  stats.plan_seconds = clock.lap();
+  return std::move(plan_);
+}
+
+}  // namespace
+
+std::optional<Plan> plan_frame(const Scene& scene, const Options& options, Diagnostics& diagnostics) {
+  return Planner(scene, options, diagnostics).plan();
+}
+
+}  // namespace isoshade::render

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a scene to a frame: everything that is the same for all backends, worked out once.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/backend.h"
+#include "compiler/driver/driver.h"
+#include "runtime/render/stats.h"
+#include "runtime/scene/mesh.h"
+#include "runtime/scene/scene.h"
+
+namespace isoshade::render {
+
+/// Limits that keep hostile scenes harmless, over all draws of a frame.
+inline constexpr int64_t max_drawn_vertices = 8'000'000;   ///< 16 bytes each, after the vertex stage
+inline constexpr int64_t max_drawn_triangles = 8'000'000;  ///< 64 bytes each, once clipped and snapped
+inline constexpr int64_t max_object_words = 16'000'000;    ///< of all records
+
+struct Options {
+  int width = 0;  ///< 0: the scene's own size
+  int height = 0;
+  bool skip = true;          ///< leave out what cannot be seen; off, the image has the same bits
+  driver::Options compiler;  ///< `lights` is set by the scene
+};
+
+/// A mesh of the frame: where its vertices lie in Frame::vertices, and what its draws point to.
+struct StoredMesh {
+  uint32_t first_vertex = 0;
+  uint32_t vertex_count = 0;
+  std::vector<uint32_t> indices;
+  glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the box around it
+};
+
+/// A frame and all that it points into; made once, drawn by as many backends as are asked. Can be moved: what
+/// the frame points to stays where it is.
+struct Plan {
+  std::vector<driver::Effect> effects;
+  std::vector<StoredMesh> meshes;
+  backends::Frame frame;
+  PlanStats stats;
+
+  Plan() = default;
+  Plan(Plan&&) = default;
+  Plan& operator=(Plan&&) = default;
+};
+
+/// Compiles the effects, each once, makes the meshes, each once, and fills the arrays of the frame: one
+/// record for each pass of each copy of each object that the camera may see, in the order of the scene.
+/// Reports effects that do not compile, parameters that an effect has not or that do not fit, and scenes
+/// beyond the limits.
+std::optional<Plan> plan_frame(const scene::Scene& scene, const Options& options,
+                               support::Diagnostics& diagnostics);
+
+}  // namespace isoshade::render

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/stats.h"
+
+#include <fmt/format.h>
+
+namespace isoshade::render {
+
+std::string text(const PlanStats& stats) {
+  std::string text = fmt::format(
+      "scene:    {} objects, {} draws, {} lights\n"
+      "meshes:   {} stored with {} vertices; {} vertices and {} triangles are drawn\n"
+      "effects:  {} compiled into {} programs in {:.1f} ms\n"
+      "plan:     {:.1f} ms\n",
+      stats.copies, stats.draws, stats.lights, stats.meshes, stats.mesh_vertices, stats.vertices,
+      stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, 1e3 * stats.plan_seconds);
+  for (const Skip& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
+  return text;
+}
+
+std::string text(const DrawStats& stats) {
+  return fmt::format(
+      "vertices: {:.1f} ms\n"
+      "clip:     {:.1f} ms; leaves {} triangles, makes {} vertices\n"
+      "draw:     {:.1f} ms\n",
+      1e3 * stats.transform_seconds, 1e3 * stats.clip_seconds, stats.triangles, stats.made_vertices,
+      1e3 * stats.draw_seconds);
+}
+
+}  // namespace isoshade::render

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was drawn, what was skipped and why: `render --stats`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace isoshade::render {
+
+/// Something left out that would not have changed a bit of the image.
+struct Skip {
+  std::string what;    ///< "12 of 50 copies of balls"
+  std::string reason;  ///< "outside of the view"
+};
+
+struct PlanStats {
+  int64_t copies = 0;                     ///< of all objects, those skipped too
+  int64_t draws = 0;                      ///< passes of copies
+  int64_t vertices = 0, triangles = 0;    ///< of all draws
+  int64_t meshes = 0, mesh_vertices = 0;  ///< stored
+  int64_t effects = 0, programs = 0;      ///< compiled
+  int64_t lights = 0;
+  double compile_seconds = 0, plan_seconds = 0;
+  std::vector<Skip> skips;
+};
+
+struct DrawStats {
+  int64_t triangles = 0;      ///< left by clipping and culling
+  int64_t made_vertices = 0;  ///< by clipping
+  double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0;
+};
+
+/// Lines of text, each with its end.
+std::string text(const PlanStats& stats);
+std::string text(const DrawStats& stats);
+
+}  // namespace isoshade::render
