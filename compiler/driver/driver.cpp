@@ -105,6 +105,13 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const std::ve
 
 }  // namespace
 
+std::optional<graph::DocumentKind> kind_of(const std::string& path, Diagnostics& diagnostics) {
+  const support::Source source = graph::read_source(path, diagnostics);
+  if (source == nullptr) return std::nullopt;
+  const auto document = graph::parse_document(source, diagnostics);
+  return document ? graph::document_kind(*document, diagnostics) : std::nullopt;
+}
+
 std::optional<Effect> compile_effect(const std::string& path, const Options& options,
                                      Diagnostics& diagnostics) {
   const auto typed = read_graph(path, graph::DocumentKind::effect, options, diagnostics);

@@ -40,6 +40,9 @@ struct Effect {
   std::vector<Pass> passes;
 };
 
+/// Which kind of document a file holds.
+std::optional<graph::DocumentKind> kind_of(const std::string& path, support::Diagnostics& diagnostics);
+
 /// `path` is an effect document.
 std::optional<Effect> compile_effect(const std::string& path, const Options& options,
                                      support::Diagnostics& diagnostics);

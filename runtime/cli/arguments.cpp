@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cli/arguments.h"
+
+#include <CLI/CLI.hpp>
+
+#include "runtime/cli/places.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+constexpr const char* footer =
+    "Exit codes: 0 success (verify: identical), 1 different (verify), 2 error.\n"
+    "\"-\" is standard input or output. Errors go to standard error.";
+
+bool parse_size(const std::string& text, Size& size) {
+  const size_t x = text.find('x');
+  if (x == std::string::npos || text.size() > 11) return false;
+  const auto number = [](const std::string& digits, int& out) {
+    if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)
+      return false;
+    out = std::stoi(digits);
+    return out >= 1 && out <= 8192;
+  };
+  return number(text.substr(0, x), size.width) && number(text.substr(x + 1), size.height);
+}
+
+const CLI::Validator size_text(
+    [](std::string& text) {
+      Size size;
+      return parse_size(text, size) ? std::string()
+                                    : "\"" + text + "\" is no size: write WxH, 1x1 to 8192x8192";
+    },
+    "WxH");
+
+const CLI::IsMember backend_names({"cpu", "vulkan", "interpreter"});
+const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
+const CLI::IsMember division_names({"native", "exact"});
+
+void add_choice(CLI::App& app, BackendChoice& choice, bool lanes = true) {
+  if (lanes)
+    app.add_option("--lanes", choice.lanes, "Lanes of the cpu backend (default: the machine's widest)")
+        ->check(lane_names);
+  app.add_option("--threads", choice.threads, "Threads of the cpu backend (default: every core)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--device", choice.device,
+                 "Vulkan device: part of its name, or its number in `isoshade devices`");
+  app.add_option("--division", choice.division, "Force how vulkan divides (default: what the probe finds)")
+      ->check(division_names);
+  app.add_option("--cxx", choice.compiler,
+                 "Compiler of generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
+}
+
+void add_settings(CLI::App& app, std::vector<std::string>& settings) {
+  app.add_option("--set", settings,
+                 "Override a parameter: NAME.PARAMETER=VALUE, or PARAMETER=VALUE if only one has it")
+      ->take_all();
+}
+
+}  // namespace
+
+std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
+  CLI::App app(
+      "Compiles shader graphs to GLSL and C++, renders scenes with both, and proves the images identical.",
+      "isoshade");
+  app.footer(footer);
+  app.set_version_flag("--version", std::string(version));
+  app.require_subcommand(1);
+  app.fallthrough();
+
+  Arguments parsed;
+  app.add_flag("-q,--quiet", parsed.common.quiet, "Print results and errors only");
+  app.add_option("--library", parsed.common.library, "Folder of the library's function documents")
+      ->check(CLI::ExistingDirectory);
+
+  CompileArguments compile;
+  CLI::App* compile_app =
+      app.add_subcommand("compile", "Write the programs of a graph as GLSL, C++ and SPIR-V");
+  compile_app->add_option("GRAPH", compile.graph, "A function or effect document")->required();
+  compile_app->add_option("-o,--output", compile.output, "The folder to write to")->required();
+  compile_app->add_option("--target", compile.targets, "What to write: glsl, cpp, spirv")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"glsl", "cpp", "spirv"}))
+      ->capture_default_str();
+  compile_app->add_option("--division", compile.division, "How the GLSL divides: native or exact")
+      ->check(division_names)
+      ->capture_default_str();
+  compile_app->add_option(
+      "--dump-after", compile.dump_after,
+      "Print what a stage made: document, graph, typed, lower, a pass, or `help` for the list");
+
+  RenderArguments render;
+  std::string render_size;
+  CLI::App* render_app = app.add_subcommand("render", "Render a scene to an image");
+  render_app->add_option("SCENE", render.scene, "A scene document")->required();
+  render_app
+      ->add_option("-o,--output", render.output,
+                   "FILE.png (encoded, 8 bits) or FILE.exr (linear, with depth)")
+      ->required();
+  render_app->add_option("--backend", render.backend, "cpu, vulkan or interpreter")
+      ->check(backend_names)
+      ->capture_default_str();
+  render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
+  render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why");
+  add_settings(*render_app, render.settings);
+  add_choice(*render_app, render.choice);
+
+  VerifyArguments verify;
+  std::vector<std::string> verify_sizes;
+  CLI::App* verify_app =
+      app.add_subcommand("verify", "Render scenes on several backends and compare every bit");
+  verify_app->add_option("SCENE", verify.scenes, "Scene documents")->required();
+  verify_app
+      ->add_option("--backends", verify.backends, "Backends to compare with the first, separated by commas")
+      ->delimiter(',')
+      ->check(backend_names)
+      ->capture_default_str();
+  verify_app->add_option("--size", verify_sizes, "Sizes instead of the scene's, separated by commas")
+      ->delimiter(',')
+      ->check(size_text);
+  verify_app
+      ->add_option("--lanes", verify.lanes,
+                   "Lane counts of the cpu backend, each compared, separated by commas")
+      ->delimiter(',')
+      ->check(lane_names);
+  verify_app->add_option("--report", verify.report,
+                         "Where images differ, write both and a heat map to this folder");
+  verify_app->add_option("--golden", verify.golden, "A file of recorded hashes to hold the scenes against");
+  verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
+  add_settings(*verify_app, verify.settings);
+  add_choice(*verify_app, verify.choice, false);
+
+  EvalArguments eval;
+  CLI::App* eval_app = app.add_subcommand("eval", "Evaluate a function document over a table");
+  eval_app->add_option("FUNCTION", eval.function, "A function document")->required();
+  eval_app->add_option("--inputs", eval.inputs, "A CSV file: a column an input, vectors as l.x l.y l.z")
+      ->required();
+  eval_app->add_option("-o,--output", eval.output, "The CSV file to write")->capture_default_str();
+  eval_app->add_option("--backend", eval.backend, "cpu, vulkan or interpreter")
+      ->check(backend_names)
+      ->capture_default_str();
+  add_choice(*eval_app, eval.choice);
+
+  DevicesArguments devices;
+  CLI::App* devices_app =
+      app.add_subcommand("devices", "List Vulkan devices and what the probe finds on each");
+  devices_app->add_option("--device", devices.choice.device, "Only this device");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11's own codes are for its own kinds of error; ours are documented.
+    exit = app.exit(error) == 0 ? Exit::success : Exit::failure;
+    return std::nullopt;
+  }
+  if (!render_size.empty()) {
+    render.size.emplace();
+    parse_size(render_size, *render.size);
+  }
+  for (const std::string& text : verify_sizes) parse_size(text, verify.sizes.emplace_back());
+  if (compile_app->parsed()) parsed.compile = compile;
+  if (render_app->parsed()) parsed.render = render;
+  if (verify_app->parsed()) parsed.verify = verify;
+  if (eval_app->parsed()) parsed.eval = eval;
+  if (devices_app->parsed()) parsed.devices = devices;
+  return parsed;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line as values. Only arguments.cpp knows CLI11, which takes longer to compile than all the rest.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isoshade::cli {
+
+/// Exit codes of every subcommand.
+enum Exit : int {
+  success = 0,    ///< done; for verify: identical
+  different = 1,  ///< verify: some bit differs, or a hash is not the recorded one
+  failure = 2,    ///< an error, told on stderr
+};
+
+struct Size {
+  int width = 0;
+  int height = 0;
+};
+
+/// What every subcommand that runs programs understands.
+struct BackendChoice {
+  std::string lanes;   ///< "1" "4" "8" "16" "8x2" "16x2"; empty: the widest of the machine
+  int threads = 0;     ///< 0: every core
+  std::string device;  ///< part of a Vulkan device's name, or its number; empty: a CPU device if there is one
+  std::string compiler;  ///< of generated C++; empty: $ISOSHADE_CXX, c++, g++, clang++
+  std::string division;  ///< "", "native" or "exact": overrides what the probe chose
+};
+
+struct CompileArguments {
+  std::string graph;
+  std::string output;
+  std::vector<std::string> targets{"glsl", "cpp"};
+  std::string division = "native";
+  std::string dump_after;
+};
+
+struct RenderArguments {
+  std::string scene;
+  std::string output;
+  std::string backend = "cpu";
+  std::optional<Size> size;
+  std::vector<std::string> settings;  ///< name.parameter=value
+  bool stats = false;
+  BackendChoice choice;
+};
+
+struct VerifyArguments {
+  std::vector<std::string> scenes;
+  std::vector<std::string> backends{"cpu", "vulkan"};
+  std::vector<Size> sizes;
+  std::vector<std::string> settings;
+  std::vector<std::string> lanes;  ///< each makes a cpu backend
+  std::string report;
+  std::string golden;
+  bool update = false;
+  BackendChoice choice;
+};
+
+struct EvalArguments {
+  std::string function;
+  std::string inputs;
+  std::string output = "-";
+  std::string backend = "cpu";
+  BackendChoice choice;
+};
+
+struct DevicesArguments {
+  BackendChoice choice;
+};
+
+struct Common {
+  bool quiet = false;
+  std::string library;  ///< the folder of library documents; empty: found beside the command or as installed
+};
+
+struct Arguments {
+  Common common;
+  std::optional<CompileArguments> compile;
+  std::optional<RenderArguments> render;
+  std::optional<VerifyArguments> verify;
+  std::optional<EvalArguments> eval;
+  std::optional<DevicesArguments> devices;
+};
+
+/// Exactly one subcommand is set, or `exit` is (help, version, a wrong command line).
+std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit);
+
+}  // namespace isoshade::cli

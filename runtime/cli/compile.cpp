@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade compile: the programs of a graph as files.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "backends/cpu/lanes_headers.h"
+#include "compiler/driver/driver.h"
+#include "compiler/emit/spirv.h"
+#include "runtime/cli/session.h"
+#include "runtime/scene/output_file.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Writes the files of one compilation.
+class Writer {
+ public:
+  Writer(const CompileArguments& arguments, support::Diagnostics& diagnostics)
+      : arguments_(arguments), diagnostics_(diagnostics) {}
+
+  bool program(const std::string& stem, const driver::Program& program) {
+    const bool vertex = program.stage == driver::Stage::vertex;
+    if (wants("glsl") || wants("spirv")) {
+      const auto division =
+          arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
+      const std::string text = driver::glsl(program, division);
+      const std::string name = stem + (vertex ? ".vert" : ".frag");
+      if (wants("glsl") && !write(name, text)) return false;
+      if (wants("spirv") && !spirv(name, text, vertex)) return false;
+    }
+    return !wants("cpp") || write(stem + ".cpp", driver::cpp(program));
+  }
+
+  bool headers() {
+    if (!wants("cpp")) return true;
+    for (const cpu::Header& header : cpu::lanes_headers())
+      if (!write(std::string(header.path), header.text)) return false;
+    return true;
+  }
+
+  bool write(const std::string& name, std::string_view bytes) {
+    const std::filesystem::path path = std::filesystem::path(arguments_.output) / name;
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(),
+                                        error);  // write_file reports what cannot be written
+    if (!scene::write_file(path.string(), bytes, diagnostics_)) return false;
+    written_.push_back(path.string());
+    return true;
+  }
+
+  const std::vector<std::string>& written() const { return written_; }
+
+ private:
+  bool wants(std::string_view target) const {
+    return std::ranges::find(arguments_.targets, target) != arguments_.targets.end();
+  }
+
+  bool spirv(const std::string& name, const std::string& text, bool vertex) {
+    const auto kind = vertex ? emit::ShaderKind::vertex : emit::ShaderKind::fragment;
+    const auto words = emit::compile_spirv(text, kind, diagnostics_);
+    if (!words) return false;
+    return write(name + ".spv", {reinterpret_cast<const char*>(words->data()), 4 * words->size()});
+  }
+
+  const CompileArguments& arguments_;
+  support::Diagnostics& diagnostics_;
+  std::vector<std::string> written_;
+};
+
+ordered_json reflect(const std::vector<driver::Field>& fields) {
+  ordered_json list = ordered_json::array();
+  for (const driver::Field& field : fields) {
+    ordered_json row{{"name", field.name}, {"type", field.type}, {"words", field.words}};
+    if (!field.value.empty()) row["value"] = field.value;
+    list.push_back(row);
+  }
+  return list;
+}
+
+bool write_effect(const driver::Effect& effect, Writer& writer) {
+  ordered_json reflection{{"effect", effect.name}, {"document", effect.document}};
+  reflection["parameters"] = reflect(effect.parameters);
+  for (const driver::Pass& pass : effect.passes) {
+    const std::string stem = effect.name + "." + pass.name;
+    if (!writer.program(stem + ".vertex", pass.vertex) || !writer.program(stem + ".pixel", pass.pixel))
+      return false;
+    reflection["passes"].push_back(
+        {{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}});
+  }
+  return writer.write(effect.name + ".json", reflection.dump(2) + "\n");
+}
+
+bool write_function(const driver::Program& program, Writer& writer) {
+  ordered_json reflection{{"function", program.name}, {"document", program.document}};
+  reflection["inputs"] = reflect(program.inputs);
+  reflection["outputs"] = reflect(program.results);
+  return writer.program(program.name, program) &&
+         writer.write(program.name + ".json", reflection.dump(2) + "\n");
+}
+
+}  // namespace
+
+int compile(const CompileArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics;
+  check::Library library(library_root(common));
+  driver::Options options;
+  options.library = &library;
+  int dumped = 0;
+  if (!arguments.dump_after.empty())
+    options.dump = [&](std::string_view stage, const std::function<std::string()>& text) {
+      if (arguments.dump_after == "help") std::printf("%.*s\n", static_cast<int>(stage.size()), stage.data());
+      if (arguments.dump_after != stage) return;
+      ++dumped;
+      std::printf("# after %.*s\n%s", static_cast<int>(stage.size()), stage.data(), text().c_str());
+    };
+
+  Writer writer(arguments, diagnostics);
+  const auto kind = driver::kind_of(arguments.graph, diagnostics);
+  bool done = false;
+  if (kind == graph::DocumentKind::function) {
+    const auto program = driver::compile_function(arguments.graph, options, diagnostics);
+    done = program && write_function(*program, writer);
+  } else if (kind) {
+    const auto effect = driver::compile_effect(arguments.graph, options, diagnostics);
+    done = effect && write_effect(*effect, writer);
+  }
+  if (done) done = writer.headers();
+  if (done && !arguments.dump_after.empty() && arguments.dump_after != "help" && dumped == 0)
+    diagnostics.report(support::Id::unknown_stage, "no stage \"" + arguments.dump_after + "\"")
+        .suggest("`--dump-after help` lists the stages of this graph");
+  if (flush(diagnostics) || !done) return failure;
+  if (!common.quiet)
+    for (const std::string& path : writer.written())
+      if (path.find("runtime/lanes/") == std::string::npos) std::fprintf(stderr, "wrote %s\n", path.c_str());
+  return success;
+}
+
+}  // namespace isoshade::cli

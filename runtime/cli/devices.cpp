@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade devices: what there is to run on, and whether it computes what the contract says.
+#include <cstdio>
+
+#include "runtime/cli/session.h"
+#ifdef ISOSHADE_VULKAN
+#include "backends/vulkan/backend.h"
+#endif
+
+namespace isoshade::cli {
+
+#ifdef ISOSHADE_VULKAN
+namespace {
+
+bool print_device(const vulkan::DeviceInfo& device, support::Diagnostics& diagnostics) {
+  std::printf("%d  %s\n   driver %s, Vulkan %s%s\n", device.index, device.name.c_str(), device.driver.c_str(),
+              device.api.c_str(), device.cpu ? ", software" : "");
+  vulkan::Options options;
+  options.device = std::to_string(device.index);
+  options.allow_unproven = true;
+  const auto backend = vulkan::create(options, diagnostics);
+  if (backend == nullptr) return false;
+  for (const vulkan::Check& check : backend->probe().checks)
+    std::printf("   %s  %s%s%s\n", check.passed ? "ok    " : "FAILED", check.name.c_str(),
+                check.detail.empty() ? "" : ": ", check.detail.c_str());
+  const char* division = backend->division() == driver::Division::native ? "native" : "exact";
+  std::printf("   division: %s; %s\n", division,
+              backend->probe().passed() ? "images are identical to every other device's"
+                                        : "NOT proven: images may differ from those of other devices");
+  return true;
+}
+
+}  // namespace
+#endif
+
+int devices([[maybe_unused]] const DevicesArguments& arguments, [[maybe_unused]] const Common& common) {
+  support::Diagnostics diagnostics;
+#ifdef ISOSHADE_VULKAN
+  bool any = false;
+  for (const vulkan::DeviceInfo& device : vulkan::list_devices(diagnostics)) {
+    const std::string& wanted = arguments.choice.device;
+    if (!wanted.empty() && wanted != std::to_string(device.index) &&
+        device.name.find(wanted) == std::string::npos)
+      continue;
+    any = true;
+    if (!print_device(device, diagnostics)) break;
+  }
+  if (!any && !diagnostics.has_errors())
+    diagnostics.report(support::Id::no_device, "no Vulkan device of that name")
+        .suggest("`isoshade devices` lists all");
+#else
+  diagnostics.report(support::Id::no_device, "this isoshade was built without Vulkan");
+#endif
+  return flush(diagnostics) ? failure : success;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade eval: a function document over a table.
+#include "compiler/driver/driver.h"
+#include "runtime/cli/session.h"
+#include "runtime/cli/table.h"
+#include "runtime/scene/output_file.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+bool evaluate(const EvalArguments& arguments, const Common& common, support::Diagnostics& diagnostics) {
+  check::Library library(library_root(common));
+  driver::Options options;
+  options.library = &library;
+  const auto program = driver::compile_function(arguments.function, options, diagnostics);
+  if (!program) return false;
+  const support::Source source = graph::read_source(arguments.inputs, diagnostics);
+  if (source == nullptr) return false;
+  const auto inputs = read_table(source, program->inputs, diagnostics);
+  if (!inputs) return false;
+  const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
+  if (backend == nullptr) return false;
+  progress(common, "evaluating " + std::to_string(inputs->rows) + " rows on " + backend->description());
+  Table results;
+  results.rows = inputs->rows;
+  if (!backend->evaluate(*program, inputs->words, inputs->rows, results.words, diagnostics)) return false;
+  return scene::write_file(arguments.output, write_table(results, program->results), diagnostics);
+}
+
+}  // namespace
+
+int eval(const EvalArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics;
+  const bool done = evaluate(arguments, common, diagnostics);
+  return flush(diagnostics) || !done ? failure : success;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade render: a scene to an image file.
+#include "runtime/render/render.h"
+
+#include <cstdio>
+
+#include "runtime/cli/scene_source.h"
+#include "runtime/cli/session.h"
+#include "runtime/scene/image_file.h"
+#include "runtime/scene/settings.h"
+
+namespace isoshade::cli {
+
+std::optional<scene::Scene> load_scene(const std::string& path, const std::vector<std::string>& settings,
+                                       support::Diagnostics& diagnostics) {
+  const support::Source source = graph::read_source(path, diagnostics);
+  if (source == nullptr) return std::nullopt;
+  auto document = graph::parse_document(source, diagnostics);
+  if (document && !settings.empty()) document = scene::apply_settings(*document, settings, diagnostics);
+  if (!document) return std::nullopt;
+  return scene::parse_scene(*document, diagnostics);
+}
+
+namespace {
+
+bool render_to_file(const RenderArguments& arguments, const Common& common,
+                    support::Diagnostics& diagnostics) {
+  if (!scene::check_image_path(arguments.output, diagnostics)) return false;
+  const auto scene = load_scene(arguments.scene, arguments.settings, diagnostics);
+  if (!scene) return false;
+  check::Library library(library_root(common));
+  render::Options options;
+  if (arguments.size) {
+    options.width = arguments.size->width;
+    options.height = arguments.size->height;
+  }
+  options.compiler.library = &library;
+  const auto plan = render::plan_frame(*scene, options, diagnostics);
+  if (!plan) return false;
+  const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
+  if (backend == nullptr) return false;
+  progress(common, "rendering on " + backend->description());
+  backends::Image image;
+  render::DrawStats stats;
+  if (!render::render(*plan, *backend, image, stats, diagnostics)) return false;
+  if (arguments.stats)
+    std::fputs((backend->description() + "\n" + render::text(plan->stats) + render::text(stats)).c_str(),
+               stderr);
+  const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
+  return scene::write_image(arguments.output, view, scene->output.encoding, scene->output.exposure,
+                            diagnostics);
+}
+
+}  // namespace
+
+int render(const RenderArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics;
+  const bool done = render_to_file(arguments, common, diagnostics);
+  return flush(diagnostics) || !done ? failure : success;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the subcommands share: where the library is, how diagnostics are printed, how backends are made.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "backends/backend.h"
+#include "compiler/check/library.h"
+#include "runtime/cli/arguments.h"
+
+namespace isoshade::cli {
+
+/// The folder of library documents: as given, $ISOSHADE_LIBRARY, the installed one beside the command, or that of
+/// the source tree the command was built from.
+std::string library_root(const Common& common);
+
+/// Prints what has been reported to stderr and forgets it; returns whether there was an error.
+bool flush(support::Diagnostics& diagnostics);
+
+/// Progress for a person: to stderr, if that is a terminal and nobody asked for quiet.
+void progress(const Common& common, const std::string& line);
+
+/// Makes a backend by its name. Where there is no compiler, the interpreter stands in for the cpu and says so.
+std::unique_ptr<backends::Backend> make_backend(const std::string& name, const BackendChoice& choice,
+                                                const Common& common, support::Diagnostics& diagnostics);
+
+int compile(const CompileArguments& arguments, const Common& common);
+int render(const RenderArguments& arguments, const Common& common);
+int verify(const VerifyArguments& arguments, const Common& common);
+int eval(const EvalArguments& arguments, const Common& common);
+int devices(const DevicesArguments& arguments, const Common& common);
+
+}  // namespace isoshade::cli

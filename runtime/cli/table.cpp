@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cli/table.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+
+#include "compiler/support/parse_number.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+enum class Cell : uint8_t { floating, integer, boolean };
+
+Cell cell_of(const driver::Field& field) {
+  if (field.type == "integer") return Cell::integer;
+  return field.type == "boolean" ? Cell::boolean : Cell::floating;
+}
+
+std::optional<int32_t> parse_cell(std::string_view text, Cell cell) {
+  if (cell == Cell::floating) {
+    const auto value = support::parse_float(text);
+    return value ? std::optional(std::bit_cast<int32_t>(*value)) : std::nullopt;
+  }
+  int32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (cell == Cell::boolean && value != 0 && value != 1) return std::nullopt;
+  return value;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(" \t\r\"");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r\"") - begin + 1);
+}
+
+/// Walks over a CSV text: lines, and the cells in them with their places.
+class Reader {
+ public:
+  Reader(const support::Source& source, support::Diagnostics& diagnostics)
+      : source_(source), text_(source->text()), diagnostics_(diagnostics) {}
+
+  bool next_line() {
+    while (at_ < text_.size()) {
+      size_t end = text_.find('\n', at_);
+      if (end == std::string_view::npos) end = text_.size();
+      line_begin_ = at_;
+      line_ = text_.substr(at_, end - at_);
+      at_ = end + 1;
+      if (!trimmed(line_).empty()) return true;
+    }
+    return false;
+  }
+
+  std::vector<std::string_view> cells() const {
+    std::vector<std::string_view> cells;
+    size_t begin = 0;
+    while (true) {
+      const size_t comma = line_.find(',', begin);
+      cells.push_back(trimmed(line_.substr(begin, comma == std::string_view::npos ? comma : comma - begin)));
+      if (comma == std::string_view::npos) return cells;
+      begin = comma + 1;
+    }
+  }
+
+  support::Diagnostic& report(std::string_view cell, std::string message) {
+    const auto begin = static_cast<uint32_t>(cell.empty() ? line_begin_ : cell.data() - text_.data());
+    const auto size = static_cast<uint32_t>(cell.empty() ? line_.size() : cell.size());
+    return diagnostics_.report(support::Id::bad_table, {source_, begin, begin + size}, std::move(message));
+  }
+
+ private:
+  const support::Source& source_;
+  std::string_view text_;
+  support::Diagnostics& diagnostics_;
+  size_t at_ = 0;
+  size_t line_begin_ = 0;
+  std::string_view line_;
+};
+
+struct Column {
+  std::string name;
+  size_t word;
+  Cell cell;
+};
+
+std::vector<Column> all_columns(const std::vector<driver::Field>& fields) {
+  std::vector<Column> columns;
+  for (const driver::Field& field : fields)
+    for (const std::string& name : columns_of(field))
+      columns.push_back({name, columns.size(), cell_of(field)});
+  return columns;
+}
+
+/// Which of `columns` each cell of the heading names.
+std::optional<std::vector<const Column*>> read_heading(Reader& reader, const std::vector<Column>& columns) {
+  std::vector<const Column*> heading;
+  std::vector<std::string_view> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  bool good = true;
+  for (std::string_view cell : reader.cells()) {
+    const auto found = std::ranges::find(columns, cell, &Column::name);
+    if (found == columns.end()) {
+      auto& report = reader.report(cell, "no input has a column \"" + std::string(cell) + "\"");
+      if (const auto near = support::nearest(cell, names); !near.empty())
+        report.suggest("did you mean \"" + std::string(near) + "\"?");
+      good = false;
+    } else if (std::ranges::find(heading, &*found) != heading.end()) {
+      reader.report(cell, "the column \"" + std::string(cell) + "\" is there twice");
+      good = false;
+    } else {
+      heading.push_back(&*found);
+    }
+  }
+  for (const Column& column : columns) {
+    if (!good || std::ranges::find(heading, &column) != heading.end()) continue;
+    reader.report({}, "there is no column \"" + column.name + "\"");
+    good = false;
+  }
+  return good ? std::optional(std::move(heading)) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> columns_of(const driver::Field& field) {
+  if (field.words == 1) return {field.name};
+  std::vector<std::string> columns;
+  for (int i = 0; i < field.words; ++i)
+    columns.push_back(field.name + "." + (field.words <= 4 ? std::string(1, "xyzw"[i]) : std::to_string(i)));
+  return columns;
+}
+
+std::optional<Table> read_table(const support::Source& source, const std::vector<driver::Field>& fields,
+                                support::Diagnostics& diagnostics) {
+  Reader reader(source, diagnostics);
+  if (!reader.next_line()) {
+    diagnostics.report(support::Id::bad_table, {source, 0, 0}, "the table is empty")
+        .suggest("its first line names the columns");
+    return std::nullopt;
+  }
+  const std::vector<Column> columns = all_columns(fields);
+  const auto heading = read_heading(reader, columns);
+  if (!heading) return std::nullopt;
+  Table table;
+  while (reader.next_line()) {
+    const std::vector<std::string_view> cells = reader.cells();
+    if (cells.size() != heading->size()) {
+      reader.report({}, "this row has " + std::to_string(cells.size()) + " cells, and there are " +
+                            std::to_string(heading->size()) + " columns");
+      return std::nullopt;
+    }
+    table.words.resize(table.words.size() + columns.size());
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const Column& column = *(*heading)[i];
+      const auto value = parse_cell(cells[i], column.cell);
+      if (!value) {
+        constexpr std::string_view kinds[] = {"a float", "an integer", "a boolean, 0 or 1"};
+        reader.report(cells[i], "\"" + std::string(cells[i].substr(0, 40)) + "\" is not " +
+                                    std::string(kinds[static_cast<size_t>(column.cell)]));
+        return std::nullopt;
+      }
+      table.words[table.rows * columns.size() + column.word] = *value;
+    }
+    ++table.rows;
+  }
+  return table;
+}
+
+std::string write_table(const Table& table, const std::vector<driver::Field>& fields) {
+  const std::vector<Column> columns = all_columns(fields);
+  std::string text;
+  for (const Column& column : columns) text += (column.word == 0 ? "" : ",") + column.name;
+  text += "\n";
+  for (size_t row = 0; row < table.rows; ++row) {
+    for (const Column& column : columns) {
+      const int32_t word = table.words[row * columns.size() + column.word];
+      if (column.word != 0) text += ",";
+      text += column.cell == Cell::floating ? support::format_hex_float(std::bit_cast<float>(word))
+                                            : std::to_string(word);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CSV tables of `isoshade eval`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/driver/program.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::cli {
+
+/// Rows of words, one record after another, in the order of the fields.
+struct Table {
+  size_t rows = 0;
+  std::vector<int32_t> words;
+};
+
+/// The columns of a field: its name, or "l.x" "l.y" ... for vectors and colours, "m.0" ... for matrices.
+std::vector<std::string> columns_of(const driver::Field& field);
+
+/// Reads a table whose first line names the columns, in any order. Floats are decimal or hex ("0x1.8p+1"), `nan`,
+/// `inf`, `-inf`; denormals become zeros. Booleans are 0 or 1. Columns that belong to no field are an error.
+std::optional<Table> read_table(const support::Source& source, const std::vector<driver::Field>& fields,
+                                support::Diagnostics& diagnostics);
+
+/// Floats as hex, so that every bit is there.
+std::string write_table(const Table& table, const std::vector<driver::Field>& fields);
+
+}  // namespace isoshade::cli
