@@ -33,13 +33,13 @@ F exp2(F x) {
 }
 
 /// e^x.
-/// Domain: all floats; x > 88.722839 gives +inf, x < -87.336540 gives 0, NaN gives NaN.
+/// Domain: all floats; x > 88.7228317 gives +inf, x < -87.3365402 gives 0, NaN gives NaN.
 /// Error: 1 ULP.
 /// Source: Cody and Waite's reduction by 9 + 24 bits of log(2); polynomial by Sollya's fpminimax.
 template <class F>
 F exp(F x) {
-  constexpr float lowest = -87.336540f;
-  constexpr float highest = 88.722839f;
+  constexpr float lowest = -87.3365402f;
+  constexpr float highest = 88.7228317f;
   const F above = select(x < lowest, F(lowest), x);
   const F within = select(above <= highest, above, F(highest));
   const F n = floor(within * 1.44269502f + 0.5f);

@@ -28,15 +28,16 @@ vec<F, 3> cross(vec<F, 3> x, vec<F, 3> y) {
   return {a, b, c};
 }
 
-/// The exponent field, in place, of the largest |component|: from 2^-126's to 2^127's. NaN counts as zero.
+/// The largest |component|, at least 2^-126. NaN counts as zero.
 template <class F, int N>
-int_of<F> largest_exponent(vec<F, N> v) {
+F largest_magnitude(vec<F, N> v) {
   F largest = max(F(smallest_normal), abs(v[0]));
   for (int i = 1; i < N; ++i) largest = max(largest, abs(v[i]));
-  return bits_nonnan(min(largest, F(largest_finite))) & exponent_bits;
+  return largest;
 }
 
-/// v times the power of two that makes its largest |component| lie in [2, 4), so that squares are in range.
+/// v times the power of two that brings a magnitude of this exponent field (in place) into [2, 4), so that squares
+/// neither overflow nor underflow. An infinite magnitude makes it 0.
 template <class F, int N>
 vec<F, N> scale_to_unity(vec<F, N> v, int_of<F> exponent) {
   return v * splat<N>(from_bits_normal(exponent_bits - exponent));
@@ -47,7 +48,8 @@ vec<F, N> scale_to_unity(vec<F, N> v, int_of<F> exponent) {
 /// Error: 3 ULP in each component.
 template <class F, int N>
 vec<F, N> normalize(vec<F, N> v) {
-  const vec<F, N> scaled = scale_to_unity(v, largest_exponent(v));
+  const auto exponent = bits_nonnan(largest_magnitude(v)) & exponent_bits;
+  const vec<F, N> scaled = scale_to_unity(v, exponent);
   const F square = max(F(1.0f), dot(scaled, scaled));  // less only for zeros; NaN too becomes harmless
   return scaled * splat<N>(rsqrt_positive(square));
 }
@@ -57,7 +59,7 @@ vec<F, N> normalize(vec<F, N> v) {
 /// Error: 2 ULP.
 template <class F, int N>
 F length(vec<F, N> v) {
-  const auto exponent = largest_exponent(v);
+  const auto exponent = bits_nonnan(min(largest_magnitude(v), F(largest_finite))) & exponent_bits;
   const vec<F, N> scaled = scale_to_unity(v, exponent);
   return (sqrt(dot(scaled, scaled)) * 0.5f) * from_bits_normal(exponent);
 }

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// What functions give outside and at the ends of their domains, as their docstrings say.
+#include <gtest/gtest.h>
+#include <string>
+
+#include "compiler/functions/all.h"
+#include "tests/unit/functions_values.h"
+
+namespace isoshade::functions {
+namespace {
+
+struct Row {
+  std::string call;
+  float result;
+  float expected;
+};
+
+void expect_rows(const std::vector<Row>& rows) {
+  for (const Row& row : rows)
+    EXPECT_EQ(bits_of(row.result), bits_of(row.expected)) << row.call << " gave " << row.result;
+}
+
+// Calls a function on hidden arguments; the text of the call names the row.
+template <class... T>
+float call(float (*function)(T...), std::type_identity_t<T>... arguments) {
+  const lanes::FpGuard guard;
+  return hidden(function(hidden(arguments)...));
+}
+#define CALL(name, ...) #name "(" #__VA_ARGS__ ")", call(name <float>, __VA_ARGS__)
+
+TEST(SpecialValues, OfFunctionsThatChoose) {
+  expect_rows({
+      {CALL(min, 1, nan), 1},          {CALL(min, nan, 1), nan},       {CALL(min, 0.0f, -0.0f), 0.0f},
+      {CALL(min, -0.0f, 0.0f), -0.0f}, {CALL(min, -inf, 1), -inf},     {CALL(max, 1, nan), 1},
+      {CALL(max, nan, 1), nan},        {CALL(max, 0.0f, -0.0f), 0.0f}, {CALL(max, -0.0f, 0.0f), -0.0f},
+      {CALL(max, inf, 1), inf},        {CALL(clamp, nan, 0, 1), nan},  {CALL(clamp, inf, 0, 1), 1},
+      {CALL(clamp, 5, 3, 2), 2},       {CALL(clamp, 0, 3, 2), 2},      {CALL(saturate, nan), 0.0f},
+      {CALL(saturate, -0.0f), 0.0f},   {CALL(saturate, inf), 1},       {CALL(saturate, -inf), 0.0f},
+      {CALL(saturate, tiny), tiny},    {CALL(sign, 0.0f), 0.0f},       {CALL(sign, -0.0f), -0.0f},
+      {CALL(sign, nan), nan},          {CALL(sign, -inf), -1},         {CALL(sign, tiny), 1},
+      {CALL(step, 1, 1), 1},           {CALL(step, 1, 0.9999999f), 0}, {CALL(step, nan, 0), 1},
+      {CALL(step, 0, nan), 1},         {CALL(step, -0.0f, 0.0f), 1},
+  });
+}
+
+TEST(SpecialValues, OfRemainders) {
+  expect_rows({
+      {CALL(fract, 2.75f), 0.75f},
+      {CALL(fract, -0.25f), 0.75f},
+      {CALL(fract, -1e-10f), 0x1.fffffep-1f},
+      {CALL(fract, 1e10f), 0},
+      {CALL(fract, inf), nan},
+      {CALL(fract, nan), nan},
+      {CALL(mod, 5.5f, 2), 1.5f},
+      {CALL(mod, -5.5f, 2), 0.5f},
+      {CALL(mod, 5.5f, -2), -0.5f},
+      {CALL(mod, -5.5f, -2), -1.5f},
+      {CALL(mod, 6, 3), 0},
+      {CALL(mod, 6, -3), 0},
+      {CALL(mod, 1, 0), nan},
+      {CALL(mod, inf, 1), nan},
+      {CALL(mod, 1, inf), nan},
+      {CALL(mod, nan, 1), nan},
+      {CALL(mod, 1, nan), nan},
+  });
+}
+
+TEST(SpecialValues, OfBlends) {
+  expect_rows({
+      {CALL(mix, 0.1f, 0.7f, 0), 0.1f},
+      {CALL(mix, 0.1f, 0.7f, 1), 0.7f},
+      {CALL(mix, 1e30f, -1e-30f, 1), -1e-30f},
+      {CALL(mix, inf, 1, 1), nan},
+      {CALL(smoothstep, 0, 1, 0.5f), 0.5f},
+      {CALL(smoothstep, 0, 1, -inf), 0},
+      {CALL(smoothstep, 0, 1, inf), 1},
+      {CALL(smoothstep, 0, 1, nan), 0},
+      {CALL(smoothstep, 2, 2, 1), 0},
+      {CALL(smoothstep, 2, 2, 2), 0},
+      {CALL(smoothstep, 2, 2, 2.0000002f), 1},
+      {CALL(smoothstep, 1, 0, 2), 0},
+      {CALL(smoothstep, 1, 0, -1), 1},
+      {CALL(smoothstep, -huge, huge, 0), 0},
+  });
+}
+
+TEST(SpecialValues, OfPowersAndLogarithms) {
+  expect_rows({
+      {CALL(rsqrt, 0.0f), inf},      {CALL(rsqrt, -0.0f), inf},
+      {CALL(rsqrt, inf), 0.0f},      {CALL(rsqrt, -1), nan},
+      {CALL(rsqrt, -inf), nan},      {CALL(rsqrt, nan), nan},
+      {CALL(rsqrt, tiny), 0x1p63f},  {CALL(rsqrt, 4), 0.5f},
+      {CALL(exp2, nan), nan},        {CALL(exp2, inf), inf},
+      {CALL(exp2, -inf), 0.0f},      {CALL(exp2, 128), inf},
+      {CALL(exp2, -126), tiny},      {CALL(exp2, -126.00001f), 0.0f},
+      {CALL(exp2, huge), inf},       {CALL(exp, 0.0f), 1},
+      {CALL(exp, -0.0f), 1},         {CALL(exp, nan), nan},
+      {CALL(exp, inf), inf},         {CALL(exp, -inf), 0.0f},
+      {CALL(exp, -87.33655f), 0.0f}, {CALL(log2, 0.0f), -inf},
+      {CALL(log2, -0.0f), -inf},     {CALL(log2, -1), nan},
+      {CALL(log2, -inf), nan},       {CALL(log2, inf), inf},
+      {CALL(log2, nan), nan},        {CALL(log2, 1), 0.0f},
+      {CALL(log, 1), 0.0f},          {CALL(log, 0.0f), -inf},
+      {CALL(log, -0.0f), -inf},      {CALL(log, -tiny), nan},
+      {CALL(log, inf), inf},         {CALL(log, nan), nan},
+  });
+  for (int n = -126; n <= 127; ++n) {
+    const float power = std::bit_cast<float>((n + 127) << 23);
+    EXPECT_EQ(call(exp2<float>, static_cast<float>(n)), power);
+    EXPECT_EQ(call(log2<float>, power), static_cast<float>(n));
+  }
+}
+
+TEST(SpecialValues, OfPow) {
+  expect_rows({
+      {CALL(pow, 2, 10), 1024},
+      {CALL(pow, 0.0f, 0.0f), 1},
+      {CALL(pow, nan, 0.0f), 1},
+      {CALL(pow, -3, -0.0f), 1},
+      {CALL(pow, inf, 0.0f), 1},
+      {CALL(pow, 1, inf), 1},
+      {CALL(pow, 1, -inf), 1},
+      {CALL(pow, 1, nan), nan},
+      {CALL(pow, nan, 1), nan},
+      {CALL(pow, 0.0f, 2), 0.0f},
+      {CALL(pow, -0.0f, 3), 0.0f},
+      {CALL(pow, 0.0f, -2), inf},
+      {CALL(pow, -0.0f, -3), inf},
+      {CALL(pow, inf, 0.5f), inf},
+      {CALL(pow, inf, -0.5f), 0.0f},
+      {CALL(pow, 2, inf), inf},
+      {CALL(pow, 2, -inf), 0.0f},
+      {CALL(pow, 0.5f, inf), 0.0f},
+      {CALL(pow, 0.5f, -inf), inf},
+      {CALL(pow, 0.0f, inf), 0.0f},
+      {CALL(pow, 0.0f, -inf), inf},
+      {CALL(pow, -2, 2), nan},
+      {CALL(pow, -inf, 2), nan},
+      {CALL(pow, 2, 128), inf},
+      {CALL(pow, 2, -126), tiny},
+      {CALL(pow, 2, -127), 0.0f},
+      {CALL(pow, huge, huge), inf},
+      {CALL(pow, huge, -huge), 0.0f},
+      {CALL(pow, huge, 1), huge},
+      {CALL(pow, tiny, 1), tiny},
+      {CALL(pow, 1.0000001f, huge), inf},
+      {CALL(pow, 0.99999994f, huge), 0.0f},
+  });
+}
+
+TEST(SpecialValues, OfAngles) {
+  expect_rows({
+      {CALL(sin, 0.0f), 0.0f},
+      {CALL(sin, inf), 0.0f},
+      {CALL(sin, -inf), 0.0f},
+      {CALL(sin, nan), 0.0f},
+      {CALL(sin, 131073), 0.0f},
+      {CALL(sin, tiny), tiny},
+      {CALL(cos, 0.0f), 1},
+      {CALL(cos, -0.0f), 1},
+      {CALL(cos, inf), 1},
+      {CALL(cos, nan), 1},
+      {CALL(cos, -huge), 1},
+      {CALL(tan, 0.0f), 0.0f},
+      {CALL(tan, inf), 0.0f},
+      {CALL(tan, nan), 0.0f},
+      {CALL(asin, 1), pi / 2},
+      {CALL(asin, -1), -pi / 2},
+      {CALL(asin, 1.0000001f), nan},
+      {CALL(asin, nan), nan},
+      {CALL(acos, 1), 0.0f},
+      {CALL(acos, -1), pi},
+      {CALL(acos, -1.0000001f), nan},
+      {CALL(acos, 0.0f), pi / 2},
+      {CALL(atan, inf), pi / 2},
+      {CALL(atan, -inf), -pi / 2},
+      {CALL(atan, nan), nan},
+      {CALL(atan2, 0.0f, 0.0f), 0.0f},
+      {CALL(atan2, 0.0f, 1), 0.0f},
+      {CALL(atan2, 0.0f, -1), pi},
+      {CALL(atan2, -0.0f, -1), pi},
+      {CALL(atan2, 1, 0.0f), pi / 2},
+      {CALL(atan2, -1, 0.0f), -pi / 2},
+      {CALL(atan2, inf, inf), call(atan2<float>, 1, 1)},
+      {CALL(atan2, 1, inf), 0.0f},
+      {CALL(atan2, 1, -inf), pi},
+      {CALL(atan2, -inf, 1), -pi / 2},
+      {CALL(atan2, nan, 1), nan},
+      {CALL(atan2, 1, nan), nan},
+      {CALL(atan2, tiny, huge), 0.0f},
+      {CALL(atan2, huge, huge), call(atan2<float>, 1, 1)},
+  });
+}
+
+TEST(SpecialValues, OfTheTransferFunction) {
+  expect_rows({
+      {CALL(srgb_encode, 0.0f), 0.0f},
+      {CALL(srgb_encode, 1), 1},
+      {CALL(srgb_encode, 0.99999994f), 1},
+      {CALL(srgb_encode, inf), 1},
+      {CALL(srgb_encode, -1), 0.0f},
+      {CALL(srgb_encode, -0.0f), 0.0f},
+      {CALL(srgb_encode, nan), 0.0f},
+      {CALL(srgb_encode, 1e-30f), 1.292e-29f},
+      {CALL(srgb_decode, 0.0f), 0.0f},
+      {CALL(srgb_decode, 1), 1},
+      {CALL(srgb_decode, 1.0000001f), 1},
+      {CALL(srgb_decode, -inf), 0.0f},
+      {CALL(srgb_decode, nan), 0.0f},
+  });
+}
+
+TEST(ExactForms, AreHardwareDivisionAndSquareRoot) {
+  std::mt19937 random(1);
+  std::vector<std::pair<float, float>> pairs;
+  for (float a : special_floats())
+    for (float b : special_floats()) pairs.emplace_back(a, b);
+  for (int i = 0; i < 300000; ++i) pairs.emplace_back(any_float(random), any_float(random));
+  for (int i = 0; i < 300000; ++i) {  // quotients of significands alone, and near ties
+    const float b = 1.0f + static_cast<float>(random() >> 9) * 0x1p-23f;
+    const float q = 1.0f + static_cast<float>(random() >> 9) * 0x1p-23f;
+    pairs.emplace_back(b * q, b);
+  }
+  for (const auto& [a, b] : pairs) {
+    const lanes::FpGuard guard;
+    const float x = hidden(a), y = hidden(b);
+    ASSERT_EQ(bits_of(hidden(div_exact(x, y))), bits_of(hidden(x / y))) << a << " / " << b;
+    ASSERT_EQ(bits_of(hidden(sqrt_exact(x))), bits_of(hidden(lanes::sqrt(x)))) << a;
+    ASSERT_EQ(bits_of(hidden(sqrt_exact(x * x))), bits_of(hidden(lanes::sqrt(x * x)))) << a;
+  }
+}
+
+}  // namespace
+}  // namespace isoshade::functions
