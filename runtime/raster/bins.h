@@ -20,6 +20,7 @@ struct TileGrid {
 /// each part in turn.
 class Bins {
  public:
+  Bins() = default;
   /// Sorts `count` records of lower/frame_layout.h from the index `first` on.
   Bins(std::span<const int32_t> triangles, int first, int count, int width, int height);
 

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/cpu/compiler.h"
+
+#include <cstdlib>
+#include <string_view>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "backends/cpu/process.h"
+#include "compiler/support/visible.h"
+
+namespace isoshade::cpu {
+namespace {
+
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+
+bool is_program(const std::string& path) {
+  struct stat facts;
+  return stat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode) && access(path.c_str(), X_OK) == 0;
+}
+
+/// The program's path; empty if there is none. The working folder is not searched, whatever PATH says.
+std::string search_path(const std::string& name) {
+  const char* variable = std::getenv("PATH");
+  std::string_view folders = variable ? variable : "/usr/bin:/bin";
+  while (!folders.empty()) {
+    const size_t end = std::min(folders.find(':'), folders.size());
+    const std::string folder(folders.substr(0, end));
+    folders.remove_prefix(std::min(end + 1, folders.size()));
+    if (folder.starts_with('/') && is_program(folder + "/" + name)) return folder + "/" + name;
+  }
+  return "";
+}
+
+std::string locate(const std::string& wanted) {
+  if (wanted.find('/') != std::string::npos) return is_program(wanted) ? wanted : "";
+  return search_path(wanted);
+}
+
+/// What tells one file from another that replaced it.
+std::string file_facts(const std::string& path) {
+  struct stat facts;
+  if (stat(path.c_str(), &facts) != 0) return "";
+  return std::to_string(facts.st_dev) + " " + std::to_string(facts.st_ino) + " " +
+         std::to_string(facts.st_size) + " " + std::to_string(facts.st_mtim.tv_sec) + "." +
+         std::to_string(facts.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& diagnostics) {
+  const char* variable = std::getenv("ISOSHADE_CXX");
+  std::string name = !wanted.empty() ? wanted : variable ? variable : "";
+  Compiler compiler;
+  if (!name.empty()) {
+    compiler.path_ = locate(name);
+    if (compiler.path_.empty()) {
+      diagnostics.report(Id::no_compiler, "there is no C++ compiler " + quote(name));
+      return std::nullopt;
+    }
+  } else {
+    for (const char* usual : {"c++", "g++", "clang++"})
+      if (compiler.path_.empty()) compiler.path_ = locate(usual);
+    if (compiler.path_.empty()) {
+      diagnostics.report(Id::no_compiler, "there is no C++ compiler on PATH")
+          .suggest("install g++ or clang++, or name a compiler in ISOSHADE_CXX");
+      return std::nullopt;
+    }
+  }
+  const std::optional<ProcessEnd> answer = run_process({compiler.path_, "--version"}, {{"LC_ALL", "C"}});
+  if (!answer || answer->status != 0 || answer->output.empty()) {
+    diagnostics.report(Id::no_compiler,
+                       quote(compiler.path_) + " is no compiler: it does not answer --version");
+    return std::nullopt;
+  }
+  compiler.version_ = answer->output;
+  compiler.identity_ = compiler.path_ + "\n" + file_facts(compiler.path_) + "\n" + compiler.version_;
+  return compiler;
+}
+
+std::vector<std::string> Compiler::flags(const LaneCount& lanes) const {
+  std::vector<std::string> result = {"-std=c++20",
+                                     "-O2",
+                                     "-shared",
+                                     "-fPIC",
+                                     "-fvisibility=hidden",
+                                     "-ffp-contract=off",
+                                     "-frounding-math",
+                                     "-fwrapv",
+                                     "-fno-exceptions",
+                                     "-fno-asynchronous-unwind-tables"};
+  // g++ folds some arithmetic without flushing unless signaling NaNs matter; clang does not know the option.
+  if (version_.find("clang") == std::string::npos) result.push_back("-fsignaling-nans");
+  for (const std::string_view flag : lanes.flags()) result.emplace_back(flag);
+  result.push_back("-DISOSHADE_LANES=" + std::to_string(lanes.lanes));
+  result.push_back("-DISOSHADE_REGISTERS=" + std::to_string(lanes.registers));
+  return result;
+}
+
+bool Compiler::compile(const std::string& folder, const LaneCount& lanes, Diagnostics& diagnostics) const {
+  std::vector<std::string> arguments = {path_};
+  for (std::string& flag : flags(lanes)) arguments.push_back(std::move(flag));
+  arguments.insert(arguments.end(), {"-I" + folder, "-o", folder + "/program.so", folder + "/program.cpp"});
+  const std::optional<ProcessEnd> end = run_process(arguments, {{"LC_ALL", "C"}, {"TMPDIR", folder}});
+  if (end && end->status == 0) return true;
+  diagnostics
+      .report(Id::compiler_failed, quote(path_) + (end ? " failed with status " + std::to_string(end->status)
+                                                       : " could not be started"))
+      .note(end && !end->output.empty() ? end->output : "it said nothing");
+  return false;
+}
+
+}  // namespace isoshade::cpu

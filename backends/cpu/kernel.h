@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled programs: from generated text to a function that can be called.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "backends/cpu/cache.h"
+#include "backends/cpu/compiler.h"
+#include "compiler/driver/program.h"
+
+namespace isoshade::cpu {
+
+// What generated code exports; emit/stages.h. The caller holds an FpGuard.
+extern "C" {
+/// An array by its number in lower::FrameBuffer. Has at least one element.
+struct BufferView {
+  const void* data;
+  int size;
+};
+using VertexFunction = void(const BufferView* buffers, int object, int first, int count, float* clip);
+using PixelFunction = void(const BufferView* buffers, int object, int light_count, int count, const int* x,
+                           const int* y, const int* triangle, float* rgba);
+using EvalFunction = void(const BufferView* buffers, int first, int count, int* results);
+}
+
+/// One loaded shared object. Only the function of the program's stage is there.
+class Kernel {
+ public:
+  /// Reports what the dynamic linker says.
+  static std::unique_ptr<Kernel> load(const std::string& path, driver::Stage stage,
+                                      support::Diagnostics& diagnostics);
+  ~Kernel();
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
+
+  VertexFunction* vertex = nullptr;
+  PixelFunction* pixel = nullptr;
+  EvalFunction* eval = nullptr;
+
+ private:
+  explicit Kernel(void* library) : library_(library) {}
+  void* library_;
+};
+
+/// The text of a program; see emit/stages.h for what it must export.
+using CppText = std::function<std::string(const driver::Program&)>;
+
+/// Compiles programs, or finds them in the cache, and keeps them loaded.
+class KernelStore {
+ public:
+  /// `keep`: a folder that receives every text that is compiled or found, named as its document; or empty.
+  KernelStore(Compiler compiler, Cache cache, LaneCount lanes, CppText cpp, std::string keep);
+
+  /// The kernel of each program; several are compiled at once. Nothing if one failed. They live as long as the store.
+  std::optional<std::vector<const Kernel*>> kernels(std::span<const driver::Program* const> programs,
+                                                    support::Diagnostics& diagnostics);
+
+  const Compiler& compiler() const { return compiler_; }
+  LaneCount lanes() const { return lanes_; }
+
+ private:
+  std::unique_ptr<Kernel> make(const driver::Program& program, const std::string& text,
+                               const std::string& key, support::Diagnostics& diagnostics) const;
+  bool compile(const std::string& text, const std::string& entry, support::Diagnostics& diagnostics) const;
+  std::string key_of(const std::string& text) const;
+
+  Compiler compiler_;
+  Cache cache_;
+  LaneCount lanes_;
+  CppText cpp_;
+  std::string keep_;
+  std::string surroundings_;  ///< the hash of all that decides what a text compiles to
+  std::map<std::string, std::unique_ptr<Kernel>> loaded_;
+};
+
+}  // namespace isoshade::cpu

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Running another program, without a shell in between.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isoshade::cpu {
+
+struct ProcessEnd {
+  int status;          ///< its exit status; 128 and the signal's number if one ended it
+  std::string output;  ///< what it wrote to stdout and stderr, at most 64 KiB of it
+};
+
+using Variables = std::vector<std::pair<std::string, std::string>>;
+
+/// Runs the program at the path arguments[0] to its end, with nothing to read and `variables` set in its environment.
+/// Nothing if it cannot be started.
+std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
+                                      const Variables& variables = {});
+
+}  // namespace isoshade::cpu

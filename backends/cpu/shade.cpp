@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/cpu/shade.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "compiler/lower/frame_layout.h"
+#include "runtime/raster/triangle.h"
+
+namespace isoshade::cpu {
+namespace {
+
+using raster::tile_pixels;
+using raster::tile_size;
+
+void fill_background(const backends::Frame& frame, backends::Image& image, int x, int y, int width,
+                     int height) {
+  for (int row = 0; row < height; ++row) {
+    const size_t first =
+        static_cast<size_t>(y + row) * static_cast<size_t>(image.width) + static_cast<size_t>(x);
+    float* color = image.rgba.data() + 4 * first;
+    for (int i = 0; i < width; ++i) std::copy_n(frame.background, 4, color + 4 * i);
+    std::fill_n(image.depth.data() + first, width, 0.0f);
+  }
+}
+
+}  // namespace
+
+void TilePainter::paint(DrawJob& job, int tile, int x, int y) {
+  x_ = x;
+  y_ = y;
+  const int width = std::min(tile_size, job.frame.width - x);
+  const int height = std::min(tile_size, job.frame.height - y);
+  collect(job, tile);
+  if (runs_.empty()) return fill_background(job.frame, job.image, x, y, width, height);
+  shade(job, width, height);
+  write(job, width, height);
+}
+
+void TilePainter::collect(const DrawJob& job, int tile) {
+  runs_.clear();
+  for (const raster::Bins& bins : job.bins) {
+    const std::span<const int32_t> listed = bins.of(tile);
+    if (listed.empty()) continue;
+    if (runs_.empty()) tile_.clear();
+    raster::rasterize_tile(job.triangles.data(), listed, x_, y_, tile_);
+    for (const int32_t triangle : listed) {
+      const int object = raster::triangle_at(job.triangles.data(), triangle).object();
+      if (runs_.empty() || runs_.back().object != object) runs_.push_back({triangle, object, 0});
+    }
+  }
+}
+
+size_t TilePainter::run_of(int triangle) const {
+  const auto after = std::upper_bound(runs_.begin(), runs_.end(), triangle,
+                                      [](int t, const Run& run) { return t < run.first_triangle; });
+  return static_cast<size_t>(after - runs_.begin()) - 1;
+}
+
+void TilePainter::shade(const DrawJob& job, int width, int height) {
+  // Kernels take one object at a time, so that its parameters are uniform. Neighbours mostly are of one triangle.
+  int last_triangle = -1;
+  size_t run = 0;
+  const auto find_run = [&](int triangle) {
+    if (triangle != last_triangle) run = run_of(last_triangle = triangle);
+  };
+  for (int i = 0; i < tile_pixels; ++i) {
+    place_[i] = -1;
+    if (tile_.triangles[i] < 0 || raster::tile_x(i) >= width || raster::tile_y(i) >= height) continue;
+    find_run(tile_.triangles[i]);
+    place_[i] = static_cast<int>(run);
+    ++runs_[run].pixels;
+  }
+  int begin = 0;
+  for (Run& r : runs_) begin += std::exchange(r.pixels, begin);
+  for (int i = 0; i < tile_pixels; ++i) {
+    if (place_[i] < 0) continue;
+    const int place = runs_[static_cast<size_t>(place_[i])].pixels++;
+    place_[i] = place;
+    pixel_x_[place] = x_ + raster::tile_x(i);
+    pixel_y_[place] = y_ + raster::tile_y(i);
+    pixel_triangle_[place] = tile_.triangles[i];
+  }
+
+  begin = 0;
+  for (const Run& r : runs_) {
+    if (r.pixels == begin) continue;
+    const float program = job.frame.objects[static_cast<size_t>(r.object) + lower::object_word::program];
+    const Kernel& kernel = *job.kernels[static_cast<size_t>(program)];
+    kernel.pixel(job.buffers, r.object, job.frame.light_count, r.pixels - begin, pixel_x_ + begin,
+                 pixel_y_ + begin, pixel_triangle_ + begin, color_ + 4 * begin);
+    begin = r.pixels;
+  }
+}
+
+void TilePainter::write(DrawJob& job, int width, int height) const {
+  for (int y = 0; y < height; ++y) {
+    const size_t first =
+        static_cast<size_t>(y_ + y) * static_cast<size_t>(job.image.width) + static_cast<size_t>(x_);
+    for (int x = 0; x < width; ++x) {
+      const int i = raster::tile_index(x, y);
+      const float* color = place_[i] < 0 ? job.frame.background : color_ + 4 * place_[i];
+      std::memcpy(job.image.rgba.data() + 4 * (first + static_cast<size_t>(x)), color, 4 * sizeof(float));
+      job.image.depth[first + static_cast<size_t>(x)] = tile_.depth[i];
+    }
+  }
+}
+
+}  // namespace isoshade::cpu

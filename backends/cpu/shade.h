@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tile of a frame: visible surfaces, then their colours.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backends/backend.h"
+#include "backends/cpu/kernel.h"
+#include "runtime/raster/bins.h"
+#include "runtime/raster/tile.h"
+
+namespace isoshade::cpu {
+
+/// A frame while it is drawn.
+struct DrawJob {
+  const backends::Frame& frame;
+  std::span<const int32_t> triangles;
+  const BufferView* buffers;
+  /// Of each program of the frame; null for those that no object has.
+  std::vector<const Kernel*> kernels;
+  std::vector<raster::Bins> bins;  ///< of consecutive parts of the triangles
+  backends::Image& image;
+};
+
+/// What a thread needs to draw tiles; several hundred kilobytes.
+class TilePainter {
+ public:
+  /// Draws the tile with its first pixel at (x, y), which is the tile-th.
+  void paint(DrawJob& job, int tile, int x, int y);
+
+ private:
+  /// Triangles of one object that follow each other in a tile's list, and their visible pixels.
+  struct Run {
+    int first_triangle;
+    int object;
+    int pixels;  ///< how many; later where the next one goes
+  };
+
+  void collect(const DrawJob& job, int tile);
+  void shade(const DrawJob& job, int width, int height);
+  void write(DrawJob& job, int width, int height) const;
+  size_t run_of(int triangle) const;
+
+  int x_ = 0, y_ = 0;
+  raster::Tile tile_;
+  std::vector<Run> runs_;
+
+  // Visible pixels, those of each run together.
+  int pixel_x_[raster::tile_pixels], pixel_y_[raster::tile_pixels], pixel_triangle_[raster::tile_pixels];
+  alignas(64) float color_[4 * raster::tile_pixels];
+  /// Where the colour of each pixel of the tile is, or -1.
+  int place_[raster::tile_pixels];
+};
+
+}  // namespace isoshade::cpu

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/interpreter/backend.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+#include <utility>
+
+#include "compiler/ir/interpreter.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/support/check.h"
+#include "runtime/raster/reference.h"
+
+namespace isoshade::interpreter {
+namespace {
+
+using backends::Draw;
+using backends::Frame;
+using backends::Image;
+using driver::Program;
+using lower::FrameBuffer;
+using support::Diagnostics;
+namespace word = lower::triangle_word;
+
+/// The arrays of a call as words.
+class Buffers {
+ public:
+  template <class T>
+  void bind(FrameBuffer buffer, std::span<const T> values) {
+    std::vector<uint32_t>& words = words_[static_cast<size_t>(buffer)];
+    words.resize(values.size());
+    std::ranges::transform(values, words.begin(), [](T value) { return std::bit_cast<uint32_t>(value); });
+  }
+  void bind_frame(const Frame& frame, std::span<const float> vertices) {
+    bind(FrameBuffer::vertices, vertices);
+    bind<float>(FrameBuffer::objects, frame.objects);
+    bind<float>(FrameBuffer::lights, frame.lights);
+    bind<float>(FrameBuffer::frame, frame.frame);
+  }
+  const std::vector<uint32_t>& operator[](size_t buffer) const { return words_[buffer]; }
+
+ private:
+  std::array<std::vector<uint32_t>, std::size(lower::frame_buffers)> words_;
+};
+
+/// A program that is ready to run.
+class Runner {
+ public:
+  Runner(const Program& program, const Buffers& buffers)
+      : interpreter_(program.module), entry_(program.entry) {
+    for (uint32_t i = 0; i < program.module.buffers.size(); ++i) interpreter_.bind(i, buffers[i]);
+  }
+  void run(std::initializer_list<int> arguments, std::span<uint32_t> results) {
+    std::array<uint32_t, 5> words;
+    std::ranges::transform(arguments, words.begin(), [](int a) { return static_cast<uint32_t>(a); });
+    const bool finished = interpreter_.run(entry_, std::span(words).first(arguments.size()), results);
+    support::check(finished, "an interpreter without a limit stopped early");
+  }
+
+ private:
+  ir::Interpreter interpreter_;
+  uint32_t entry_;
+};
+
+class InterpreterBackend final : public backends::Backend {
+ public:
+  std::string_view name() const override { return "interpreter"; }
+  std::string description() const override { return "interpreter, 1 lane, 1 thread, native division"; }
+
+  bool transform(const Frame& frame, std::vector<std::vector<float>>& clip, Diagnostics&) override {
+    Buffers buffers;
+    buffers.bind_frame(frame, frame.vertices);
+    clip.resize(frame.draws.size());
+    for (size_t d = 0; d < frame.draws.size(); ++d) {
+      const Draw& draw = frame.draws[d];
+      Runner vertex(*frame.programs[draw.vertex_program], buffers);
+      clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
+      for (uint32_t i = 0; i < draw.vertex_count; ++i) {
+        std::array<uint32_t, 4> position;
+        vertex.run({static_cast<int>(draw.first_vertex + i), draw.object}, position);
+        for (size_t k = 0; k < 4; ++k) clip[d][4 * i + k] = std::bit_cast<float>(position[k]);
+      }
+    }
+    return true;
+  }
+
+  bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
+            Image& image, Diagnostics&) override {
+    Buffers buffers;
+    buffers.bind_frame(frame, vertices);
+    buffers.bind(FrameBuffer::triangles, triangles);
+    image.resize(frame.width, frame.height);
+    std::vector<int32_t> visible(image.depth.size());
+    raster::rasterize_reference(triangles, frame.width, frame.height, visible, image.depth);
+
+    std::map<size_t, Runner> pixels;
+    for (size_t i = 0; i < visible.size(); ++i) {
+      float* color = image.rgba.data() + 4 * i;
+      if (visible[i] < 0) {
+        std::ranges::copy(frame.background, color);
+        continue;
+      }
+      const int object = triangles[static_cast<size_t>(visible[i]) * word::stride + word::object] >> 1;
+      const auto program =
+          static_cast<size_t>(frame.objects[static_cast<size_t>(object) + lower::object_word::program]);
+      support::check(program < frame.programs.size(), "an object has a program that the frame lacks");
+      Runner& pixel = pixels.try_emplace(program, *frame.programs[program], buffers).first->second;
+      const int at = static_cast<int>(i);
+      std::array<uint32_t, 4> result;
+      pixel.run({at % frame.width, at / frame.width, visible[i], object, frame.light_count}, result);
+      std::ranges::transform(result, color, [](uint32_t bits) { return std::bit_cast<float>(bits); });
+    }
+    return true;
+  }
+
+  bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
+                std::vector<int32_t>& outputs, Diagnostics&) override {
+    Buffers buffers;
+    buffers.bind(FrameBuffer::inputs, inputs);
+    size_t width = 0;
+    for (const driver::Field& field : program.results) width += static_cast<size_t>(field.words);
+    outputs.resize(rows * width);
+    Runner eval(program, buffers);
+    std::vector<uint32_t> results(width);
+    for (size_t row = 0; row < rows; ++row) {
+      eval.run({static_cast<int>(row)}, results);
+      std::ranges::transform(results, outputs.begin() + static_cast<ptrdiff_t>(row * width),
+                             [](uint32_t bits) { return std::bit_cast<int32_t>(bits); });
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<backends::Backend> create() { return std::make_unique<InterpreterBackend>(); }
+
+}  // namespace isoshade::interpreter

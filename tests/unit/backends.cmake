@@ -1,0 +1,15 @@
+isoshade_test(raster_test
+  SOURCES
+    unit/raster_bins_test.cpp
+    unit/raster_clip_test.cpp
+    unit/raster_tile_test.cpp
+  LINKS isoshade_raster)
+
+isoshade_test(cpu_test
+  SOURCES
+    unit/cpu_backend_test.cpp
+    unit/cpu_cache_test.cpp
+    unit/cpu_compiler_test.cpp
+    unit/cpu_kernel_test.cpp
+  LINKS isoshade_cpu)
+target_compile_definitions(cpu_test PRIVATE ISOSHADE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

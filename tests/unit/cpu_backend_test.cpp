@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include "backends/cpu/backend.h"
+#include "backends/cpu/workers.h"
+#include "compiler/lower/frame_layout.h"
+#include "runtime/raster/clip.h"
+#include "runtime/raster/reference.h"
+#include "tests/unit/cpu_folders.h"
+#include "tests/unit/cpu_programs.h"
+
+namespace isoshade::cpu {
+namespace {
+
+using backends::Backend;
+using backends::Frame;
+using backends::Image;
+using driver::Program;
+using driver::Stage;
+using support::Diagnostics;
+using support::Id;
+
+/// One cache for all tests of this file, so that each text is compiled once for each lane count.
+const std::string& cache() {
+  static const TestFolder folder;
+  return folder.path();
+}
+
+std::unique_ptr<Backend> backend(const std::string& lanes, int threads) {
+  Diagnostics diagnostics;
+  Options options;
+  options.lanes = lanes;
+  options.threads = threads;
+  options.cache = cache();
+  options.cpp = text_of;
+  std::unique_ptr<Backend> made = create(options, diagnostics);
+  EXPECT_TRUE(made) << diagnostics.text();
+  return made;
+}
+
+constexpr int object_stride = 64;
+
+/// Objects that are a few triangles each, scattered over and beyond the image, one over the other.
+struct TestFrame {
+  Program vertex = program_of(Stage::vertex), pixel = program_of(Stage::pixel);
+  std::vector<uint32_t> indices;
+  Frame frame;
+
+  TestFrame(int width, int height, int objects) {
+    frame.width = width;
+    frame.height = height;
+    frame.programs = {&vertex, &pixel};
+    frame.light_count = 3;
+    frame.lights.resize(3 * lower::light_word::stride);
+    frame.background[0] = 0.25f;
+    frame.background[3] = 1;
+    unsigned state = 1;
+    const auto random = [&] {
+      return static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f;
+    };
+    const uint32_t vertices = 30;
+    for (uint32_t i = 0; i < vertices; ++i) indices.push_back(i);
+    for (int i = 0; i < objects; ++i) {
+      backends::Draw draw;
+      draw.vertex_program = 0;
+      draw.pixel_program = 1;
+      draw.object = i * object_stride;
+      draw.first_vertex = static_cast<uint32_t>(frame.vertices.size() / lower::vertex_word::stride);
+      draw.vertex_count = vertices;
+      draw.indices = indices;
+      draw.cull = backends::Cull::none;
+      frame.draws.push_back(draw);
+      frame.objects.resize(frame.objects.size() + object_stride);
+      frame.objects[static_cast<size_t>(draw.object)] = 0.5f + random();
+      frame.objects[static_cast<size_t>(draw.object) + lower::object_word::program] = 1;
+      const float x = 2.4f * random() - 1.2f, y = 2.4f * random() - 1.2f, size = random() * random();
+      for (uint32_t v = 0; v < vertices; ++v) {
+        const float position[] = {
+            x + size * (random() - 0.5f), y + size * (random() - 0.5f), random(), 0, 0, 1, 0, 0};
+        frame.vertices.insert(frame.vertices.end(), std::begin(position), std::end(position));
+      }
+    }
+  }
+
+  /// What the scene steps do between transform and draw.
+  void assemble(const std::vector<std::vector<float>>& clip, std::vector<float>& vertices,
+                std::vector<int32_t>& triangles) const {
+    vertices = frame.vertices;
+    for (size_t d = 0; d < frame.draws.size(); ++d) {
+      const backends::Draw& draw = frame.draws[d];
+      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, raster::Cull::none, draw.object},
+                            frame.width, frame.height, vertices, triangles);
+    }
+  }
+};
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+Image render(Backend& backend, const TestFrame& test) {
+  Diagnostics diagnostics;
+  std::vector<std::vector<float>> clip;
+  std::vector<float> vertices;
+  std::vector<int32_t> triangles;
+  Image image;
+  EXPECT_TRUE(backend.transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  test.assemble(clip, vertices, triangles);
+  EXPECT_TRUE(backend.draw(test.frame, vertices, triangles, image, diagnostics)) << diagnostics.text();
+  return image;
+}
+
+class CpuLanes : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!lane_count(GetParam())->available()) GTEST_SKIP() << "this machine has no such registers";
+  }
+};
+
+TEST_P(CpuLanes, TransformsEveryVertex) {
+  const TestFrame test(64, 64, 5);
+  Diagnostics diagnostics;
+  std::vector<std::vector<float>> clip;
+  ASSERT_TRUE(backend(GetParam(), 2)->transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  ASSERT_EQ(clip.size(), 5u);
+  for (size_t d = 0; d < clip.size(); ++d) {
+    ASSERT_EQ(clip[d].size(), 4u * 30);
+    for (size_t v = 0; v < 30; ++v) {
+      const float* position = test.frame.vertices.data() + (30 * d + v) * lower::vertex_word::stride;
+      const float scale = test.frame.objects[d * object_stride];
+      EXPECT_EQ(clip[d][4 * v], position[0] * scale);
+      EXPECT_EQ(clip[d][4 * v + 1], position[1] * scale);
+      EXPECT_EQ(clip[d][4 * v + 2], position[2]);
+      EXPECT_EQ(clip[d][4 * v + 3], 1.0f);
+    }
+  }
+}
+
+TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
+  const auto cpu = backend(GetParam(), 2);
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{200, 150}, std::pair{65, 129}}) {
+    const TestFrame test(width, height, 60);
+    Diagnostics diagnostics;
+    std::vector<std::vector<float>> clip;
+    std::vector<float> vertices;
+    std::vector<int32_t> triangles;
+    Image image;
+    ASSERT_TRUE(cpu->transform(test.frame, clip, diagnostics)) << diagnostics.text();
+    test.assemble(clip, vertices, triangles);
+    ASSERT_TRUE(cpu->draw(test.frame, vertices, triangles, image, diagnostics)) << diagnostics.text();
+
+    std::vector<int32_t> ids(static_cast<size_t>(width) * height);
+    std::vector<float> depth(ids.size());
+    raster::rasterize_reference(triangles, width, height, ids, depth);
+    EXPECT_TRUE(same_bits(image.depth, depth));
+    int visible = 0;
+    for (size_t i = 0; i < ids.size(); ++i) {
+      const float* color = image.rgba.data() + 4 * i;
+      if (ids[i] < 0) {
+        ASSERT_EQ(std::memcmp(color, test.frame.background, 16), 0) << "pixel " << i;
+        continue;
+      }
+      ++visible;
+      const int object = triangles[static_cast<size_t>(ids[i]) * lower::triangle_word::stride +
+                                   lower::triangle_word::object] >>
+                         1;
+      ASSERT_EQ(color[0], static_cast<float>(i % static_cast<size_t>(width)));
+      if (i == 0)
+        ASSERT_EQ(std::bit_cast<uint32_t>(color[1]), 0x7fc00000u);
+      else
+        ASSERT_EQ(color[1], static_cast<float>(i / static_cast<size_t>(width)));
+      ASSERT_EQ(color[2], static_cast<float>(ids[i]));
+      ASSERT_EQ(color[3], test.frame.objects[static_cast<size_t>(object)] * 3);
+    }
+    if (width > 1) { EXPECT_GT(visible, width * height / 4); }
+  }
+}
+
+TEST_P(CpuLanes, EvaluatesEveryRowFlushingDenormalsOnEveryThread) {
+  // TBB hands its threads the float mode of its first use: make that the wrong one.
+  tbb::parallel_for(0, 1000, [](int) {});
+  const auto cpu = backend(GetParam(), 4);
+  const Program program = program_of(Stage::eval);
+  for (const size_t rows : {size_t{0}, size_t{1}, size_t{33}, size_t{100000}}) {
+    std::vector<int32_t> inputs, outputs;
+    for (size_t i = 0; i < rows; ++i) {
+      inputs.push_back(std::bit_cast<int32_t>(1e-20f));
+      inputs.push_back(std::bit_cast<int32_t>(i % 2 ? 1e-19f : 1.0f));
+    }
+    Diagnostics diagnostics;
+    ASSERT_TRUE(cpu->evaluate(program, inputs, rows, outputs, diagnostics)) << diagnostics.text();
+    ASSERT_EQ(outputs.size(), 2 * rows);
+    for (size_t i = 0; i < rows; ++i) {
+      ASSERT_EQ(outputs[2 * i], i % 2 ? 0 : std::bit_cast<int32_t>(1e-20f)) << i;
+      ASSERT_EQ(outputs[2 * i + 1], static_cast<int32_t>(i));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cpu, CpuLanes, testing::Values("1", "4", "8", "16", "8x2", "16x2"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(CpuBackend, DrawsTheSameImageWithAnyNumberOfThreads) {
+  const TestFrame test(333, 222, 400);
+  const Image one = render(*backend("4", 1), test);
+  for (const int threads : {2, 3, 8}) {
+    const Image many = render(*backend("4", threads), test);
+    EXPECT_TRUE(same_bits(one.rgba, many.rgba)) << threads;
+    EXPECT_TRUE(same_bits(one.depth, many.depth)) << threads;
+  }
+}
+
+TEST(CpuBackend, DrawsTheBackgroundWhereThereIsNothing) {
+  TestFrame test(130, 70, 0);
+  const Image image = render(*backend("4", 0), test);
+  ASSERT_EQ(image.depth.size(), 130u * 70);
+  for (size_t i = 0; i < image.depth.size(); ++i) {
+    ASSERT_EQ(image.depth[i], 0.0f);
+    ASSERT_EQ(std::memcmp(image.rgba.data() + 4 * i, test.frame.background, 16), 0);
+  }
+}
+
+TEST(CpuBackend, LeavesTheCallersFloatModeAlone) {
+  const unsigned before = __builtin_ia32_stmxcsr();
+  render(*backend("4", 1), TestFrame(64, 64, 20));
+  EXPECT_EQ((__builtin_ia32_stmxcsr() ^ before) & 0xffc0u, 0u);
+}
+
+TEST(CpuBackend, ReportsLanesThatDoNotExist) {
+  for (const char* lanes : {"3", "32", "lots", "16x2"}) {
+    if (lane_count(lanes) && lane_count(lanes)->available()) continue;
+    Diagnostics diagnostics;
+    Options options;
+    options.lanes = lanes;
+    EXPECT_FALSE(create(options, diagnostics));
+    ASSERT_EQ(diagnostics.all().size(), 1u);
+    EXPECT_EQ(diagnostics.all()[0].id, Id::bad_lanes);
+  }
+}
+
+TEST(CpuBackend, SaysWhatItRunsOn) {
+  const std::string text = backend("4", 1)->description();
+  EXPECT_NE(text.find("lanes 4, 1 thread"), std::string::npos) << text;
+}
+
+TEST(Workers, RunEachTaskOnceWithFlushingFloats) {
+  tbb::parallel_for(0, 1000, [](int) {});
+  for (const int threads : {1, 2, 5}) {
+    Workers workers(threads);
+    EXPECT_EQ(workers.count(), threads);
+    std::vector<std::atomic<int>> times(10000);
+    std::atomic<int> wrong = 0;
+    workers.for_each(times.size(), [&](size_t i) {
+      ++times[i];
+      wrong += (__builtin_ia32_stmxcsr() & 0xe040u) != 0x8040u;
+    });
+    for (const std::atomic<int>& n : times) ASSERT_EQ(n, 1);
+    EXPECT_EQ(wrong, 0);
+  }
+}
+
+}  // namespace
+}  // namespace isoshade::cpu

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "backends/cpu/compiler.h"
+#include "backends/cpu/process.h"
+#include "tests/unit/cpu_folders.h"
+
+namespace isoshade::cpu {
+namespace {
+
+using support::Diagnostics;
+using support::Id;
+
+void write_script(const std::string& path, const std::string& commands) {
+  write_text(path, "#!/bin/sh\n" + commands + "\n");
+  ASSERT_EQ(chmod(path.c_str(), 0755), 0);
+}
+
+TEST(Process, PassesArgumentsAsTheyAre) {
+  const auto end = run_process({"/bin/echo", "a b", "$(exit)", ";", "*", "'\"", ""});
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->status, 0);
+  EXPECT_EQ(end->output, "a b $(exit) ; * '\" \n");
+}
+
+TEST(Process, TellsHowItEnded) {
+  EXPECT_EQ(run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->status, 3);
+  EXPECT_EQ(run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->output, "words\n");
+  EXPECT_EQ(run_process({"/bin/sh", "-c", "kill -9 $$"})->status, 128 + 9);
+  EXPECT_EQ(run_process({"/bin/sh", "-c", "echo $NAME"}, {{"NAME", "value"}})->output, "value\n");
+  EXPECT_FALSE(run_process({"/no/such/program"}));
+}
+
+TEST(Process, IsNotHeldUpByWhatItWritesOrReads) {
+  const auto end = run_process({"/bin/sh", "-c", "cat; head -c 1000000 /dev/zero; echo end >&2"});
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->status, 0);
+  EXPECT_EQ(end->output.size(), 64u * 1024);
+}
+
+TEST(Compiler, IsTheOneThatIsNamed) {
+  const TestFolder folder;
+  write_script(folder / "named", "echo named compiler 1.0");
+  write_script(folder / "c++", "echo first compiler 1.0");
+  const TestVariable path("PATH", folder.path().c_str());
+  {
+    const TestVariable variable("ISOSHADE_CXX", nullptr);
+    Diagnostics diagnostics;
+    EXPECT_EQ(Compiler::find("", diagnostics)->version(), "first compiler 1.0");
+    EXPECT_EQ(Compiler::find("named", diagnostics)->version(), "named compiler 1.0");
+    EXPECT_EQ(Compiler::find(folder / "named", diagnostics)->path(), folder / "named");
+  }
+  const TestVariable variable("ISOSHADE_CXX", "named");
+  Diagnostics diagnostics;
+  EXPECT_EQ(Compiler::find("", diagnostics)->version(), "named compiler 1.0");
+  EXPECT_EQ(Compiler::find("c++", diagnostics)->version(), "first compiler 1.0");
+}
+
+TEST(Compiler, IsReportedWhereThereIsNone) {
+  const TestFolder folder;
+  const TestVariable variable("ISOSHADE_CXX", nullptr), path("PATH", folder.path().c_str());
+  write_text(folder / "c++", "not a program");
+  write_script(folder / "broken", "exit 1");
+  for (const std::string& name :
+       {std::string(), std::string("g++"), folder / "absent", folder.path(), folder / "broken"}) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(Compiler::find(name, diagnostics)) << name;
+    ASSERT_EQ(diagnostics.all().size(), 1u);
+    EXPECT_EQ(diagnostics.all()[0].id, Id::no_compiler);
+  }
+}
+
+TEST(Compiler, IsNotLookedForInTheWorkingFolder) {
+  const TestFolder folder;
+  write_script(folder / "c++", "echo compiler 1.0");
+  const std::string here = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const TestVariable variable("ISOSHADE_CXX", nullptr), path("PATH", ":.:");
+  Diagnostics diagnostics;
+  EXPECT_FALSE(Compiler::find("", diagnostics));
+  std::filesystem::current_path(here);
+}
+
+TEST(Compiler, HasAnotherIdentityWhenItIsReplaced) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  write_script(folder / "c++", "echo compiler 1.0");
+  const std::string first = Compiler::find(folder / "c++", diagnostics)->identity();
+  EXPECT_EQ(Compiler::find(folder / "c++", diagnostics)->identity(), first);
+  write_script(folder / "c++", "echo compiler 1.1");
+  EXPECT_NE(Compiler::find(folder / "c++", diagnostics)->identity(), first);
+}
+
+TEST(Compiler, TellsWhatItCouldNotCompile) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto compiler = Compiler::find("", diagnostics);
+  ASSERT_TRUE(compiler) << diagnostics.text();
+  write_text(folder / "program.cpp", "this is no program\n");
+  EXPECT_FALSE(compiler->compile(folder.path(), *lane_count("4"), diagnostics));
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].id, Id::compiler_failed);
+  EXPECT_NE(diagnostics.text().find("program.cpp:1:1"), std::string::npos) << diagnostics.text();
+}
+
+TEST(LaneCount, HasTheWidestOfTheMachine) {
+  EXPECT_TRUE(widest_lane_count().available());
+  for (const LaneCount& lanes : lane_counts()) {
+    EXPECT_EQ(lane_count(lanes.name)->name, lanes.name);
+    if (lanes.available()) {
+      EXPECT_LE(lanes.lanes * lanes.registers, widest_lane_count().lanes * widest_lane_count().registers);
+    }
+  }
+  EXPECT_TRUE(lane_count("1")->available());
+  EXPECT_TRUE(lane_count("4")->available());
+  for (const char* wrong : {"", "0", "2", "32", "4x2", "16x", "x2", " 8"})
+    EXPECT_FALSE(lane_count(wrong)) << wrong;
+}
+
+}  // namespace
+}  // namespace isoshade::cpu
