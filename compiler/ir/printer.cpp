@@ -26,6 +26,13 @@ std::string quoted(std::string_view text) {
   return out + '"';
 }
 
+std::string hex(uint32_t bits) {
+  std::array<char, 8> digits;
+  const auto end = std::to_chars(digits.begin(), digits.end(), bits, 16).ptr;
+  const std::string text(digits.begin(), end);
+  return "0x" + std::string(digits.size() - text.size(), '0') + text;
+}
+
 std::string full_name(const Parameter& parameter) {
   return parameter.group.empty() ? parameter.name : parameter.group + "." + parameter.name;
 }
@@ -96,8 +103,8 @@ class Printer {
   std::string definition(ValueId value, uint32_t origin) const {
     const uint32_t names = f_.values[value].names;
     std::string text = names_[value];
-    if (names == 0 || names == origin) return text;
     const Origin& node = f_.origins[names];
+    if (names == 0 || node == f_.origins[origin]) return text;
     const bool default_origin = node.line == 0 && f_.origins[origin].node != node.node;
     return default_origin ? text : text + ":" + std::to_string(node.line);
   }
@@ -147,19 +154,18 @@ class Printer {
   void constant(Type type, uint32_t bits) {
     out_ += name(type);
     out_ += ' ';
-    if (type == bool_type) out_ += bits != 0 ? "true" : "false";
-    if (type == int_type) out_ += std::to_string(static_cast<int32_t>(bits));
-    if (type != float_type) return;
-    std::array<char, 8> hex;
-    hex.fill('0');
-    std::array<char, 8> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), bits, 16).ptr;
-    std::copy(digits.data(), end, hex.end() - (end - digits.data()));
-    out_ += "0x" + std::string(hex.data(), hex.size());
-    std::array<char, 32> decimal;
-    const auto decimal_end =
-        std::to_chars(decimal.data(), decimal.data() + decimal.size(), std::bit_cast<float>(bits)).ptr;
-    comment_ = "  # " + std::string(decimal.data(), decimal_end);
+    const auto value = static_cast<int32_t>(bits);
+    if (type == bool_type) {
+      out_ += bits != 0 ? "true" : "false";
+    } else if (type == int_type) {
+      out_ += std::to_string(value);
+      if (value < -0xffff || value > 0xffff) comment_ = "  # " + hex(bits);
+    } else {
+      out_ += hex(bits);
+      std::array<char, 32> decimal;
+      const auto end = std::to_chars(decimal.begin(), decimal.end(), std::bit_cast<float>(bits)).ptr;
+      comment_ = "  # " + std::string(decimal.begin(), end);
+    }
   }
 
   void block(BlockId id, size_t depth, std::string_view last) {
