@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Documents that mean harm: each ends in a diagnostic with a place, soon, and in little memory.
-#include <chrono>
+#include <ctime>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -65,7 +65,7 @@ TEST(Hostile, HugeTextsAreReported) {
 }
 
 TEST(Hostile, ManyErrorsAreQuick) {
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   std::string inputs, nodes;
   for (int i = 0; i < 50'000; ++i) {
     const std::string name = std::to_string(i);
@@ -75,7 +75,8 @@ TEST(Hostile, ManyErrorsAreQuick) {
   const Diagnostics diagnostics = run(R"({"isoshade":1,"function":"f","inputs":{)" + inputs.substr(1) +
                                       "},\"nodes\":{" + nodes.substr(1) + "},\"outputs\":{}}");
   EXPECT_GT(diagnostics.error_count(), 200'000u);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  // Of the processor, so that other work on the machine does not count; what is quadratic takes minutes.
+  EXPECT_LT((std::clock() - begin) / CLOCKS_PER_SEC, 10);
 }
 
 TEST(Hostile, LongNamesMakeShortMessages) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <ctime>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -207,7 +208,7 @@ TEST(Nearest, SuggestsNothingFarAway) {
 TEST(Nearest, IsQuickAmongVeryMany) {
   std::vector<std::string> words(300'000, std::string(60, 'x'));
   const std::vector<std::string_view> candidates(words.begin(), words.end());
-  const clock_t begin = std::clock();
+  const std::clock_t begin = std::clock();
   EXPECT_EQ(nearest(std::string(59, 'x') + "yyyyyyyyyy", candidates), "");
   for (int i = 0; i < 10; ++i) nearest(std::string(40, 'x') + std::string(20, 'y'), candidates);
   EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 5.0);
