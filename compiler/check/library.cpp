@@ -84,11 +84,14 @@ Library::Location Library::locate(std::string_view reference, const Scope& from)
   Location location;
   if (reference.ends_with(extension)) {
     location.path = joined(from.folder, reference);
+    location.canonical = canonical(location.path);
+    location.in_library = is_within(location.canonical, canonical_root_);
   } else if (!root_.empty()) {
-    location.path = joined(root_, std::string(reference) + std::string(extension));
+    const std::string file = std::string(reference) + std::string(extension);
+    location.path = joined(root_, file);
+    location.canonical = canonical_root_ + "/" + file;
+    location.in_library = true;
   }
-  location.canonical = canonical(location.path);
-  location.in_library = is_within(location.canonical, canonical_root_);
   return location;
 }
 

@@ -57,8 +57,7 @@ class NodeResolver {
   void resolve() {
     node_.row = nodes::find(source_.type);
     if (node_.row == nullptr) {
-      node_.callee = work_.library.function(source_.type, work_.scope, work_.span(source_.type_place),
-                                            work_.diagnostics);
+      node_.callee = function();
       if (node_.callee == nullptr) return fail();
     }
     if (node_.row != nullptr && belongs_to_effects(*node_.row) &&
@@ -84,6 +83,16 @@ class NodeResolver {
   std::string_view port_name(size_t i) const {
     return node_.row != nullptr ? node_.row->ports[i].name
                                 : std::string_view(node_.callee->graph.inputs[i].name);
+  }
+
+  /// Nobody reads more errors than the limit, so files are not looked for beyond it.
+  std::shared_ptr<const TypedGraph> function() {
+    std::shared_ptr<const TypedGraph>& found = work_.functions[source_.type];
+    if (found == nullptr && !work_.diagnostics.full()) {
+      found = work_.library.function(source_.type, work_.scope, work_.span(source_.type_place),
+                                     work_.diagnostics);
+    }
+    return found;
   }
 
   void add_operands() {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/check/check.h"
@@ -26,6 +27,8 @@ struct Work {
   std::vector<Given> given = {};               ///< of TypedGraph::operands
   std::vector<const graph::Link*> roots = {};  ///< of TypedGraph::outputs
   std::deque<graph::Link> links = {};          ///< those made of strings in ports
+  /// What node types that are not in the table refer to.
+  std::unordered_map<std::string_view, std::shared_ptr<const TypedGraph>> functions = {};
   /// Nodes with errors. Their outputs have no type, and what reads them is not complained about again.
   std::vector<bool> broken = {};
 

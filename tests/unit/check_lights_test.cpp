@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where nodes of the surface and of lights may stand, and what cannot be compiled yet.
+#include "tests/unit/front_end.h"
+
+namespace isoshade {
+namespace {
+
+std::string effect(const std::string& nodes, const std::string& pass = R"({"name": "p", "color": "color"})") {
+  return "{\"isoshade\": 1, \"effect\": \"e\", \"nodes\": {\n" + nodes + "},\n\"passes\": [" + pass + "]}";
+}
+
+std::string messages_of(const std::string& document) {
+  FrontEnd front_end;
+  return front_end.messages(document);
+}
+
+TEST(CheckLights, LightNodesOutsideOfASumAreErrorsWithTheWayOut) {
+  EXPECT_EQ(
+      messages_of(effect(R"("l": {"type": "lightcolor"}, "half": {"type": "multiply", "in1": "l", "in2": 0.5},
+"sum": {"type": "sum_lights", "in": "half"}, "color": {"type": "add", "in1": "sum", "in2": "half"})")),
+      R"(test.json:2:15: error[light-outside-sum]: "lightcolor" is read outside of sum_lights
+  2 | "l": {"type": "lightcolor"}, "half": {"type": "multiply", "in1": "l", "in2": 0.5},
+    |               ^^^^^^^^^^^^ sum what depends on it with a node of type sum_lights
+  note: it reaches an output by l -> half -> color
+)");
+}
+
+TEST(CheckLights, SumsOfSumsAndSeveralSumsAreFine) {
+  EXPECT_EQ(messages_of(effect(R"("l": {"type": "lightcolor"}, "s": {"type": "sum_lights", "in": "l"},
+    "ls": {"type": "multiply", "in1": "l", "in2": "s"}, "color": {"type": "sum_lights", "in": "ls"})")),
+            "");
+}
+
+TEST(CheckLights, FunctionsTakeSurfaceAndLightAsInputs) {
+  for (const char* type : {"normal", "texcoord", "lightdirection"}) {
+    EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "nodes": {"n": {"type": ")" +
+                          std::string(type) + R"("}}, "outputs": {"out": "n"}})")
+                  .find("error[misplaced-node]: a function document cannot have the node"),
+              std::string::npos)
+        << type;
+  }
+}
+
+TEST(CheckLights, SpacesAreChosenFromThoseThatThereAre) {
+  EXPECT_NE(messages_of(effect(R"("color": {"type": "position", "space": "wrld"})"))
+                .find("error[unknown-choice]: \"space\" of \"position\" cannot be \"wrld\""),
+            std::string::npos);
+}
+
+TEST(CheckLights, WhatCannotBeCompiledYetIsSaid) {
+  EXPECT_NE(messages_of(effect(R"("color": {"type": "normal"})",
+                               R"({"name": "p", "color": "color.x", "position": "color"})"))
+                .find("error[unsupported]: a pass that moves vertices"),
+            std::string::npos);
+  EXPECT_NE(
+      messages_of(R"({"isoshade": 1, "post": "p", "parameters": {"c": {"type": "color3", "value": [1, 1, 1]}},
+                           "outputs": {"color": "c"}})")
+          .find("error[unsupported]: post effects"),
+      std::string::npos);
+  EXPECT_NE(
+      messages_of(R"({"isoshade": 1, "effect": "e", "parameters": {"f": {"type": "filename", "value": "a"},
+                           "c": {"type": "color3", "value": [1, 1, 1]}}, "passes": [{"name": "p", "color": "c"}]})")
+          .find("error[unsupported]: an input or parameter of type filename"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace isoshade

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Large graphs: no stack that grows with them, no time that grows faster.
+#include <chrono>
+
+#include "tests/unit/front_end.h"
+
+namespace isoshade {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// n0 = in * 0.5, n1 = n0 * 0.5, ...; written last first, so that every link points down.
+std::string chain(int length, const std::string& first) {
+  std::string text = R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "vector3"}}, "nodes": {)";
+  for (int i = length - 1; i >= 0; --i) {
+    text += "\"n" + std::to_string(i) + R"(": {"type": "multiply", "in1": ")" +
+            (i > 0 ? "n" + std::to_string(i - 1) : first) + R"(", "in2": 0.5})" + (i > 0 ? ",\n" : "");
+  }
+  return text + R"(}, "outputs": {"out": "n)" + std::to_string(length - 1) + "\"}}";
+}
+
+TEST(CheckScale, AChainOf100000NodesIsCheckedAndLowered) {
+  FrontEnd front_end;
+  const ir::Module module = front_end.lower(chain(100'000, "x"));
+  EXPECT_EQ(ir::validate(module), "");
+  EXPECT_GE(module.functions[0].instructions.size(), 100'000u);
+}
+
+TEST(CheckScale, ACircleOf100000NodesIsNamedInOneLine) {
+  FrontEnd front_end;
+  const std::string messages = front_end.messages(chain(100'000, "n99999"));
+  EXPECT_NE(messages.find(
+                "error[cycle]: nodes read each other in a circle: n99999 -> n99998 -> n99997 -> n99996 -> "
+                "... 99992 more ... -> n3 -> n2 -> n1 -> n0 -> n99999"),
+            std::string::npos)
+      << messages.substr(0, 1000);
+}
+
+TEST(CheckScale, ManySumsOverTheSameNodesAreRefused) {
+  std::string text =
+      R"({"isoshade": 1, "effect": "e", "nodes": {"l": {"type": "lightcolor"}, "n0": {"type": "floor", "in": "l"},
+    "t0": {"type": "floor", "in": "l"}, "s0": {"type": "sum_lights", "in": "l"})";
+  constexpr int count = 4000;
+  for (int i = 1; i < count; ++i) {
+    const std::string number = std::to_string(i), before = std::to_string(i - 1);
+    text += ", \"n" + number + R"(": {"type": "floor", "in": "n)" + before + "\"}";
+    text += ", \"t" + number + R"(": {"type": "sum_lights", "in": "n)" + number + "\"}";
+    text +=
+        ", \"s" + number + R"(": {"type": "add", "in1": "t)" + number + R"(", "in2": "s)" + before + "\"}";
+  }
+  text += R"(}, "passes": [{"name": "p", "color": "s)" + std::to_string(count - 1) + "\"}]}";
+  FrontEnd front_end;
+  const auto start = Clock::now();
+  EXPECT_NE(front_end.messages(text).find("error[too-large]"), std::string::npos);
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(5));
+}
+
+TEST(CheckScale, ManyErrorsCostLittle) {
+  std::string text = R"({"isoshade": 1, "function": "f", "nodes": {"n": {"type": "floor", "in": 1})";
+  for (int i = 0; i < 50'000; ++i)
+    text += ", \"n" + std::to_string(i) + R"(": {"type": "flor)" + std::to_string(i) + R"(", "inn": "m"})";
+  text += R"(}, "outputs": {"out": "n"}})";
+  FrontEnd front_end;
+  const auto start = Clock::now();
+  front_end.check(text);
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(5));
+  EXPECT_EQ(front_end.diagnostics.all().size(), 50u);
+}
+
+}  // namespace
+}  // namespace isoshade
