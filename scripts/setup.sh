@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Installs what isoshade needs to build, run and test, from Debian 12's (or Ubuntu's) own packages. Does nothing
+# where all is there. Asks for sudo only where it is needed.
+set -euo pipefail
+
+packages=(
+  # building
+  g++ cmake ninja-build pkg-config
+  nlohmann-json3-dev libfmt-dev libglm-dev libcli11-dev libstb-dev libtinyexr-dev libtbb-dev libssl-dev
+  glslang-dev spirv-tools spirv-headers libvulkan-dev
+  # running: Vulkan on the CPU, and the loader of whatever other devices there are
+  mesa-vulkan-drivers libvulkan1
+  # testing
+  libgtest-dev libbenchmark-dev glslang-tools clang vulkan-validationlayers
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+[ "${#missing[@]}" -eq 0 ] && exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup: these packages are missing, and there is no sudo: ${missing[*]}" >&2; exit 2; }
+  as_root=(sudo)
+fi
+echo "setup: installing ${missing[*]}"
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Sets up, builds and runs the tests. --full adds what takes long: the clang build, the sanitizer build, exhaustive
+# sweeps.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+full=0
+case "${1:-}" in
+  "") ;;
+  --full) full=1 ;;
+  *) echo "usage: scripts/test.sh [--full]" >&2; exit 2 ;;
+esac
+
+scripts/setup.sh
+scripts/build.sh release
+if [ "$full" -eq 1 ]; then
+  export ISOSHADE_FULL=1
+  for preset in clang asan; do
+    scripts/build.sh "$preset"
+    ctest --preset "$preset" --parallel "$(nproc)"
+  done
+fi
+ctest --preset release --parallel "$(nproc)"
