@@ -93,9 +93,10 @@ void add_edges(ir::Module& module) {
   const Int record = k.named("record", k.integer(2) * Int(triangle_word::stride));
   const auto word = [&](int at) { return k.load_int(FrameBuffer::triangles, record + Int(at)); };
   const Bool wide = k.named("wide", (word(triangle_word::object) & Int(1)) != Int(0));
-  std::array<Int, 6> p;
+  std::vector<Int> p;
   for (int i = 0; i < 6; ++i)
-    p[i] = k.named(std::string(1, "xy"[i % 2]) + std::to_string(i / 2), word(triangle_word::position + i));
+    p.push_back(
+        k.named(std::string(1, "xy"[i % 2]) + std::to_string(i / 2), word(triangle_word::position + i)));
   const Int px = k.named("px", shift_left(k.integer(0), Int(8)) + Int(128));
   const Int py = k.named("py", shift_left(k.integer(1), Int(8)) + Int(128));
   const Vec3 edges = functions::edge_functions<Float>(p[0], p[1], p[2], p[3], p[4], p[5], wide, px, py);
@@ -144,12 +145,12 @@ class Surface {
     const ir::ValueId edges = k_.call("edges_at", {x.id(k_.b), y.id(k_.b), triangle.id(k_.b)})[0];
     k_.named("edges", edges);
     const Int record = k_.named("record", triangle * Int(triangle_word::stride));
-    std::array<Float, 3> inverse_w;
+    std::vector<Float> inverse_w;
     for (int i = 0; i < 3; ++i) {
       const auto word = [&](int at) { return k_.load_int(FrameBuffer::triangles, record + Int(at + i)); };
       const std::string digit = std::to_string(i);
-      inverse_w[i] = k_.named("inverse_w" + digit, from_bits_normal(word(triangle_word::inverse_w)));
-      first_[i] = k_.named("first" + digit, word(triangle_word::vertex) * Int(vertex_word::stride));
+      inverse_w.push_back(k_.named("inverse_w" + digit, from_bits_normal(word(triangle_word::inverse_w))));
+      first_.push_back(k_.named("first" + digit, word(triangle_word::vertex) * Int(vertex_word::stride)));
     }
     weights_ = k_.named("weights", functions::attribute_weights<Float>(Vec3(k_.b, edges), inverse_w[0],
                                                                        inverse_w[1], inverse_w[2]))
@@ -167,7 +168,7 @@ class Surface {
  private:
   ir::ValueId attribute(int width, int word) {
     add_attribute(k_.b.module(), width);
-    const auto first = [&](int vertex) { return (first_[vertex] + Int(word)).id(k_.b); };
+    const auto first = [&](int vertex) { return (first_[static_cast<size_t>(vertex)] + Int(word)).id(k_.b); };
     return k_.call("attribute" + std::to_string(width), {weights_, first(0), first(1), first(2)})[0];
   }
   std::array<Vec3, 3> columns(int word) {
@@ -195,7 +196,7 @@ class Surface {
   Kernel& k_;
   Int object_;
   ir::ValueId weights_ = ir::none;
-  std::array<Int, 3> first_;
+  std::vector<Int> first_;  ///< of each vertex: the first word of its record
   ir::ValueId position_ = ir::none;
 };
 

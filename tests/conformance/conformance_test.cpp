@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-#include "backends/cpu/cpu.h"
-#include "backends/interpreter/interpreter.h"
+#include "backends/cpu/backend.h"
+#include "backends/interpreter/backend.h"
 #include "tests/conformance/cases.h"
 #ifdef ISOSHADE_VULKAN
-#include "backends/vulkan/vulkan.h"
+#include "backends/vulkan/backend.h"
 #endif
 
 namespace isoshade::conformance {

@@ -1,0 +1,9 @@
+# Discovered as whole suites: each executor computes the expected results once.
+isoshade_test(conformance_test
+  SOURCES conformance/cases.cpp conformance/conformance_test.cpp conformance/inputs.cpp
+  LINKS isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL conformance
+  TIMEOUT 900)
+if(ISOSHADE_VULKAN)
+  target_compile_definitions(conformance_test PRIVATE ISOSHADE_VULKAN)
+endif()
