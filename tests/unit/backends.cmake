@@ -13,3 +13,7 @@ isoshade_test(cpu_test
     unit/cpu_kernel_test.cpp
   LINKS isoshade_cpu)
 target_compile_definitions(cpu_test PRIVATE ISOSHADE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+
+isoshade_test(interpreter_test
+  SOURCES unit/interpreter_backend_test.cpp
+  LINKS isoshade_cpu isoshade_interpreter)

@@ -8,8 +8,8 @@
 #include "backends/cpu/backend.h"
 #include "backends/cpu/workers.h"
 #include "compiler/lower/frame_layout.h"
-#include "runtime/raster/clip.h"
 #include "runtime/raster/reference.h"
+#include "tests/unit/backend_frame.h"
 #include "tests/unit/cpu_folders.h"
 #include "tests/unit/cpu_programs.h"
 
@@ -17,8 +17,10 @@ namespace isoshade::cpu {
 namespace {
 
 using backends::Backend;
-using backends::Frame;
 using backends::Image;
+using backends::object_stride;
+using backends::render;
+using backends::same_bits;
 using driver::Program;
 using driver::Stage;
 using support::Diagnostics;
@@ -42,77 +44,14 @@ std::unique_ptr<Backend> backend(const std::string& lanes, int threads) {
   return made;
 }
 
-constexpr int object_stride = 64;
-
-/// Objects that are a few triangles each, scattered over and beyond the image, one over the other.
-struct TestFrame {
+/// A scene of hand-written programs.
+struct Scene : backends::TestFrame {
   Program vertex = program_of(Stage::vertex), pixel = program_of(Stage::pixel);
-  std::vector<uint32_t> indices;
-  Frame frame;
 
-  TestFrame(int width, int height, int objects) {
-    frame.width = width;
-    frame.height = height;
+  Scene(int width, int height, int objects) : TestFrame(width, height, objects) {
     frame.programs = {&vertex, &pixel};
-    frame.light_count = 3;
-    frame.lights.resize(3 * lower::light_word::stride);
-    frame.background[0] = 0.25f;
-    frame.background[3] = 1;
-    unsigned state = 1;
-    const auto random = [&] {
-      return static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f;
-    };
-    const uint32_t vertices = 30;
-    for (uint32_t i = 0; i < vertices; ++i) indices.push_back(i);
-    for (int i = 0; i < objects; ++i) {
-      backends::Draw draw;
-      draw.vertex_program = 0;
-      draw.pixel_program = 1;
-      draw.object = i * object_stride;
-      draw.first_vertex = static_cast<uint32_t>(frame.vertices.size() / lower::vertex_word::stride);
-      draw.vertex_count = vertices;
-      draw.indices = indices;
-      draw.cull = backends::Cull::none;
-      frame.draws.push_back(draw);
-      frame.objects.resize(frame.objects.size() + object_stride);
-      frame.objects[static_cast<size_t>(draw.object)] = 0.5f + random();
-      frame.objects[static_cast<size_t>(draw.object) + lower::object_word::program] = 1;
-      const float x = 2.4f * random() - 1.2f, y = 2.4f * random() - 1.2f, size = random() * random();
-      for (uint32_t v = 0; v < vertices; ++v) {
-        const float position[] = {
-            x + size * (random() - 0.5f), y + size * (random() - 0.5f), random(), 0, 0, 1, 0, 0};
-        frame.vertices.insert(frame.vertices.end(), std::begin(position), std::end(position));
-      }
-    }
-  }
-
-  /// What the scene steps do between transform and draw.
-  void assemble(const std::vector<std::vector<float>>& clip, std::vector<float>& vertices,
-                std::vector<int32_t>& triangles) const {
-    vertices = frame.vertices;
-    for (size_t d = 0; d < frame.draws.size(); ++d) {
-      const backends::Draw& draw = frame.draws[d];
-      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, raster::Cull::none, draw.object},
-                            frame.width, frame.height, vertices, triangles);
-    }
   }
 };
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
-
-Image render(Backend& backend, const TestFrame& test) {
-  Diagnostics diagnostics;
-  std::vector<std::vector<float>> clip;
-  std::vector<float> vertices;
-  std::vector<int32_t> triangles;
-  Image image;
-  EXPECT_TRUE(backend.transform(test.frame, clip, diagnostics)) << diagnostics.text();
-  test.assemble(clip, vertices, triangles);
-  EXPECT_TRUE(backend.draw(test.frame, vertices, triangles, image, diagnostics)) << diagnostics.text();
-  return image;
-}
 
 class CpuLanes : public testing::TestWithParam<const char*> {
  protected:
@@ -122,7 +61,7 @@ class CpuLanes : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(CpuLanes, TransformsEveryVertex) {
-  const TestFrame test(64, 64, 5);
+  const Scene test(64, 64, 5);
   Diagnostics diagnostics;
   std::vector<std::vector<float>> clip;
   ASSERT_TRUE(backend(GetParam(), 2)->transform(test.frame, clip, diagnostics)) << diagnostics.text();
@@ -143,7 +82,7 @@ TEST_P(CpuLanes, TransformsEveryVertex) {
 TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
   const auto cpu = backend(GetParam(), 2);
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{200, 150}, std::pair{65, 129}}) {
-    const TestFrame test(width, height, 60);
+    const Scene test(width, height, 60);
     Diagnostics diagnostics;
     std::vector<std::vector<float>> clip;
     std::vector<float> vertices;
@@ -205,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(Cpu, CpuLanes, testing::Values("1", "4", "8", "16", "8x
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(CpuBackend, DrawsTheSameImageWithAnyNumberOfThreads) {
-  const TestFrame test(333, 222, 400);
+  const Scene test(333, 222, 400);
   const Image one = render(*backend("4", 1), test);
   for (const int threads : {2, 3, 8}) {
     const Image many = render(*backend("4", threads), test);
@@ -215,7 +154,7 @@ TEST(CpuBackend, DrawsTheSameImageWithAnyNumberOfThreads) {
 }
 
 TEST(CpuBackend, DrawsTheBackgroundWhereThereIsNothing) {
-  TestFrame test(130, 70, 0);
+  Scene test(130, 70, 0);
   const Image image = render(*backend("4", 0), test);
   ASSERT_EQ(image.depth.size(), 130u * 70);
   for (size_t i = 0; i < image.depth.size(); ++i) {
@@ -226,7 +165,7 @@ TEST(CpuBackend, DrawsTheBackgroundWhereThereIsNothing) {
 
 TEST(CpuBackend, LeavesTheCallersFloatModeAlone) {
   const unsigned before = __builtin_ia32_stmxcsr();
-  render(*backend("4", 1), TestFrame(64, 64, 20));
+  render(*backend("4", 1), Scene(64, 64, 20));
   EXPECT_EQ((__builtin_ia32_stmxcsr() ^ before) & 0xffc0u, 0u);
 }
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame that asks much of a backend: many objects of a few triangles each, scattered over and beyond the image, one
+// over the other and some through the near plane.
+#pragma once
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <random>
+#include <vector>
+
+#include "backends/backend.h"
+#include "compiler/lower/frame_layout.h"
+#include "runtime/raster/clip.h"
+
+namespace isoshade::backends {
+
+inline constexpr int object_stride = 64;
+
+/// Its first program is of the vertex stage, its second of the pixel stage; whoever uses it provides them.
+struct TestFrame {
+  std::vector<uint32_t> indices;
+  Frame frame;
+
+  TestFrame(int width, int height, int objects) {
+    frame.width = width;
+    frame.height = height;
+    frame.light_count = 3;
+    frame.lights.resize(3 * lower::light_word::stride);
+    frame.frame = {0, 0, 0, 1};
+    frame.background[0] = 0.25f;
+    frame.background[3] = 1;
+    for (uint32_t i = 0; i < vertices_of_object; ++i) indices.push_back(i);
+    for (int i = 0; i < objects; ++i) add_object(i * object_stride);
+  }
+  TestFrame(const TestFrame&) = delete;
+  TestFrame& operator=(const TestFrame&) = delete;
+
+  /// What the scene steps do between transform and draw.
+  void assemble(const std::vector<std::vector<float>>& clip, std::vector<float>& vertices,
+                std::vector<int32_t>& triangles) const {
+    vertices = frame.vertices;
+    for (size_t d = 0; d < frame.draws.size(); ++d) {
+      const Draw& draw = frame.draws[d];
+      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, raster::Cull::none, draw.object},
+                            frame.width, frame.height, vertices, triangles);
+    }
+  }
+
+  static constexpr uint32_t vertices_of_object = 30;
+
+ private:
+  float random() { return static_cast<float>(random_() >> 8) / 16777216.0f; }
+
+  void add_object(int object) {
+    Draw draw;
+    draw.vertex_program = 0;
+    draw.pixel_program = 1;
+    draw.object = object;
+    draw.first_vertex = static_cast<uint32_t>(frame.vertices.size() / lower::vertex_word::stride);
+    draw.vertex_count = vertices_of_object;
+    draw.indices = indices;
+    draw.cull = Cull::none;
+    frame.draws.push_back(draw);
+
+    frame.objects.resize(frame.objects.size() + object_stride);
+    float* record = frame.objects.data() + object;
+    record[0] = 0.5f + random();
+    record[lower::object_word::program] = 1;
+    record[lower::object_word::parameters] = random();
+    // Columns of a perspective with the near plane at 0.25; what is at z = 0 is 1 away.
+    float* columns = record + lower::object_word::projected;
+    columns[0] = columns[5] = record[0];
+    columns[11] = 1;
+    columns[14] = 0.25f;
+    columns[15] = 1;
+
+    const float x = 2.4f * random() - 1.2f, y = 2.4f * random() - 1.2f, size = random() * random();
+    for (uint32_t v = 0; v < vertices_of_object; ++v) {
+      const float position[] = {x + size * (random() - 0.5f),
+                                y + size * (random() - 0.5f),
+                                random() - 0.2f,
+                                0,
+                                0,
+                                1,
+                                random(),
+                                random()};
+      frame.vertices.insert(frame.vertices.end(), std::begin(position), std::end(position));
+    }
+  }
+
+  std::mt19937 random_{1};
+};
+
+inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+inline Image render(Backend& backend, const TestFrame& test) {
+  support::Diagnostics diagnostics;
+  std::vector<std::vector<float>> clip;
+  std::vector<float> vertices;
+  std::vector<int32_t> triangles;
+  Image image;
+  EXPECT_TRUE(backend.transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  test.assemble(clip, vertices, triangles);
+  EXPECT_TRUE(backend.draw(test.frame, vertices, triangles, image, diagnostics)) << diagnostics.text();
+  return image;
+}
+
+}  // namespace isoshade::backends
