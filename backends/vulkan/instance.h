@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "backends/vulkan/device_info.h"
-#include "backends/vulkan/vulkan.h"
+#include "backends/vulkan/vulkan_hpp.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::vulkan {

@@ -53,12 +53,12 @@ class Shapes {
   Random random{77};
 
  private:
+  static int within_guard_band(int position) { return std::clamp(position, first_position, last_position); }
   /// A point of the cell, or up to `margin` outside of it.
   Point point(int margin) {
-    const int x = random.between(-margin, cell_extent + margin);
-    return {origin_.x + x, origin_.y + random.between(-margin, cell_extent + margin)};
+    const int x = within_guard_band(origin_.x + random.between(-margin, cell_extent + margin));
+    return {x, within_guard_band(origin_.y + random.between(-margin, cell_extent + margin))};
   }
-  static int within_guard_band(int position) { return std::clamp(position, first_position, last_position); }
   Point near(Point center, int distance) {
     const int x = within_guard_band(center.x + random.between(-distance, distance));
     return {x, within_guard_band(center.y + random.between(-distance, distance))};

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <set>
+#include <thread>
+
+#include "compiler/emit/glsl.h"
+#include "compiler/emit/spirv.h"
+
+namespace isoshade::emit {
+namespace {
+
+std::string fragment(const std::string& statements) {
+  return glsl_head() +
+         "layout(std430, set = 0, binding = 0) readonly buffer inputs_block { float inputs[]; };\n"
+         "layout(location = 0) out vec4 color;\n"
+         "void main() {\n  float a = inputs[0];\n  float b = inputs[1];\n" +
+         statements + "}\n";
+}
+
+std::vector<uint32_t> compile(const std::string& glsl, ShaderKind kind = ShaderKind::fragment) {
+  support::Diagnostics diagnostics;
+  const auto spirv = compile_spirv(glsl, kind, diagnostics);
+  EXPECT_TRUE(spirv) << diagnostics.text();
+  return spirv.value_or(std::vector<uint32_t>{});
+}
+
+/// The result ids of the instructions of an opcode, and the ids that are decorated NoContraction.
+struct Operations {
+  std::set<uint32_t> results, exact;
+
+  Operations(const std::vector<uint32_t>& spirv, uint32_t opcode) {
+    constexpr uint32_t op_decorate = 71, no_contraction = 42;
+    for (size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
+      const uint32_t op = spirv[i] & 0xffff;
+      if (op == opcode) results.insert(spirv[i + 2]);
+      if (op == op_decorate && spirv[i + 2] == no_contraction) exact.insert(spirv[i + 1]);
+    }
+  }
+  bool all_exact() const { return std::includes(exact.begin(), exact.end(), results.begin(), results.end()); }
+};
+
+TEST(CompileSpirv, TargetsVersion13) {
+  const std::vector<uint32_t> spirv = compile(fragment("  color = vec4(a);\n"));
+  ASSERT_GT(spirv.size(), 5u);
+  EXPECT_EQ(spirv[0], 0x07230203u);
+  EXPECT_EQ(spirv[1], 0x00010300u);
+}
+
+TEST(CompileSpirv, KeepsEveryOperationOfPreciseStatementsUncontracted) {
+  constexpr uint32_t op_fadd = 129, op_fmul = 133;
+  const std::string body =
+      "  precise float product = a * b;\n  precise float unused = a + a;\n"
+      "  precise float sum = product + a;\n  color = vec4(sum);\n";
+  const std::vector<uint32_t> spirv = compile(fragment(body));
+  EXPECT_EQ(Operations(spirv, op_fmul).results.size(), 1u);
+  EXPECT_EQ(Operations(spirv, op_fadd).results.size(), 2u) << "nothing is optimised away";
+  EXPECT_TRUE(Operations(spirv, op_fmul).all_exact());
+  EXPECT_TRUE(Operations(spirv, op_fadd).all_exact());
+}
+
+TEST(CompileSpirv, ReportsTheFirstErrorOfATextThatDoesNotCompile) {
+  support::Diagnostics diagnostics;
+  const std::string text = fragment("  color = vec4(roughnes);\n  color = 1;\n");
+  EXPECT_FALSE(compile_spirv(text, ShaderKind::fragment, diagnostics));
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].id, support::Id::bad_shader);
+  EXPECT_NE(diagnostics.text().find("roughnes"), std::string::npos) << diagnostics.text();
+}
+
+TEST(CompileSpirv, ReportsATextOfTheWrongKind) {
+  support::Diagnostics diagnostics;
+  EXPECT_FALSE(compile_spirv(fragment("  gl_FragDepth = a;\n"), ShaderKind::vertex, diagnostics));
+  EXPECT_TRUE(diagnostics.has_errors());
+}
+
+TEST(CompileSpirvDeathTest, AbortsOnATextThatWouldLetASelectSwallowNan) {
+  support::Diagnostics diagnostics;
+  EXPECT_DEATH(compile_spirv("#version 450\nvoid main() {}\n", ShaderKind::vertex, diagnostics),
+               "SignedZeroInfNanPreserve");
+}
+
+TEST(CompileSpirv, GivesTheSameWordsInEveryThread) {
+  const std::string text =
+      fragment("  precise float s = a < b ? a : b;\n  color = vec4(s, sqrt(a), a / b, floor(b));\n");
+  const std::vector<uint32_t> expected = compile(text);
+  std::vector<std::vector<uint32_t>> made(4);
+  std::vector<std::thread> threads;
+  for (auto& words : made)
+    threads.emplace_back([&words, &text] {
+      for (int i = 0; i < 8; ++i) words = compile(text);
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& words : made) EXPECT_EQ(words, expected);
+}
+
+}  // namespace
+}  // namespace isoshade::emit

@@ -1,0 +1,11 @@
+isoshade_test(emit_spirv_test SOURCES unit/emit_spirv_test.cpp LINKS isoshade_emit)
+
+if(ISOSHADE_VULKAN)
+  isoshade_test(vulkan_test
+    SOURCES
+      unit/vulkan_backend_test.cpp
+      unit/vulkan_device_test.cpp
+      unit/vulkan_probe_test.cpp
+    LINKS isoshade_vulkan
+    TIMEOUT 120)
+endif()
