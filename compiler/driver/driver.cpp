@@ -57,6 +57,13 @@ Field field(const std::string& name, graph::Type type) {
   return {name, std::string(graph::type_name(type)), words_of(type), {}};
 }
 
+graph::Type graph_type(ir::Type type) {
+  constexpr graph::Type floats[] = {graph::Type::floating, graph::Type::vector2, graph::Type::vector3,
+                                    graph::Type::vector4};
+  if (type == ir::bool_type) return graph::Type::boolean;
+  return type == ir::int_type ? graph::Type::integer : floats[type.width - 1];
+}
+
 /// A parameter's value as an object's record has it: floats, also for booleans (0, 1) and integers.
 std::vector<float> record_words(const graph::Literal& literal, int words) {
   if (literal.kind == graph::Literal::Kind::boolean) return {literal.boolean ? 1.0f : 0.0f};
@@ -153,6 +160,10 @@ const Program& depth_program() {
 
 Program finish_eval(ir::Module module, uint32_t function, std::string name) {
   Program program{lower::Stage::eval, std::move(name), "", std::move(module), 0, {}, {}};
+  for (const ir::Parameter& parameter : program.module.functions[function].parameters)
+    program.inputs.push_back(field(parameter.name, graph_type(parameter.type)));
+  for (const ir::Result& result : program.module.functions[function].results)
+    program.results.push_back(field(result.name, graph_type(result.type)));
   program.entry = finish(program.module, lower::add_eval_kernel(program.module, function), {});
   return program;
 }

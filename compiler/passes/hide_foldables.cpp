@@ -15,6 +15,8 @@ namespace {
 using namespace ir;
 using Bits = std::optional<uint32_t>;
 
+constexpr uint32_t smallest_normal_bits = 0x00800000;
+
 bool is_zero(Bits bits) { return bits && (*bits & ~sign_bit) == 0; }
 
 // Whether an op on operands of which these bits are known leaves a driver something to fold.
@@ -47,6 +49,7 @@ class Hider {
       const Instruction* from = edit_.definition(edit_.operand(made, 0), Opcode::itof);
       if (from != nullptr) return edit_.replace(made.first_result, truncated(edit_.operand(*from, 0)));
     }
+    if (const auto compared = compare_with_zero(made)) return edit_.replace(made.first_result, *compared);
     if (!is_primitive(made.op) || info(made.op).rule != Rule::same || !has_foldable(made))
       return edit_.keep(id);
     const uint32_t width = f_.type(made.first_result).width;
@@ -83,6 +86,24 @@ class Hider {
         return *a == 0 ? plus_zero(negative) : negative;
       }
       default: return edit_.make(made.op, {operand(0), operand(1)});
+    }
+  }
+
+  // No float is denormal: what is above 0 is at least the smallest normal number.
+  std::optional<ValueId> compare_with_zero(const Instruction& made) {
+    if (!is_primitive(made.op) || info(made.op).rule != Rule::compare) return std::nullopt;
+    const bool zero_first = is_zero(known(made, 0, 0));
+    if (!zero_first && !is_zero(known(made, 1, 0))) return std::nullopt;
+    const ValueId x = edit_.operand(made, zero_first ? 1 : 0);
+    const auto with = [&](Opcode op, bool negative) {
+      return edit_.make(op, {x, literal(smallest_normal_bits | (negative ? sign_bit : 0u))});
+    };
+    switch (made.op) {
+      case Opcode::flt: return zero_first ? with(Opcode::fge, false) : with(Opcode::fle, true);
+      case Opcode::fgt: return zero_first ? with(Opcode::fle, true) : with(Opcode::fge, false);
+      case Opcode::fle: return zero_first ? with(Opcode::fgt, true) : with(Opcode::flt, false);
+      case Opcode::fge: return zero_first ? with(Opcode::flt, false) : with(Opcode::fgt, true);
+      default: return std::nullopt;
     }
   }
 

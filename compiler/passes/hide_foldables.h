@@ -11,12 +11,13 @@ namespace isoshade::passes {
 ///     x + (+0)        +0 where the bits are those of -0, else x; x - (-0) likewise
 ///     (+0) - x        -x + (+0), as above
 ///     (-0) - x        -x, which is a bit operation
-///     ftoi(itof(i))   ftoi(itof(i >> 16) * 65536 + itof(i & 0xffff)): the halves are exact, so the sum
-///     rounds as
+///     ftoi(itof(i))   ftoi(itof(i >> 16) * 65536 + itof(i & 0xffff)): the halves are exact, so the sum rounds as
 ///                     itof does
+///     x < 0           x <= -2^-126: no float is denormal, and LLVM would compare the operands of a sum instead
+///                     of the sum, which may have been flushed; likewise <= > >= and 0 on the left
 /// Vectors of which a component has such a shape, or all of whose operands are constant in a component, are
 /// taken apart. Needs: fold before, and not after (it may bring the shapes back by evaluating parts of them).
-/// Leaves: no such shape in any function. What a driver sees only after inlining a call is not hidden.
+/// Leaves: no such shape in any function. specialize has kept constants from crossing calls.
 void hide_foldables(ir::Module& module);
 
 }  // namespace isoshade::passes

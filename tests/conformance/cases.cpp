@@ -210,6 +210,17 @@ std::vector<Case> idiom_cases() {
     compare_select(std::string(ir::name(compare)) + "_select", compare, false);
     compare_select(std::string(ir::name(compare)) + "_select_swapped", compare, true);
   }
+  // LLVM compares the operands instead of the sum, which may have been flushed to zero.
+  for (Opcode compare : {Opcode::flt, Opcode::fle, Opcode::fgt, Opcode::fge, Opcode::feq, Opcode::fne})
+    for (Opcode sum : {Opcode::fadd, Opcode::fsub}) {
+      const std::string name = std::string(ir::name(compare)) + "_of_" + std::string(ir::name(sum));
+      add(name + "_and_zero", [=](Builder& k, ValueId a, ValueId b, ValueId) {
+        return k.op(compare, {k.op(sum, {a, b}), k.constant(0.0f)});
+      });
+      add("zero_" + name, [=](Builder& k, ValueId a, ValueId b, ValueId) {
+        return k.op(compare, {k.constant(-0.0f), k.op(sum, {a, b})});
+      });
+    }
   add("is_nan", [](Builder& k, ValueId a, ValueId, ValueId) { return k.op(Opcode::fne, {a, a}); });
   add("is_nan_replaced", [](Builder& k, ValueId a, ValueId b, ValueId) {
     return k.op(Opcode::select, {k.op(Opcode::feq, {a, a}), a, b});
