@@ -97,7 +97,7 @@ TEST(TextIr, ErrorsSayTheLineAndWhatIsWrong) {
 // Cuts, repeats, swaps and garbles pieces of a text.
 std::string mutated(std::string text, std::mt19937& random) {
   constexpr std::string_view alphabet = "%@(){}[]<,:;=->\"\\#\n 0x9azf.\x80_-";
-  for (uint32_t n = 1 + random() % 4; n != 0 && !text.empty(); --n) {
+  for (uint32_t n = 1 + random() % 2; n != 0 && !text.empty(); --n) {
     const size_t at = random() % text.size();
     const size_t size = random() % std::min<size_t>(text.size() - at, 40) + 1;
     const size_t other = random() % text.size();

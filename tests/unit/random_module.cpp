@@ -24,6 +24,7 @@ const std::vector<uint32_t>& special_ints() {
 }
 
 uint32_t RandomModule::float_bits() {
+  if (below(5) == 0) return below(2) == 0 ? 0 : sign_bit;
   if (below(4) != 0) return special_floats()[below(static_cast<uint32_t>(special_floats().size()))];
   return canonical_float(static_cast<uint32_t>(random_()));
 }
@@ -148,6 +149,21 @@ void RandomModule::library_call(Builder& b) {
   for (ValueId result : functions::call_library(b, variant.row, arguments)) add(b, result);
 }
 
+// Arithmetic with a zero, or the same arithmetic twice with the operands in either order.
+void RandomModule::known_shape(Builder& b) {
+  const Opcode ops[] = {Opcode::fadd, Opcode::fsub, Opcode::fmul, Opcode::fdiv, Opcode::flt};
+  const ValueId x = pick(b, float_type);
+  if (below(2) == 0) {
+    const ValueId zero = b.constant_bits(float_type, below(2) == 0 ? 0 : sign_bit);
+    const Opcode op = ops[below(3)];
+    return add(b, below(2) == 0 ? b.op(op, {x, zero}) : b.op(op, {zero, x}));
+  }
+  const ValueId y = pick(b, float_type);
+  const Opcode op = ops[below(5)];
+  add(b, b.op(op, {x, y}));
+  add(b, below(2) == 0 ? b.op(op, {y, x}) : b.op(op, {x, y}));
+}
+
 void RandomModule::step(Builder& b, int depth, bool library_calls) {
   b.set_origin(below(2) == 0 ? 0 : b.add_origin("n" + std::to_string(below(40)), below(100)));
   const uint32_t kind = below(100);
@@ -167,7 +183,8 @@ void RandomModule::step(Builder& b, int depth, bool library_calls) {
       components.push_back(below(6) == 0 ? pick(b, float_type) : b.extract(vector, c));
     return add(b, b.construct(components));
   }
-  if (kind < 36) return add(b, b.op(Opcode::ftoi, {b.op(Opcode::itof, {pick(b, int_type)})}));
+  if (kind < 42) return known_shape(b);
+  if (kind < 45) return add(b, b.op(Opcode::ftoi, {b.op(Opcode::itof, {pick(b, int_type)})}));
   const auto op = static_cast<Opcode>(below(primitive_count));
   const OpInfo& row = info(op);
   Type type =

@@ -34,6 +34,7 @@ class RandomModule {
   void loop(Builder& b, int depth, bool library_calls);
   void call(Builder& b);
   void library_call(Builder& b);
+  void known_shape(Builder& b);
   std::vector<ValueId> block(Builder& b, const std::vector<Type>& yields, int depth, bool library_calls);
 
   Type any_type();
