@@ -15,10 +15,11 @@ void check_supported(Work& work) {
   if (graph.kind == graph::DocumentKind::post)
     work.report(Id::unsupported, graph.name_place, "post effects cannot be compiled yet");
   for (const graph::Input& input : graph.inputs) {
-    if (nodes::value_types.has(input.type)) continue;
+    const bool is_function = graph.kind == graph::DocumentKind::function;
+    if (nodes::value_types.has(input.type) && (is_function || !nodes::matrix_types.has(input.type))) continue;
     work.report(Id::unsupported, input.place,
-                "an input or parameter of type " + std::string(graph::type_name(input.type)) +
-                    " cannot be compiled yet");
+                std::string(is_function ? "an input" : "a parameter") + " of type " +
+                    std::string(graph::type_name(input.type)) + " cannot be compiled yet");
   }
   for (const graph::Pass& pass : graph.passes) {
     if (!pass.position) continue;

@@ -19,6 +19,7 @@ using support::Span;
 namespace {
 
 constexpr std::string_view extension = ".json";
+constexpr size_t longest_path = 1024;
 
 /// Absolute, without links and dots, whether or not it exists.
 std::string canonical(const std::string& path) {
@@ -107,7 +108,8 @@ support::Source Library::read(const Location& location, const Span& where, Diagn
 
 std::shared_ptr<const TypedGraph> Library::function(std::string_view reference, const Scope& from,
                                                     const Span& where, Diagnostics& diagnostics) {
-  const bool is_path = reference.ends_with(extension) && reference.find('\0') == std::string_view::npos;
+  const bool is_path = reference.ends_with(extension) && reference.size() <= longest_path &&
+                       reference.find('\0') == std::string_view::npos;
   const Location location = is_path || is_library_name(reference) ? locate(reference, from) : Location{};
   if (is_path && !location.in_library && !is_within(location.canonical, from.home)) {
     diagnostics.report(Id::outside_reference, where, quote(reference) + " leads out of the folder tree")

@@ -58,7 +58,7 @@ class NodeResolver {
     node_.row = nodes::find(source_.type);
     if (node_.row == nullptr) {
       node_.callee = function();
-      if (node_.callee == nullptr) return fail();
+      if (node_.callee == nullptr || !passes_few_numbers()) return fail();
     }
     if (node_.row != nullptr && belongs_to_effects(*node_.row) &&
         work_.graph().kind == DocumentKind::function) {
@@ -93,6 +93,20 @@ class NodeResolver {
                                      work_.diagnostics);
     }
     return found;
+  }
+
+  bool passes_few_numbers() {
+    const uint64_t before = work_.passed_numbers;
+    const auto count = [&](Type type) { work_.passed_numbers += std::max(1, graph::float_count(type)); };
+    for (const graph::Input& input : node_.callee->graph.inputs) count(input.type);
+    for (const Operand& output : node_.callee->outputs) count(output.needed);
+    if (work_.passed_numbers <= max_passed_numbers) return true;
+    if (before <= max_passed_numbers) {
+      work_.report(Id::too_large, source_.type_place,
+                   "the graph passes more than " + std::to_string(max_passed_numbers) +
+                       " numbers to and from functions");
+    }
+    return false;
   }
 
   void add_operands() {

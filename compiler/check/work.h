@@ -29,6 +29,7 @@ struct Work {
   std::deque<graph::Link> links = {};          ///< those made of strings in ports
   /// What node types that are not in the table refer to.
   std::unordered_map<std::string_view, std::shared_ptr<const TypedGraph>> functions = {};
+  uint64_t passed_numbers = 0;  ///< to and from functions
   /// Nodes with errors. Their outputs have no type, and what reads them is not complained about again.
   std::vector<bool> broken = {};
 

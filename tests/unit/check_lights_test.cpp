@@ -60,7 +60,7 @@ TEST(CheckLights, WhatCannotBeCompiledYetIsSaid) {
   EXPECT_NE(
       messages_of(R"({"isoshade": 1, "effect": "e", "parameters": {"f": {"type": "filename", "value": "a"},
                            "c": {"type": "color3", "value": [1, 1, 1]}}, "passes": [{"name": "p", "color": "c"}]})")
-          .find("error[unsupported]: an input or parameter of type filename"),
+          .find("error[unsupported]: a parameter of type filename"),
       std::string::npos);
 }
 

@@ -2,8 +2,8 @@
 // Documents given as text, through the whole front end, for tests.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <bit>
+#include <gtest/gtest.h>
 #include <memory>
 #include <optional>
 #include <string>
