@@ -15,8 +15,9 @@ F mix(F a, F b, F t) {
 }
 
 /// 0 up to `low`, 1 from `high` on, 3t^2 - 2t^3 between. With low > high it falls instead.
-/// Domain: all floats. Equal edges make a step: 0 up to the edge, 1 above. NaN gives 0; so does a difference
-/// of the edges that overflows. Error: 6 ULP.
+/// Domain: all floats. Equal edges make a step: 0 up to the edge, 1 above. NaN gives 0; so do edges whose
+/// difference overflows.
+/// Error: 6 ULP.
 template <class F>
 F smoothstep(F low, F high, F x) {
   const F t = saturate((x - low) / (high - low));

@@ -2,8 +2,7 @@
 // What every body is written with: the ops of runtime/lanes, and ways to write one body for all widths.
 //
 // A body is a template over a float type F. With F = float it computes, with F = traced::Float it builds IR,
-// so it may not branch on values: only ops, `select`, each other. Literals stand beside a value of F and
-// become one.
+// so it may not branch on values: only ops, `select`, each other. A literal beside an F becomes one.
 #pragma once
 
 #include <cstddef>

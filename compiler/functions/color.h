@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transfer function of sRGB, IEC 61966-2-1. Polynomials are in the distance from the middle or the lower end of
-// their piece, which keeps rounding small; both directions rise monotonically over all floats in [0, 1].
+// The transfer function of sRGB, IEC 61966-2-1. Polynomials are in the distance from the middle or the lower
+// end of their piece, which keeps rounding small; both directions rise monotonically over all floats.
 #pragma once
 
 #include "compiler/functions/comparison.h"
@@ -17,7 +17,7 @@ F polynomial_of_two(F x, Condition first, const float (&a)[n], const float (&b)[
 
 /// Linear light to sRGB.
 /// Domain: all floats; below 0 and NaN give 0, above 1 gives 1. Exact at 0 and 1.
-/// Error: 4 ULP. Where the standard's pieces meet it falls by 8 ULP; here both stop half-way, so that it does not.
+/// Error: 4 ULP. Where the standard's pieces meet it falls by 8 ULP; here both stop half-way.
 /// Source: of the fourth root of 8x, which costs least accuracy in float; polynomials by Sollya's fpminimax.
 template <class F>
 F srgb_encode(F x) {

@@ -21,8 +21,7 @@ F div_exact(F a, F b) {
   const Int a_fraction = a_bits & fraction_mask;
   const Int b_fraction = b_bits & fraction_mask;
 
-  // Significands in [1, 2); the dividend's is doubled where it is the lesser, so that the quotient is in [1,
-  // 2).
+  // Significands in [1, 2); the dividend's is doubled where it is the lesser, so that their quotient is too.
   const auto doubled = a_fraction < b_fraction;
   const F x = from_bits_normal(a_fraction | select(doubled, Int(0x40000000), Int(one_bits)));
   const F y = from_bits_normal(b_fraction | one_bits);

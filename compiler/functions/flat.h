@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the C++ types of function templates and the IR's values: a vector is one value, a matrix its
-// columns.
+// Between the C++ types of function templates and values of the IR, of which a matrix is several.
 #pragma once
 
 #include <span>

@@ -58,8 +58,8 @@ Sum<F> log2_sum(F x) {
 }
 
 /// The base-2 logarithm.
-/// Domain: all floats; zeros give -inf, +inf gives +inf, negative numbers and NaN give NaN. Powers of two are
-/// exact. Error: 1.5 ULP.
+/// Domain: all floats; zeros give -inf, +inf gives +inf, negative numbers and NaN give NaN.
+/// Error: 1.25 ULP. Powers of two are exact.
 template <class F>
 F log2(F x) {
   const Sum<F> sum = log2_sum(select(x > 0.0f, x, F(1.0f)));
@@ -68,7 +68,7 @@ F log2(F x) {
 
 /// The natural logarithm.
 /// Domain: all floats; zeros give -inf, +inf gives +inf, negative numbers and NaN give NaN.
-/// Error: 1.5 ULP.
+/// Error: 1 ULP.
 /// Source: log(2) in 14 + 24 bits; polynomial by Sollya's fpminimax.
 template <class F>
 F log(F x) {

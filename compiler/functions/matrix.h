@@ -51,9 +51,9 @@ mat<F, N> transpose(mat<F, N> m) {
 }
 
 /// The matrix that takes normals where `m` takes points: a positive multiple of the inverse transpose of its
-/// upper left 3 x 3, by cofactors and without a division. Normalise what it gives. Domain: all floats;
-/// products that overflow give infinities or NaN. A singular matrix gives its cofactors. Error: 1.5 ULP of
-/// the sum of the two products' magnitudes, in each element.
+/// upper left 3 x 3, by cofactors and without a division. Normalise what it gives.
+/// Domain: all floats; products that overflow give infinities or NaN. A singular matrix gives its cofactors.
+/// Error: 1.5 ULP of the sum of the two products' magnitudes, in each element.
 template <class F, int N>
 mat<F, 3> normal_matrix(mat<F, N> m) {
   const auto upper = [&](int c) { return vec<F, 3>{m[c][0], m[c][1], m[c][2]}; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stand-ins for float, int, bool and vectors that record what is done with them. A function template of this
-// folder instantiated with `traced::Float` builds IR; instantiated with `float` it computes. One text, both uses.
+// folder instantiated with `traced::Float` builds IR; instantiated with `float` it computes.
 #pragma once
 
 #include <array>

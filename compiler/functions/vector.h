@@ -36,8 +36,8 @@ F largest_magnitude(vec<F, N> v) {
   return largest;
 }
 
-/// v times the power of two that brings a magnitude of this exponent field (in place) into [2, 4), so that squares
-/// neither overflow nor underflow. An infinite magnitude makes it 0.
+/// v times the power of two that brings a magnitude of this exponent field (in place) into [2, 4), so that
+/// squares neither overflow nor underflow. An infinite magnitude makes it 0.
 template <class F, int N>
 vec<F, N> scale_to_unity(vec<F, N> v, int_of<F> exponent) {
   return v * splat<N>(from_bits_normal(exponent_bits - exponent));
@@ -81,9 +81,10 @@ vec<F, N> reflect(vec<F, N> incident, vec<F, N> normal) {
 }
 
 /// The direction in which a ray goes on behind a surface. `incident` and `normal` are unit vectors, `eta` the
-/// ratio of the indices of refraction, this side over that. Zeros where there is total reflection. Domain:
-/// errors grow without bound, in ULP, where total reflection is near; NaN gives zeros. Error: 6 ULP of |eta
-/// i| + |n| (eta sum |n_j i_j| + sqrt(k)), in each component, for eta <= 0.9.
+/// ratio of the indices of refraction, this side over that. Zeros where there is total reflection.
+/// Domain: all floats; NaN gives zeros. Near total reflection errors grow without bound, in ULP.
+/// Error: 6 ULP of |eta i| + |n| (eta sum |n_j i_j| + sqrt(k)), in each component, for eta <= 0.9; k is the
+/// square of the refracted ray's cosine.
 template <class F, int N>
 vec<F, N> refract(vec<F, N> incident, vec<F, N> normal, F eta) {
   const F d = dot(normal, incident);

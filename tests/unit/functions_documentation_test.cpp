@@ -21,7 +21,7 @@ std::map<std::string, std::string> docstrings() {
     while (std::getline(file, line)) {
       std::smatch match;
       const bool comment = line.starts_with("///");
-      if (comment) doc = in_doc ? doc + line.substr(3) : line.substr(3);
+      if (comment) doc = in_doc ? doc + line + '\n' : line + '\n';
       in_doc = comment;
       if (!doc.empty() && std::regex_match(line, match, signature))
         found.emplace(match[1], std::exchange(doc, ""));
@@ -32,13 +32,13 @@ std::map<std::string, std::string> docstrings() {
 
 TEST(Docstrings, SayDomainAndTheErrorThatTheTableHas) {
   const std::map<std::string, std::string> docs = docstrings();
-#define FUNCTION(row, signature, ulp, domain, reference, unit)                                     \
-  {                                                                                                \
-    std::ostringstream error;                                                                      \
-    error << "Error: " << ulp << " ULP";                                                           \
-    ASSERT_TRUE(docs.contains(#row)) << #row;                                                      \
-    EXPECT_NE(docs.at(#row).find(error.str()), std::string::npos) << #row << ":" << docs.at(#row); \
-    EXPECT_NE(docs.at(#row).find("Domain: "), std::string::npos) << #row << ":" << docs.at(#row);  \
+#define FUNCTION(row, signature, ulp, domain, reference, unit)                                          \
+  {                                                                                                     \
+    std::ostringstream error;                                                                           \
+    error << "\n/// Error: " << ulp << " ULP";                                                          \
+    ASSERT_TRUE(docs.contains(#row)) << #row;                                                           \
+    EXPECT_NE(docs.at(#row).find(error.str()), std::string::npos) << #row << ":" << docs.at(#row);      \
+    EXPECT_NE(docs.at(#row).find("\n/// Domain: "), std::string::npos) << #row << ":" << docs.at(#row); \
   }
 #include "compiler/functions/functions.def"
 }
