@@ -13,3 +13,9 @@ isoshade_test(compare_test
     unit/compare_report_test.cpp
     unit/compare_test.cpp
   LINKS isoshade_compare)
+
+isoshade_test(render_test
+  SOURCES
+    unit/render_plan_test.cpp
+    unit/render_visibility_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_interpreter)

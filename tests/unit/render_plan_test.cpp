@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "backends/interpreter/backend.h"
+#include "compiler/lower/frame_layout.h"
+#include "runtime/compare/compare.h"
+#include "runtime/render/plan.h"
+#include "runtime/render/render.h"
+#include "tests/unit/scene_documents.h"
+
+namespace isoshade {
+namespace {
+
+namespace fs = std::filesystem;
+namespace word = lower::object_word;
+
+/// Scenes beside an effect of a few parameters, in a folder of their own.
+class PlanTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) / ("isoshade_plan" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    write("tinted.json", R"({"isoshade": 1, "effect": "tinted",
+      "parameters": {"tint": {"type": "color3", "value": [0.25, 0.5, 0.75]},
+                     "gain": {"type": "float", "value": 2},
+                     "bright": {"type": "boolean", "value": false},
+                     "steps": {"type": "integer", "value": 3}},
+      "nodes": {"n": {"type": "normal"}, "up": {"type": "multiply", "in1": "n.y", "in2": "gain"},
+                "color": {"type": "multiply", "in1": "tint", "in2": "up"}},
+      "passes": [{"name": "base", "color": "color"}]})");
+    write("twice.json", R"({"isoshade": 1, "effect": "twice",
+      "parameters": {"tint": {"type": "color3", "value": [1, 1, 1]}},
+      "nodes": {"half": {"type": "multiply", "in1": "tint", "in2": 0.5}},
+      "passes": [{"name": "back", "cull": "front", "color": "half"}, {"name": "front", "color": "tint"}]})");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+
+  std::optional<scene::Scene> parse(const std::string& members) {
+    const auto document =
+        testing::document_of(testing::scene_text(members), diagnostics_, (folder_ / "scene.json").string());
+    return document ? scene::parse_scene(*document, diagnostics_) : std::nullopt;
+  }
+
+  std::optional<render::Plan> plan(const std::string& members) {
+    scene_ = parse(members);
+    EXPECT_TRUE(scene_) << diagnostics_.text();
+    if (!scene_) return std::nullopt;
+    options_.compiler.library = &library_;
+    return render::plan_frame(*scene_, options_, diagnostics_);
+  }
+
+  bool planning_fails_with(const std::string& members, const std::string& part) {
+    diagnostics_ = support::Diagnostics();
+    return !plan(members) && diagnostics_.text().find(part) != std::string::npos;
+  }
+
+  const float* record(const render::Plan& plan, size_t draw) const {
+    return &plan.frame.objects[static_cast<size_t>(plan.frame.draws[draw].object)];
+  }
+
+  fs::path folder_;
+  check::Library library_;
+  render::Options options_;
+  support::Diagnostics diagnostics_;
+  std::optional<scene::Scene> scene_;
+};
+
+TEST_F(PlanTest, ParametersAreTheDefaultsButForWhatTheSceneSays) {
+  const auto made = plan(R"("objects": {
+    "plain": {"mesh": "box", "effect": "tinted.json"},
+    "set": {"mesh": "box", "effect": "tinted.json",
+            "parameters": {"gain": 0.5, "bright": true, "steps": 7, "tint": [1, 0, 1e-40]}}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  ASSERT_EQ(made->frame.draws.size(), 2u);
+  const auto words = [&](size_t draw) {
+    const float* first = record(*made, draw) + word::parameters;
+    return std::vector<float>(first, first + 6);
+  };
+  EXPECT_EQ(words(0), (std::vector<float>{0.25f, 0.5f, 0.75f, 2, 0, 3}));
+  EXPECT_EQ(words(1), (std::vector<float>{1, 0, 0, 0.5f, 1, 7}));
+}
+
+TEST_F(PlanTest, GridsVaryParametersAndPlaces) {
+  const auto made = plan(R"("objects": {"grid": {"mesh": "box", "effect": "tinted.json",
+    "transform": {"scale": 0.1},
+    "repeat": [{"count": 3, "step": [0.5, 0, 0], "parameters": {"gain": {"from": 1, "to": 2}}},
+               {"count": 2, "step": [0, -0.5, 0], "parameters": {"tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  ASSERT_EQ(made->frame.draws.size(), 6u);
+  const float* last = record(*made, 5);
+  EXPECT_EQ(last[word::model + 9], 1.0f);
+  EXPECT_EQ(last[word::model + 10], -0.5f);
+  EXPECT_EQ(last[word::parameters + 1], 1.0f);
+  EXPECT_EQ(last[word::parameters + 3], 2.0f);
+  EXPECT_EQ(record(*made, 1)[word::parameters + 3], 1.5f);
+  EXPECT_EQ(made->meshes.size(), 1u);
+}
+
+TEST_F(PlanTest, MeshesEffectsAndProgramsAreSharedWhereTheyAreTheSame) {
+  const auto made = plan(R"("objects": {
+    "a": {"mesh": "sphere", "effect": "tinted.json"}, "b": {"mesh": {"type": "sphere"}, "effect": "./tinted.json"},
+    "c": {"mesh": "box", "effect": "twice.json"}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->meshes.size(), 2u);
+  EXPECT_EQ(made->effects.size(), 2u);
+  ASSERT_EQ(made->frame.draws.size(), 4u);
+  EXPECT_EQ(made->frame.programs.size(), 4u);  // one vertex program, three pixel programs
+  EXPECT_EQ(made->frame.draws[0].first_vertex, made->frame.draws[1].first_vertex);
+  for (const backends::Draw& draw : made->frame.draws) {
+    EXPECT_EQ(made->frame.programs[draw.vertex_program]->stage, lower::Stage::vertex);
+    EXPECT_EQ(made->frame.programs[draw.pixel_program]->stage, lower::Stage::pixel);
+  }
+  EXPECT_EQ(record(*made, 3)[word::program], static_cast<float>(made->frame.draws[3].pixel_program));
+}
+
+TEST_F(PlanTest, AMovedPlanPointsToWhatItPointedTo) {
+  auto made = plan(R"("objects": {"a": {"mesh": "sphere", "effect": "tinted.json"}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  const render::Plan moved = std::move(*made);
+  made.reset();
+  EXPECT_EQ(moved.frame.draws[0].indices.data(), moved.meshes[0].indices.data());
+  EXPECT_EQ(moved.frame.programs[0], &moved.effects[0].passes[0].vertex);
+}
+
+TEST_F(PlanTest, MirroredObjectsKeepTheirOutside) {
+  const auto made = plan(R"("objects": {
+    "a": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [1, -1, 1]}},
+    "b": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [-1, -1, 1]}}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->frame.draws[0].cull, backends::Cull::back);  // the pass that culls fronts
+  EXPECT_EQ(made->frame.draws[1].cull, backends::Cull::front);
+  EXPECT_EQ(made->frame.draws[2].cull, backends::Cull::front);
+  EXPECT_EQ(made->frame.draws[3].cull, backends::Cull::back);
+}
+
+TEST_F(PlanTest, ReportsParametersThatAnEffectHasNotOrThatDoNotFit) {
+  const auto object = [](const std::string& parameters) {
+    return R"("objects": {"a": {"mesh": "box", "effect": "tinted.json", "parameters": {)" + parameters +
+           "}}}";
+  };
+  EXPECT_TRUE(planning_fails_with(object(R"("tnit": [1, 1, 1])"), "did you mean \"tint\""));
+  EXPECT_TRUE(planning_fails_with(object(R"("tint": 1)"), "an array of 3 numbers"));
+  EXPECT_TRUE(planning_fails_with(object(R"("gain": "big")"), "of type float"));
+  EXPECT_TRUE(planning_fails_with(object(R"("bright": 1)"), "of type boolean"));
+  EXPECT_TRUE(planning_fails_with(object(R"("steps": 1.5)"), "of type integer"));
+  EXPECT_TRUE(planning_fails_with(R"("objects": {"a": {"mesh": "box", "effect": "tinted.json",
+    "repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"gian": {"from": 0, "to": 1}}}]}})",
+                                  "\"gain\""));
+  EXPECT_TRUE(planning_fails_with(R"("objects": {"a": {"mesh": "box", "effect": "tinted.json",
+    "repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"steps": {"from": 0, "to": 1}}}]}})",
+                                  "list its values"));
+}
+
+TEST_F(PlanTest, ReportsWhoNeedsAnEffectThatDoesNotCompile) {
+  EXPECT_TRUE(planning_fails_with(R"("objects": {"ball": {"mesh": "box", "effect": "none.json"}})",
+                                  "the effect of \"ball\""))
+      << diagnostics_.text();
+}
+
+TEST_F(PlanTest, BoundsWhatIsDrawn) {
+  EXPECT_TRUE(planning_fails_with(
+      R"("objects": {"a": {"mesh": {"type": "sphere", "segments": 1024, "rings": 1024}, "effect": "tinted.json",
+                           "repeat": [{"count": 60000, "step": [1, 0, 0]}]}})",
+      "too-large"));
+}
+
+TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
+  const auto made = plan(R"("background": [0.1, 0.2, 0.3, 0.4], "size": [17, 9],
+    "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]},
+               "lamp": {"type": "point", "position": [1, 2, 3], "intensity": 5}}, "objects": {})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->frame.width, 17);
+  EXPECT_EQ(made->frame.height, 9);
+  EXPECT_EQ(made->frame.light_count, 2);
+  EXPECT_EQ(made->frame.lights.size(), 2u * lower::light_word::stride);
+  EXPECT_EQ(made->frame.lights[lower::light_word::stride + lower::light_word::color], 5.0f);
+  EXPECT_EQ(made->frame.frame, (std::vector<float>{0, 0, 5, 1}));
+  EXPECT_EQ(made->frame.background[3], 0.4f);
+  options_.width = 5;
+  options_.height = 7;
+  const auto other = plan("\"objects\": {}");
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->frame.width, 5);
+  EXPECT_EQ(other->frame.height, 7);
+}
+
+TEST_F(PlanTest, SkippingWhatIsOutsideOfTheViewChangesNoBit) {
+  const std::string members = R"("size": [48, 27], "background": [0.5, 0.25, 0.125, 1],
+    "objects": {"grid": {"mesh": {"type": "sphere", "segments": 12, "rings": 6}, "effect": "tinted.json",
+      "transform": {"translate": [-8, -4, -1], "scale": 0.6},
+      "repeat": [{"count": 9, "step": [2, 0, 0], "parameters": {"gain": {"from": 0.5, "to": 3}}},
+                 {"count": 5, "step": [0, 2, 0]}, {"count": 3, "step": [0, 0, 3]}]}})";
+  support::Diagnostics diagnostics;
+  const auto backend = interpreter::create();
+  backends::Image images[2];
+  int64_t draws[2];
+  for (const bool skip : {false, true}) {
+    options_.skip = skip;
+    const auto made = plan(members);
+    ASSERT_TRUE(made) << diagnostics_.text();
+    render::DrawStats stats;
+    ASSERT_TRUE(render::render(*made, *backend, images[skip], stats, diagnostics)) << diagnostics.text();
+    draws[skip] = made->stats.draws;
+    if (skip) {
+      ASSERT_EQ(made->stats.skips.size(), 1u);
+      EXPECT_NE(render::text(made->stats).find("of 135 copies of grid: outside of the view"),
+                std::string::npos)
+          << render::text(made->stats);
+    }
+  }
+  EXPECT_EQ(draws[0], 135);
+  EXPECT_LT(draws[1], 100);
+  EXPECT_GT(draws[1], 10);
+  const auto comparison = compare::compare(images[0], images[1]);
+  EXPECT_TRUE(comparison.identical()) << compare::describe(comparison, "all", "skipping");
+  const size_t background =
+      static_cast<size_t>(std::count(images[0].depth.begin(), images[0].depth.end(), 0.0f));
+  EXPECT_GT(background, 50u);  // there is something to see, and something beside it
+  EXPECT_LT(background, 48u * 27u - 50u);
+}
+
+TEST_F(PlanTest, ASceneWithoutObjectsIsItsBackground) {
+  const auto made = plan(R"("size": [3, 2], "background": [0.5, 0.25, 0.125, 1])");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  backends::Image image;
+  render::DrawStats stats;
+  ASSERT_TRUE(render::render(*made, *interpreter::create(), image, stats, diagnostics_));
+  ASSERT_EQ(image.rgba.size(), 24u);
+  EXPECT_EQ(image.rgba[4], 0.5f);
+  EXPECT_EQ(image.depth, std::vector<float>(6, 0.0f));
+}
+
+}  // namespace
+}  // namespace isoshade
