@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -15,12 +16,18 @@ namespace isoshade::passes {
 
 namespace {
 
+/// Clones multiply with the depth of calls: two calls with constants in each of 30 nested functions would make 2^30.
+/// Far more than a device compiles in a shader.
+constexpr size_t max_cloned_instructions = 200'000;
+
 /// The words of a constant argument; nothing: it is no constant.
 using Words = std::optional<std::vector<uint32_t>>;
 
 class Specializer {
  public:
-  explicit Specializer(ir::Module& module) : module_(module) {}
+  explicit Specializer(ir::Module& module) : module_(module) {
+    for (const ir::Function& function : module.functions) names_.insert(function.name);
+  }
 
   /// One level of calls; whether there was any to specialize.
   bool step() {
@@ -91,7 +98,7 @@ class Specializer {
         arguments.push_back(constant_words(module_.functions[f], made, operand));
         any = any || arguments.back().has_value();
       }
-      if (!any || call.operand_count == 0) continue;
+      if (!any || cloned_instructions_ > max_cloned_instructions) continue;
       const uint32_t callee = clone_for(call.imm, arguments);
       // The remaining arguments move to the front of the call's operands.
       ir::Function& caller = module_.functions[f];
@@ -99,7 +106,8 @@ class Specializer {
       instruction.imm = callee;
       uint32_t kept = 0;
       for (uint32_t a = 0; a < call.operand_count; ++a)
-        if (!arguments[a]) caller.operands[call.first_operand + kept++] = caller.operands[call.first_operand + a];
+        if (!arguments[a])
+          caller.operands[call.first_operand + kept++] = caller.operands[call.first_operand + a];
       instruction.operand_count = kept;
       changed = true;
     }
@@ -113,6 +121,7 @@ class Specializer {
     clone.library.clear();
     clone.name = free_name(clone.name);
     bind(clone, arguments);
+    cloned_instructions_ += clone.instructions.size();
     module_.functions.push_back(std::move(clone));
     arithmetic_.push_back(arithmetic_[callee]);
     return entry->second = static_cast<uint32_t>(module_.functions.size() - 1);
@@ -120,9 +129,7 @@ class Specializer {
 
   std::string free_name(const std::string& name) {
     std::string free;
-    do {
-      free = name + "_" + std::to_string(++numbers_[name]);
-    } while (module_.find(free) != ir::none);
+    do { free = name + "_" + std::to_string(++numbers_[name]); } while (!names_.insert(free).second);
     return free;
   }
 
@@ -178,7 +185,9 @@ class Specializer {
   ir::Module& module_;
   std::vector<std::optional<bool>> arithmetic_;
   std::map<std::pair<uint32_t, std::vector<Words>>, uint32_t> clones_;
+  std::unordered_set<std::string> names_;  ///< of all functions
   std::map<std::string, int> numbers_;
+  size_t cloned_instructions_ = 0;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "compiler/passes/fold.h"
 #include "compiler/passes/hide_foldables.h"
 #include "compiler/passes/renumber.h"
+#include "compiler/passes/specialize.h"
 #include "tests/unit/ir_text.h"
 
 namespace isoshade::passes {
@@ -36,6 +37,11 @@ const std::map<std::string, void (*)(ir::Module&)> passes{
     {"cse", cse},
     {"fold", [](ir::Module& module) { fold(module); }},
     {"hide_foldables", hide_foldables},
+    {"specialize",
+     [](ir::Module& module) {
+       specialize(module);
+       drop_unreached(module);
+     }},
 };
 
 void check(const fs::path& path, void (*pass)(ir::Module&)) {

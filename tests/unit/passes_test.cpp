@@ -10,6 +10,7 @@
 #include "compiler/passes/hide_foldables.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/passes/renumber.h"
+#include "compiler/passes/specialize.h"
 #include "tests/unit/ir_text.h"
 #include "tests/unit/random_module.h"
 
@@ -108,6 +109,31 @@ TEST(Pipeline, DumpsAfterEveryPassAndGivesReasons) {
       [&](std::string_view name, const Module&) { EXPECT_EQ(name, optimisations()[dumps++].name); });
   EXPECT_EQ(dumps, optimisations().size());
   for (const Pass& pass : optimisations()) EXPECT_FALSE(pass.reason.empty());
+}
+
+TEST(Specialize, GrowsNoModuleWithoutBound) {
+  // Each of the nested functions calls the next twice, with two constants made of its own: 2^40 clones.
+  std::string text =
+      "func @main(%y: float) -> (out: float) { %k = constant float 0x40490fdb %r = call @f0(%k, %y) return "
+      "%r }\n";
+  for (int i = 0; i < 40; ++i) {
+    const std::string callee = "call @f" + std::to_string(i + 1);
+    text += "func @f" + std::to_string(i) + R"((%x: float, %y: float) -> (out: float) {
+      %a = constant float 0x3f8ccccd
+      %b = constant float 0x3f99999a
+      %product = fmul %x, %a
+      %first = fadd %product, %b
+      %second = fmul %x, %b
+      %p = )" +
+            callee + "(%first, %y) %q = " + callee + "(%second, %p) return %q }\n";
+  }
+  text += "func @f40(%x: float, %y: float) -> (out: float) { %z = fmul %x, %y return %z }\n";
+  Module module = valid(text);
+  specialize(module);
+  EXPECT_EQ(validate(module), "");
+  size_t instructions = 0;
+  for (const Function& function : module.functions) instructions += function.instructions.size();
+  EXPECT_LT(instructions, 400'000u);
 }
 
 // A function of `size` instructions: long chains, few repeats.
