@@ -171,6 +171,7 @@ void Body::make_sum(uint32_t index) {
     if (asks_light) {
       const std::array arguments{light_index,
                                  environment_.surface[static_cast<size_t>(nodes::Surface::position)]};
+      b_.set_origin(b_.add_origin("light", b_.function().origins[origin_of(index)].line));
       light_ = b_.call(environment_.light_at, arguments);
     }
     for (const uint32_t i : inside) make(i);
