@@ -15,10 +15,8 @@ namespace {
 using support::Diagnostics;
 
 /// JSON text -> Document -> Graph -> TypedGraph.
-std::shared_ptr<const check::TypedGraph> read_graph(const std::string& path, graph::DocumentKind wanted,
+std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& source, graph::DocumentKind wanted,
                                                     const Options& options, Diagnostics& diagnostics) {
-  const support::Source source = graph::read_source(path, diagnostics);
-  if (source == nullptr) return nullptr;
   const auto document = graph::parse_document(source, diagnostics);
   if (!document) return nullptr;
   if (options.dump) options.dump("document", [&] { return dump_document(*document); });
@@ -112,16 +110,14 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const std::ve
 
 }  // namespace
 
-std::optional<graph::DocumentKind> kind_of(const std::string& path, Diagnostics& diagnostics) {
-  const support::Source source = graph::read_source(path, diagnostics);
-  if (source == nullptr) return std::nullopt;
+std::optional<graph::DocumentKind> kind_of(const support::Source& source, Diagnostics& diagnostics) {
   const auto document = graph::parse_document(source, diagnostics);
   return document ? graph::document_kind(*document, diagnostics) : std::nullopt;
 }
 
-std::optional<Effect> compile_effect(const std::string& path, const Options& options,
+std::optional<Effect> compile_effect(const support::Source& source, const Options& options,
                                      Diagnostics& diagnostics) {
-  const auto typed = read_graph(path, graph::DocumentKind::effect, options, diagnostics);
+  const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
   Effect effect{typed->graph.name, typed->document, parameters_of(*typed), {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
@@ -132,9 +128,9 @@ std::optional<Effect> compile_effect(const std::string& path, const Options& opt
   return effect;
 }
 
-std::optional<Program> compile_function(const std::string& path, const Options& options,
+std::optional<Program> compile_function(const support::Source& source, const Options& options,
                                         Diagnostics& diagnostics) {
-  const auto typed = read_graph(path, graph::DocumentKind::function, options, diagnostics);
+  const auto typed = read_graph(source, graph::DocumentKind::function, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
   ir::Module module = lower::lower(*typed);
   module.buffers = lower::frame_module().buffers;

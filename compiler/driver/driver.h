@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole compiler on one page: a document's path in, programs out.
+// The whole compiler on one page: a document in, programs out.
 //
 //   JSON text -> Document -> Graph -> TypedGraph -> ir::Module -> passes -> Program -> GLSL, C++, SPIR-V
 #pragma once
@@ -40,15 +40,15 @@ struct Effect {
   std::vector<Pass> passes;
 };
 
-/// Which kind of document a file holds.
-std::optional<graph::DocumentKind> kind_of(const std::string& path, support::Diagnostics& diagnostics);
+/// Which kind of document a source holds.
+std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
-/// `path` is an effect document.
-std::optional<Effect> compile_effect(const std::string& path, const Options& options,
+/// `source` is an effect document.
+std::optional<Effect> compile_effect(const support::Source& source, const Options& options,
                                      support::Diagnostics& diagnostics);
 
-/// `path` is a function document; the program is its eval kernel.
-std::optional<Program> compile_function(const std::string& path, const Options& options,
+/// `source` is a function document; the program is its eval kernel.
+std::optional<Program> compile_function(const support::Source& source, const Options& options,
                                         support::Diagnostics& diagnostics);
 
 /// The visibility pass's program, the same for every scene.

@@ -120,13 +120,14 @@ int compile(const CompileArguments& arguments, const Common& common) {
     };
 
   Writer writer(arguments, diagnostics);
-  const auto kind = driver::kind_of(arguments.graph, diagnostics);
+  const support::Source source = graph::read_source(arguments.graph, diagnostics);
+  const auto kind = source != nullptr ? driver::kind_of(source, diagnostics) : std::nullopt;
   bool done = false;
   if (kind == graph::DocumentKind::function) {
-    const auto program = driver::compile_function(arguments.graph, options, diagnostics);
+    const auto program = driver::compile_function(source, options, diagnostics);
     done = program && write_function(*program, writer);
   } else if (kind) {
-    const auto effect = driver::compile_effect(arguments.graph, options, diagnostics);
+    const auto effect = driver::compile_effect(source, options, diagnostics);
     done = effect && write_effect(*effect, writer);
   }
   if (done) done = writer.headers();

@@ -13,11 +13,13 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   check::Library library(library_root(common));
   driver::Options options;
   options.library = &library;
-  const auto program = driver::compile_function(arguments.function, options, diagnostics);
+  const support::Source function = graph::read_source(arguments.function, diagnostics);
+  if (function == nullptr) return false;
+  const auto program = driver::compile_function(function, options, diagnostics);
   if (!program) return false;
-  const support::Source source = graph::read_source(arguments.inputs, diagnostics);
-  if (source == nullptr) return false;
-  const auto inputs = read_table(source, program->inputs, diagnostics);
+  const support::Source table = graph::read_source(arguments.inputs, diagnostics);
+  if (table == nullptr) return false;
+  const auto inputs = read_table(table, program->inputs, diagnostics);
   if (!inputs) return false;
   const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
   if (backend == nullptr) return false;

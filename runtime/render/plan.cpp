@@ -88,7 +88,8 @@ bool Planner::compile_effects() {
     const auto [found, is_new] = known.try_emplace(object.effect, plan_.effects.size());
     effect_of_object_.push_back(found->second);
     if (!is_new) continue;
-    auto effect = driver::compile_effect(object.effect, options, diagnostics_);
+    const support::Source source = graph::read_source(object.effect, diagnostics_, object.effect_where);
+    auto effect = source != nullptr ? driver::compile_effect(source, options, diagnostics_) : std::nullopt;
     if (!effect && !diagnostics_.full() && !diagnostics_.all().empty()) {
       diagnostics_.all().back().note(object.effect_where, "the effect of " + quote(object.name));
     }

@@ -1,0 +1,14 @@
+set(equivalence_definitions
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
+  ISOSHADE_ROOT="${PROJECT_SOURCE_DIR}"
+  ISOSHADE_GOLDENS="${PROJECT_SOURCE_DIR}/tests/golden/hashes.json")
+
+isoshade_test(scenes_test
+  SOURCES equivalence/scenes_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL equivalence
+  TIMEOUT 900)
+target_compile_definitions(scenes_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
+isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
+target_compile_definitions(text_test PRIVATE ${equivalence_definitions})

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shipped scenes on any backend, for tests that compare every bit.
+#pragma once
+
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/cpu/backend.h"
+#include "backends/interpreter/backend.h"
+#include "compiler/check/library.h"
+#include "runtime/compare/compare.h"
+#include "runtime/render/render.h"
+#ifdef ISOSHADE_VULKAN
+#include "backends/vulkan/backend.h"
+#endif
+
+namespace isoshade::equivalence {
+
+/// Paths of all shipped scenes, sorted.
+inline std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(ISOSHADE_GRAPHS "/scenes"))
+    if (entry.path().extension() == ".json") paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+inline std::string scene_path(const std::string& name) { return ISOSHADE_GRAPHS "/scenes/" + name + ".json"; }
+
+inline scene::Scene load(const std::string& path) {
+  support::Diagnostics diagnostics;
+  const auto document = graph::parse_document(graph::read_source(path, diagnostics), diagnostics);
+  auto scene = document ? scene::parse_scene(*document, diagnostics) : std::nullopt;
+  if (!scene) ADD_FAILURE() << diagnostics.text();
+  return scene.value_or(scene::Scene());
+}
+
+inline render::Plan plan(const std::string& path, int width = 0, int height = 0, bool skip = true) {
+  support::Diagnostics diagnostics;
+  check::Library library(ISOSHADE_GRAPHS "/library");
+  render::Options options;
+  options.width = width;
+  options.height = height;
+  options.skip = skip;
+  options.compiler.library = &library;
+  auto made = render::plan_frame(load(path), options, diagnostics);
+  if (!made) ADD_FAILURE() << diagnostics.text();
+  return made ? std::move(*made) : render::Plan();
+}
+
+inline backends::Image draw(const render::Plan& plan, backends::Backend& backend) {
+  support::Diagnostics diagnostics;
+  backends::Image image;
+  render::DrawStats stats;
+  if (!render::render(plan, backend, image, stats, diagnostics)) ADD_FAILURE() << diagnostics.text();
+  return image;
+}
+
+inline std::unique_ptr<backends::Backend> cpu_backend(const std::string& lanes = "", int threads = 0,
+                                                      const std::string& compiler = "") {
+  support::Diagnostics diagnostics;
+  cpu::Options options;
+  options.lanes = lanes;
+  options.threads = threads;
+  options.compiler = compiler;
+  auto backend = cpu::create(options, diagnostics);
+  if (backend == nullptr) ADD_FAILURE() << diagnostics.text();
+  return backend;
+}
+
+#ifdef ISOSHADE_VULKAN
+inline std::unique_ptr<backends::Backend> vulkan_backend(
+    std::optional<driver::Division> division = std::nullopt) {
+  support::Diagnostics diagnostics;
+  vulkan::Options options;
+  options.division = division;
+  auto backend = vulkan::create(options, diagnostics);
+  if (backend == nullptr) ADD_FAILURE() << diagnostics.text();
+  return backend;
+}
+#endif
+
+inline void expect_identical(const backends::Image& a, const backends::Image& b, const std::string& what) {
+  const compare::Comparison comparison = compare::compare(a, b);
+  EXPECT_TRUE(comparison.identical()) << what << ": " << compare::describe(comparison, "first", "second");
+}
+
+}  // namespace isoshade::equivalence

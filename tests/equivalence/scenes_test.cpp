@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// One scene, one image: on every backend, at every size, lane count and thread count. No tolerance anywhere.
+#include "tests/equivalence/scenes.h"
+
+#include <set>
+
+#include "compiler/support/diagnostics.h"
+#include "runtime/compare/golden.h"
+#include "runtime/scene/encode.h"
+
+namespace isoshade::equivalence {
+namespace {
+
+struct Size {
+  int width, height;
+};
+
+constexpr Size sizes[] = {{640, 360}, {1280, 720}, {1921, 1081}, {64, 64}, {1, 1}, {3, 500}};
+
+std::string text(Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
+
+#ifdef ISOSHADE_VULKAN
+TEST(Scenes, AreIdenticalOnCpuAndVulkanAtEverySize) {
+  const auto cpu = cpu_backend();
+  const auto vulkan = vulkan_backend();
+  for (const std::string& path : shipped_scenes())
+    for (const Size size : sizes) {
+      const render::Plan made = plan(path, size.width, size.height);
+      expect_identical(draw(made, *cpu), draw(made, *vulkan), path + " " + text(size));
+    }
+}
+
+TEST(Scenes, AreIdenticalWithExactDivision) {
+  const auto native = vulkan_backend(driver::Division::native);
+  const auto exact = vulkan_backend(driver::Division::exact);
+  for (const std::string& path : shipped_scenes()) {
+    const render::Plan made = plan(path, 320, 180);
+    expect_identical(draw(made, *native), draw(made, *exact), path);
+  }
+}
+#endif
+
+TEST(Scenes, AreIdenticalOnTheInterpreter) {
+  const auto cpu = cpu_backend();
+  const auto interpreter = interpreter::create();
+  for (const std::string& path : shipped_scenes()) {
+    const render::Plan made = plan(path, 64, 64);
+    expect_identical(draw(made, *cpu), draw(made, *interpreter), path);
+  }
+}
+
+TEST(Scenes, AreIdenticalForEveryLaneCountAndThreadCount) {
+  const auto first = cpu_backend("1", 1);
+  for (const std::string& path : shipped_scenes()) {
+    const render::Plan made = plan(path, 321, 181);
+    const backends::Image expected = draw(made, *first);
+    for (const char* lanes : {"4", "8", "16", "8x2", "16x2"})
+      for (const int threads : {1, 2}) {
+        const auto backend = cpu_backend(lanes, threads);
+        expect_identical(expected, draw(made, *backend),
+                         path + " lanes " + lanes + " threads " + std::to_string(threads));
+      }
+  }
+}
+
+TEST(Scenes, AreIdenticalWhicheverCompilerBuiltThem) {
+  const auto gcc = cpu_backend("", 0, "g++");
+  const auto clang = cpu_backend("", 0, "clang++");
+  for (const std::string& path : shipped_scenes()) {
+    const render::Plan made = plan(path, 320, 180);
+    expect_identical(draw(made, *gcc), draw(made, *clang), path);
+  }
+}
+
+TEST(Scenes, KeepEveryBitWhenWhatCannotBeSeenIsSkipped) {
+  const auto cpu = cpu_backend();
+  for (const std::string& path : shipped_scenes())
+    expect_identical(draw(plan(path, 320, 180, true), *cpu), draw(plan(path, 320, 180, false), *cpu), path);
+}
+
+TEST(Golden, HoldsEveryShippedSceneAtItsOwnSize) {
+  support::Diagnostics diagnostics;
+  const auto goldens = compare::read_goldens(ISOSHADE_GOLDENS, diagnostics);
+  ASSERT_TRUE(goldens.has_value()) << diagnostics.text();
+  const auto cpu = cpu_backend();
+  std::set<std::string> shipped;
+  for (const std::string& path : shipped_scenes()) {
+    const scene::Scene scene = load(path);
+    const backends::Image image = draw(plan(path), *cpu);
+    const auto bytes = scene::encode(image.rgba, scene.output.encoding, scene.output.exposure);
+    const compare::Golden found{image.width, image.height, compare::image_hash(image),
+                                compare::encoded_hash(image.width, image.height, bytes)};
+    const std::string key = compare::golden_key(path);
+    shipped.insert(key);
+    EXPECT_EQ(compare::golden_mismatch(*goldens, key, "default", found), "") << path;
+  }
+  for (const auto& [key, tiers] : *goldens)
+    EXPECT_TRUE(shipped.contains(key)) << key << " is no shipped scene";
+}
+
+}  // namespace
+}  // namespace isoshade::equivalence

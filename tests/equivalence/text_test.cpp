@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The texts that users read and compile: they compile as they stand, read alike, name nodes and lines, and hold
+// nothing that the graph does not need.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <regex>
+#include <sstream>
+
+#include "compiler/check/library.h"
+#include "compiler/driver/driver.h"
+
+namespace isoshade::equivalence {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Texts {
+  std::string name;
+  driver::Stage stage;
+  std::string glsl, exact, cpp;
+};
+
+std::vector<fs::path> documents(const char* folder) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(ISOSHADE_GRAPHS) / folder))
+    if (entry.path().extension() == ".json") paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+/// The programs of all shipped functions and effects.
+const std::vector<Texts>& shipped() {
+  static const std::vector<Texts> all = [] {
+    std::vector<Texts> texts;
+    support::Diagnostics diagnostics;
+    check::Library library(ISOSHADE_GRAPHS "/library");
+    driver::Options options;
+    options.library = &library;
+    const auto add = [&](const std::string& name, const driver::Program& program) {
+      texts.push_back({name, program.stage, driver::glsl(program, driver::Division::native),
+                       driver::glsl(program, driver::Division::exact), driver::cpp(program)});
+    };
+    for (const char* folder : {"library", "source_forms"})
+      for (const fs::path& path : documents(folder)) {
+        const auto program =
+            driver::compile_function(graph::read_source(path.string(), diagnostics), options, diagnostics);
+        if (program) add(path.parent_path().filename().string() + "_" + program->name, *program);
+      }
+    for (const fs::path& path : documents("materials")) {
+      const auto effect =
+          driver::compile_effect(graph::read_source(path.string(), diagnostics), options, diagnostics);
+      if (!effect) continue;
+      for (const driver::Pass& pass : effect->passes) {
+        add(effect->name + "_" + pass.name + "_vertex", pass.vertex);
+        add(effect->name + "_" + pass.name + "_pixel", pass.pixel);
+      }
+    }
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
+    return texts;
+  }();
+  return all;
+}
+
+/// A folder of this test's own, removed at its end.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (fs::temp_directory_path() / "isoshade-text-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~Folder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+void expect_success(const std::string& command) {
+  EXPECT_EQ(std::system((command + " >&2").c_str()), 0) << command;
+}
+
+/// All first groups of a pattern's matches, in order.
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it)
+    found.push_back((*it)[1]);
+  return found;
+}
+
+const std::string function_head =
+    "(?:^|\n)(?:ISOSHADE_INLINE )?[A-Za-z_0-9]+(?:<F>)? ([a-zA-Z_0-9]+)\\([^\n;]*\\) \\{";
+
+TEST(Text, GlslCompilesAsItStands) {
+  const Folder folder;
+  std::string files;
+  for (const Texts& texts : shipped()) {
+    const std::string ending = texts.stage == driver::Stage::vertex ? ".vert" : ".frag";
+    files += " " + folder.write(texts.name + ending, texts.glsl).string();
+    files += " " + folder.write(texts.name + "_exact" + ending, texts.exact).string();
+  }
+  ASSERT_FALSE(files.empty());
+  // One file a run: -V of several would link them into one program.
+  std::istringstream paths(files);
+  for (std::string path; paths >> path;)
+    expect_success("glslangValidator -V " + path + " -o " + path + ".spv");
+}
+
+TEST(Text, CppCompilesWithoutWarningsByBothCompilers) {
+  const Folder folder;
+  for (const Texts& texts : shipped()) {
+    const std::string path = folder.write(texts.name + ".cpp", texts.cpp).string();
+    for (const char* compiler : {"g++", "clang++"})
+      expect_success(std::string(compiler) +
+                     " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + path);
+  }
+}
+
+TEST(Text, ReadsAlikeInBothLanguages) {
+  for (const Texts& texts : shipped()) {
+    SCOPED_TRACE(texts.name);
+    // The same functions in the same order, and the same nodes of the same lines.
+    std::vector<std::string> glsl = matches(texts.glsl, function_head);
+    std::erase_if(glsl, [](const std::string& name) { return name == "canonical" || name == "main"; });
+    EXPECT_EQ(glsl, matches(texts.cpp, function_head));
+    const std::string comment = "(// [A-Za-z_0-9]+ :[0-9]+)\n";
+    EXPECT_EQ(matches(texts.glsl, comment), matches(texts.cpp, comment));
+    // The same names get values in the same order.
+    const std::string definition =
+        "\n +(?:const |precise )?(?:[A-Za-z_0-9]+(?:<[A-Za-z]+>)?) ([a-z_A-Z0-9]+) = ";
+    const auto body = [](const std::string& text, const std::string& end) {
+      return text.substr(0, text.find(end));
+    };
+    EXPECT_EQ(matches(body(texts.glsl, "// The bits of a float"), definition),
+              matches(body(texts.cpp, "namespace isoshade_program\n\nstruct"), definition));
+  }
+}
+
+TEST(Text, NamesNodesWithTheirLines) {
+  for (const Texts& texts : shipped()) {
+    if (texts.stage == driver::Stage::vertex) continue;
+    EXPECT_FALSE(matches(texts.glsl, "(// [A-Za-z_0-9]+ :[0-9]+)\n").empty()) << texts.name;
+  }
+}
+
+TEST(Text, HoldsOnlyWhatTheGraphNeeds) {
+  for (const Texts& texts : shipped()) {
+    SCOPED_TRACE(texts.name);
+    for (const std::string* text : {&texts.glsl, &texts.exact, &texts.cpp}) {
+      for (const std::string& function : matches(*text, function_head)) {
+        if (function == "main") continue;
+        EXPECT_GE(matches(*text, "[^A-Za-z_0-9](" + function + ")(?:<[A-Za-z]+>)?\\(").size(), 2u)
+            << function;
+      }
+      for (const std::string& buffer : matches(*text, "readonly buffer [a-z_]+ \\{ [a-z]+ ([a-z]+)\\[\\]"))
+        EXPECT_GE(matches(*text, "(" + buffer + ")\\[[a-z0-9]").size(), 1u) << buffer;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace isoshade::equivalence
