@@ -123,6 +123,7 @@ Decoded decode_exr(std::string_view bytes) {
   if (std::string reason = refuse(version, header); !reason.empty()) return {{}, std::move(reason)};
   for (int c = 0; c < header.num_channels; ++c) header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
   LoadedImage loaded;
+  loaded.num_channels = header.num_channels;  // so that on failure tinyexr frees all of them
   if (LoadEXRImageFromMemory(&loaded, &header, data, bytes.size(), &message) != TINYEXR_SUCCESS) {
     InitEXRImage(&loaded);  // tinyexr has freed what it allocated, and left the pointers
     return {{}, take_message(message)};
