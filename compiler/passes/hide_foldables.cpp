@@ -23,7 +23,8 @@ bool is_zero(Bits bits) { return bits && (*bits & ~sign_bit) == 0; }
 bool is_foldable(Opcode op, int arity, Bits a, Bits b) {
   if (a && (arity == 1 || b)) return true;
   switch (op) {
-    case Opcode::fmul: return is_zero(a) || is_zero(b);
+    case Opcode::fmul:
+    case Opcode::fdiv: return is_zero(a) || is_zero(b);
     case Opcode::fadd: return a == 0u || b == 0u;
     case Opcode::fsub: return is_zero(a) || b == sign_bit;
     default: return false;
@@ -77,7 +78,8 @@ class Hider {
     if (made.operand_count == 1)
       return a ? literal(evaluate(made.op, *a, 0, 0)) : edit_.make(made.op, {operand(0)});
     if (a && b) return literal(evaluate(made.op, *a, *b, 0));
-    switch (is_foldable(made.op, 2, a, b) ? made.op : Opcode::fdiv) {
+    if (!is_foldable(made.op, 2, a, b)) return edit_.make(made.op, {operand(0), operand(1)});
+    switch (made.op) {
       case Opcode::fmul: return a ? times_zero(operand(1), *a) : times_zero(operand(0), *b);
       case Opcode::fadd: return plus_zero(operand(a ? 1 : 0));
       case Opcode::fsub: {
@@ -85,7 +87,9 @@ class Hider {
         const ValueId negative = edit_.make(Opcode::fneg, {operand(1)});
         return *a == 0 ? plus_zero(negative) : negative;
       }
-      default: return edit_.make(made.op, {operand(0), operand(1)});
+      default:
+        return a ? zero_over(operand(1), *a)
+                 : edit_.make(Opcode::fmul, {operand(0), literal(*b | infinity_bits)});
     }
   }
 
@@ -110,14 +114,25 @@ class Hider {
   ValueId literal(uint32_t bits) { return edit_.constant(float_type, bits); }
   ValueId integer(uint32_t bits) { return edit_.constant(int_type, bits); }
 
+  // A zero whose sign is that of `zero` and the bits' together, or NaN.
+  ValueId signed_zero(ValueId bits, uint32_t zero, ValueId is_nan) {
+    ValueId sign = edit_.make(Opcode::iand, {bits, integer(sign_bit)});
+    if (zero != 0) sign = edit_.make(Opcode::ixor, {sign, integer(sign_bit)});
+    return edit_.make(Opcode::bitsf_normal, {edit_.make(Opcode::select, {is_nan, integer(nan_bits), sign})});
+  }
+
   ValueId times_zero(ValueId x, uint32_t zero) {
     const ValueId bits = edit_.make(Opcode::fbits, {x});
     const ValueId exponent = edit_.make(Opcode::iand, {bits, integer(infinity_bits)});
-    const ValueId huge = edit_.make(Opcode::ieq, {exponent, integer(infinity_bits)});
-    ValueId sign = edit_.make(Opcode::iand, {bits, integer(sign_bit)});
-    if (zero != 0) sign = edit_.make(Opcode::ixor, {sign, integer(sign_bit)});
-    const ValueId result = edit_.make(Opcode::select, {huge, integer(nan_bits), sign});
-    return edit_.make(Opcode::bitsf_normal, {result});
+    return signed_zero(bits, zero, edit_.make(Opcode::ieq, {exponent, integer(infinity_bits)}));
+  }
+
+  ValueId zero_over(ValueId x, uint32_t zero) {
+    const ValueId bits = edit_.make(Opcode::fbits, {x});
+    const ValueId magnitude = edit_.make(Opcode::iand, {bits, integer(~sign_bit)});
+    const ValueId by_zero = edit_.make(Opcode::ieq, {magnitude, integer(0)});
+    const ValueId by_nan = edit_.make(Opcode::ieq, {magnitude, integer(nan_bits)});
+    return signed_zero(bits, zero, edit_.make(Opcode::bor, {by_zero, by_nan}));
   }
 
   ValueId plus_zero(ValueId x) {

@@ -11,6 +11,8 @@ namespace isoshade::passes {
 ///     x + (+0)        +0 where the bits are those of -0, else x; x - (-0) likewise
 ///     (+0) - x        -x + (+0), as above
 ///     (-0) - x        -x, which is a bit operation
+///     x / (+-0)       x * (+-inf), which is the same for every x
+///     (+-0) / x       the sign as bits, or NaN if x is a zero or NaN
 ///     ftoi(itof(i))   ftoi(itof(i >> 16) * 65536 + itof(i & 0xffff)): the halves are exact, so the sum rounds as
 ///                     itof does
 ///     x < 0           x <= -2^-126: no float is denormal, and LLVM would compare the operands of a sum instead

@@ -47,7 +47,7 @@ TEST(TextIr, PrintsWhatItParsed) { EXPECT_EQ(print(valid(everything)), everythin
 
 TEST(TextIr, RandomModulesSurviveTheRoundTrip) {
   for (uint64_t seed = 0; seed < 500; ++seed) {
-    const std::string text = print(RandomModule(seed).make(true));
+    const std::string text = print(RandomModule(seed).make({.library_calls = true}));
     ASSERT_EQ(print(valid(text)), text);
   }
 }

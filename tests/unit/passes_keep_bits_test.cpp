@@ -51,7 +51,7 @@ Module with_bodies(Module module) {
 template <class Change>
 void expect_same_bits(int modules, bool library_calls, Change change) {
   for (int seed = 0; seed < modules; ++seed) {
-    const Module before = RandomModule(static_cast<uint64_t>(seed)).make(library_calls);
+    const Module before = RandomModule(static_cast<uint64_t>(seed)).make({.library_calls = library_calls});
     ASSERT_EQ(ir::validate(before), "") << ir::print(before);
     Module after = before;
     change(after, static_cast<uint64_t>(seed));

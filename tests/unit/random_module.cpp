@@ -90,29 +90,28 @@ void RandomModule::add(Builder& b, ValueId value) {
   if (below(3) == 0) b.name(value, b.add_origin("n" + std::to_string(below(40)), below(100)));
 }
 
-std::vector<ValueId> RandomModule::block(Builder& b, const std::vector<Type>& types, int depth,
-                                         bool library_calls) {
-  for (uint32_t n = 1 + below(5); n != 0; --n) step(b, depth + 1, library_calls);
+std::vector<ValueId> RandomModule::block(Builder& b, const std::vector<Type>& types, int depth) {
+  for (uint32_t n = 1 + below(5); n != 0; --n) step(b, depth + 1);
   std::vector<ValueId> yields;
   for (Type type : types) yields.push_back(pick(b, type));
   return yields;
 }
 
-void RandomModule::branch(Builder& b, int depth, bool library_calls) {
+void RandomModule::branch(Builder& b, int depth) {
   std::vector<Type> types;
   for (uint32_t n = 1 + below(3); n != 0; --n) types.push_back(any_type());
   const ValueId condition = pick(b, bool_type);
   const std::vector<ValueId> outer = visible_;
   const auto side = [&] {
     visible_ = outer;
-    return block(b, types, depth, library_calls);
+    return block(b, types, depth);
   };
   const auto results = b.branch(condition, side, side);
   visible_ = outer;
   for (ValueId result : results) add(b, result);
 }
 
-void RandomModule::loop(Builder& b, int depth, bool library_calls) {
+void RandomModule::loop(Builder& b, int depth) {
   std::vector<Type> types;
   std::vector<ValueId> initial;
   for (uint32_t n = below(4); n != 0; --n) {
@@ -124,7 +123,7 @@ void RandomModule::loop(Builder& b, int depth, bool library_calls) {
   const auto results = b.loop(count, initial, [&](ValueId index, std::span<const ValueId> carried) {
     visible_.push_back(index);
     visible_.insert(visible_.end(), carried.begin(), carried.end());
-    return block(b, types, depth, library_calls);
+    return block(b, types, depth);
   });
   visible_ = outer;
   for (ValueId result : results) add(b, result);
@@ -164,14 +163,14 @@ void RandomModule::known_shape(Builder& b) {
   add(b, below(2) == 0 ? b.op(op, {y, x}) : b.op(op, {x, y}));
 }
 
-void RandomModule::step(Builder& b, int depth, bool library_calls) {
+void RandomModule::step(Builder& b, int depth) {
   b.set_origin(below(2) == 0 ? 0 : b.add_origin("n" + std::to_string(below(40)), below(100)));
   const uint32_t kind = below(100);
-  if (kind < 5 && depth < 4) return branch(b, depth, library_calls);
-  if (kind < 9 && depth < 4) return loop(b, depth, library_calls);
+  if (kind < 5 && depth < 4) return branch(b, depth);
+  if (kind < 9 && depth < 4) return loop(b, depth);
   if (kind < 13) return call(b);
-  if (kind < 17 && library_calls) return library_call(b);
-  if (kind < 21) return add(b, b.load(below(2), pick(b, int_type)));
+  if (kind < 17 && options_.library_calls) return library_call(b);
+  if (kind < 21 && options_.loads) return add(b, b.load(below(2), pick(b, int_type)));
   if (kind < 27) {
     const Type type = vector_type(2 + static_cast<int>(below(3)));
     return add(b, b.extract(pick(b, type), below(type.width)));
@@ -184,7 +183,15 @@ void RandomModule::step(Builder& b, int depth, bool library_calls) {
     return add(b, b.construct(components));
   }
   if (kind < 42) return known_shape(b);
-  if (kind < 45) return add(b, b.op(Opcode::ftoi, {b.op(Opcode::itof, {pick(b, int_type)})}));
+  if (kind < 45) {
+    ValueId i = pick(b, int_type);
+    if (options_.defined) i = b.op(Opcode::isar, {i, b.constant(1)});  // no rounding up to 2^31
+    return add(b, b.op(Opcode::ftoi, {b.op(Opcode::itof, {i})}));
+  }
+  primitive(b);
+}
+
+void RandomModule::primitive(Builder& b) {
   const auto op = static_cast<Opcode>(below(primitive_count));
   const OpInfo& row = info(op);
   Type type =
@@ -200,18 +207,35 @@ void RandomModule::step(Builder& b, int depth, bool library_calls) {
                                      : truth ? bool_type
                                              : type));
   }
-  if (row.precondition == Precondition::shift_amount && below(4) != 0)
-    operands[1] = b.op(Opcode::iand, {operands[1], b.constant(31)});
+  if (options_.defined || below(2) == 0) operands.back() = harmless(b, row.precondition, operands.back());
   add(b, b.op(op, operands));
 }
 
-void RandomModule::function(Module& module, const std::string& name, int size, bool library_calls) {
+// The operand where the precondition holds, else another one. Those of shifts are about the last operand, the
+// others about the only one.
+ValueId RandomModule::harmless(Builder& b, Precondition precondition, ValueId operand) {
+  switch (precondition) {
+    case Precondition::none: return operand;
+    case Precondition::finite_in_int_range: {
+      const ValueId above = b.op(Opcode::fge, {operand, b.constant(-2147483648.0f)});
+      const ValueId below = b.op(Opcode::flt, {operand, b.constant(2147483648.0f)});
+      return b.op(Opcode::select, {b.op(Opcode::band, {above, below}), operand, b.constant(1.5f)});
+    }
+    case Precondition::not_nan:
+      return b.op(Opcode::select, {b.op(Opcode::feq, {operand, operand}), operand, b.constant(2.5f)});
+    case Precondition::not_denormal_bits: return b.op(Opcode::fbits, {b.op(Opcode::bitsf, {operand})});
+    case Precondition::shift_amount: return b.op(Opcode::iand, {operand, b.constant(31)});
+  }
+  return operand;
+}
+
+void RandomModule::function(Module& module, const std::string& name, int size) {
   Function function;
   function.name = name;
   function.parameters.push_back({"count", int_type, "", true});
   for (uint32_t i = 0, n = 1 + below(5); i < n; ++i)
     function.parameters.push_back(
-        {"p" + std::to_string(i), any_type(), i >= 3 ? "group" : "", below(4) == 0 && i > 9});
+        {"p" + std::to_string(i), any_type(), i >= 3 ? "group_" + name : "", below(4) == 0 && i > 9});
   for (uint32_t i = 0, n = 1 + below(3); i < n; ++i)
     function.results.push_back({"r" + std::to_string(i), any_type()});
   module.functions.push_back(function);
@@ -219,18 +243,23 @@ void RandomModule::function(Module& module, const std::string& name, int size, b
   Builder b(module, index);
   visible_.clear();
   for (size_t i = 0; i < function.parameters.size(); ++i) visible_.push_back(b.parameter(i));
-  for (int i = 0; i < size; ++i) step(b, 1, library_calls);
+  for (int i = 0; i < size; ++i) step(b, 1);
   std::vector<ValueId> results;
   for (const Result& result : function.results) results.push_back(pick(b, result.type));
   b.finish(results);
 }
 
-Module RandomModule::make(bool library_calls) {
+void RandomModule::add_to(Module& module, const Options& options) {
+  options_ = options;
+  for (uint32_t i = 0, n = below(3); i < n; ++i)
+    function(module, "f" + std::to_string(i), 3 + static_cast<int>(below(12)));
+  function(module, "main", 5 + static_cast<int>(below(50)));
+}
+
+Module RandomModule::make(const Options& options) {
   Module module;
   module.buffers = {{"floats", Scalar::floating}, {"ints", Scalar::integer}};
-  for (uint32_t i = 0, n = below(3); i < n; ++i)
-    function(module, "f" + std::to_string(i), 3 + static_cast<int>(below(12)), library_calls);
-  function(module, "main", 5 + static_cast<int>(below(50)), library_calls);
+  add_to(module, options);
   return module;
 }
 

@@ -17,10 +17,19 @@ const std::vector<uint32_t>& special_ints();
 
 class RandomModule {
  public:
+  struct Options {
+    bool library_calls = false;  ///< declarations of the function library, and calls of them
+    bool loads = true;           ///< from two buffers, the first of floats, the second of ints
+    bool defined = false;        ///< no op whose precondition may not hold: all executors agree
+  };
+
   explicit RandomModule(uint64_t seed) : random_(seed) {}
 
-  /// A module whose last function is `main`. `library_calls` asks for declarations of the function library.
-  Module make(bool library_calls = false);
+  /// Adds functions to `module`, the last of which is `main`; its first parameter is a uniform int, `count`.
+  void add_to(Module& module, const Options& options);
+  /// A module of its own, with the buffers.
+  Module make(const Options& options);
+  Module make() { return make(Options()); }
   /// Words for parameters or buffers of these types, specials among them.
   std::vector<uint32_t> words(const std::vector<Parameter>& parameters);
   std::vector<uint32_t> buffer_words(size_t size);
@@ -28,14 +37,16 @@ class RandomModule {
   uint32_t below(uint32_t bound) { return static_cast<uint32_t>(random_() % bound); }
 
  private:
-  void function(Module& module, const std::string& name, int size, bool library_calls);
-  void step(Builder& b, int depth, bool library_calls);
-  void branch(Builder& b, int depth, bool library_calls);
-  void loop(Builder& b, int depth, bool library_calls);
+  void function(Module& module, const std::string& name, int size);
+  void step(Builder& b, int depth);
+  void primitive(Builder& b);
+  void branch(Builder& b, int depth);
+  void loop(Builder& b, int depth);
   void call(Builder& b);
   void library_call(Builder& b);
   void known_shape(Builder& b);
-  std::vector<ValueId> block(Builder& b, const std::vector<Type>& yields, int depth, bool library_calls);
+  std::vector<ValueId> block(Builder& b, const std::vector<Type>& yields, int depth);
+  ValueId harmless(Builder& b, Precondition precondition, ValueId operand);
 
   Type any_type();
   ValueId constant(Builder& b, Type type);
@@ -46,6 +57,7 @@ class RandomModule {
   uint32_t int_bits();
 
   std::mt19937_64 random_;
+  Options options_;
   std::vector<ValueId> visible_;
 };
 
