@@ -108,7 +108,28 @@ struct Scene {
   Output output;
 };
 
-/// Reports everything wrong with a scene document.
+/// Reports everything wrong with a scene document:
+///
+///     {"isoshade": 1, "scene": "name", "doc": "...", "size": [640, 360], "background": [r, g, b, a],
+///      "camera": {"type": "perspective", "position": [..], "target": [..], "up": [0, 1, 0], "fov": 45,
+///                 "near": 0.1},
+///                {"type": "orthographic", ..., "height": 4, "near": 0.1, "far": 1000}
+///      "lights": {"sun": {"type": "directional", "direction": [..], "color": [1, 1, 1], "intensity": 1},
+///                 "lamp": {"type": "point", "position": [..], "range": 9, ...},
+///                 "torch": {"type": "spot", "position": [..], "direction": [..], "inner_angle": 0,
+///                           "outer_angle": 45, ...}},
+///      "objects": {"ball": {
+///        "mesh": "sphere", or {"type": "sphere", "radius": 1, "segments": 64, "rings": 32},
+///                {"type": "plane", "size": [1, 1], "segments": 1}, {"type": "box", "size": [1, 1, 1]},
+///        "effect": "path beside the scene",
+///        "transform": {"translate": [..], "rotate": [degrees about x, y, z] or a quaternion,
+///                      "scale": 1 or [..]},
+///        "parameters": {"roughness": 0.5},
+///        "repeat": [{"count": 10, "step": [..], "parameters": {"metallic": {"from": 0, "to": 1},
+///                                                              "tint": {"values": [one a place]}}}]}},
+///      "posts": [], "output": {"encoding": "srgb" or "linear", "exposure": 1}}
+///
+/// Only "isoshade", "scene" and "camera" with its position and target are needed.
 std::optional<Scene> parse_scene(const graph::Document& document, support::Diagnostics& diagnostics);
 
 /// One copy of an object: its place along each axis of the grid.
