@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "compiler/lower/frame_layout.h"
 #include "runtime/raster/triangle.h"
@@ -12,6 +13,8 @@ namespace {
 
 using raster::tile_pixels;
 using raster::tile_size;
+
+constexpr int nothing = -1;  ///< where a triangle is expected
 
 void fill_background(const backends::Frame& frame, backends::Image& image, int x, int y, int width,
                      int height) {
@@ -33,7 +36,12 @@ void TilePainter::paint(DrawJob& job, int tile, int x, int y) {
   const int height = std::min(tile_size, job.frame.height - y);
   collect(job, tile);
   if (runs_.empty()) return fill_background(job.frame, job.image, x, y, width, height);
-  shade(job, width, height);
+  if (width < tile_size || height < tile_size)
+    for (int i = 0; i < tile_pixels; ++i)
+      if (raster::tile_x(i) >= width || raster::tile_y(i) >= height) tile_.triangles[i] = nothing;
+  segment();
+  list_pixels();
+  shade(job);
   write(job, width, height);
 }
 
@@ -51,45 +59,59 @@ void TilePainter::collect(const DrawJob& job, int tile) {
   }
 }
 
-size_t TilePainter::run_of(int triangle) const {
+int TilePainter::run_of(int triangle) const {
   const auto after = std::upper_bound(runs_.begin(), runs_.end(), triangle,
                                       [](int t, const Run& run) { return t < run.first_triangle; });
-  return static_cast<size_t>(after - runs_.begin()) - 1;
+  return static_cast<int>(after - runs_.begin()) - 1;
 }
 
-void TilePainter::shade(const DrawJob& job, int width, int height) {
-  // Kernels take one object at a time, so that its parameters are uniform. Neighbours mostly are of one triangle.
-  int last_triangle = -1;
-  size_t run = 0;
-  const auto find_run = [&](int triangle) {
-    if (triangle != last_triangle) run = run_of(last_triangle = triangle);
+void TilePainter::segment() {
+  segments_.clear();
+  int begin = 0, run = nothing, last_triangle = nothing;
+  const auto end_at = [&](int i) {
+    if (run == nothing || begin == i) return;
+    segments_.push_back({begin, i, run});
+    runs_[static_cast<size_t>(run)].pixels += i - begin;
   };
   for (int i = 0; i < tile_pixels; ++i) {
-    place_[i] = -1;
-    if (tile_.triangles[i] < 0 || raster::tile_x(i) >= width || raster::tile_y(i) >= height) continue;
-    find_run(tile_.triangles[i]);
-    place_[i] = static_cast<int>(run);
-    ++runs_[run].pixels;
+    const int triangle = tile_.triangles[i];
+    if (triangle == last_triangle) continue;  // as most pixels and their neighbours
+    last_triangle = triangle;
+    const int next = triangle == nothing ? nothing : run_of(triangle);
+    if (next == run) continue;
+    end_at(i);
+    begin = i;
+    run = next;
   }
-  int begin = 0;
-  for (Run& r : runs_) begin += std::exchange(r.pixels, begin);
-  for (int i = 0; i < tile_pixels; ++i) {
-    if (place_[i] < 0) continue;
-    const int place = runs_[static_cast<size_t>(place_[i])].pixels++;
-    place_[i] = place;
-    pixel_x_[place] = x_ + raster::tile_x(i);
-    pixel_y_[place] = y_ + raster::tile_y(i);
-    pixel_triangle_[place] = tile_.triangles[i];
-  }
+  end_at(tile_pixels);
+}
 
-  begin = 0;
-  for (const Run& r : runs_) {
-    if (r.pixels == begin) continue;
-    const float program = job.frame.objects[static_cast<size_t>(r.object) + lower::object_word::program];
+void TilePainter::list_pixels() {
+  int begin = 0;
+  for (Run& run : runs_) begin += std::exchange(run.pixels, begin);
+  for (const Segment& segment : segments_) {
+    int& next = runs_[static_cast<size_t>(segment.run)].pixels;
+    int place = next;
+    for (int i = segment.begin; i < segment.end; ++i, ++place) {
+      place_[i] = place;
+      pixel_x_[place] = x_ + raster::tile_x(i);
+      pixel_y_[place] = y_ + raster::tile_y(i);
+      pixel_triangle_[place] = tile_.triangles[i];
+    }
+    next = place;
+  }
+}
+
+// Kernels take one object at a time, so that its parameters are uniform.
+void TilePainter::shade(const DrawJob& job) {
+  int begin = 0;
+  for (const Run& run : runs_) {
+    if (run.pixels == begin) continue;
+    const float program = job.frame.objects[static_cast<size_t>(run.object) + lower::object_word::program];
     const Kernel& kernel = *job.kernels[static_cast<size_t>(program)];
-    kernel.pixel(job.buffers, r.object, job.frame.light_count, r.pixels - begin, pixel_x_ + begin,
+    kernel.pixel(job.buffers, run.object, job.frame.light_count, run.pixels - begin, pixel_x_ + begin,
                  pixel_y_ + begin, pixel_triangle_ + begin, color_ + 4 * begin);
-    begin = r.pixels;
+    begin = run.pixels;
   }
 }
 
@@ -99,7 +121,7 @@ void TilePainter::write(DrawJob& job, int width, int height) const {
         static_cast<size_t>(y_ + y) * static_cast<size_t>(job.image.width) + static_cast<size_t>(x_);
     for (int x = 0; x < width; ++x) {
       const int i = raster::tile_index(x, y);
-      const float* color = place_[i] < 0 ? job.frame.background : color_ + 4 * place_[i];
+      const float* color = tile_.triangles[i] == nothing ? job.frame.background : color_ + 4 * place_[i];
       std::memcpy(job.image.rgba.data() + 4 * (first + static_cast<size_t>(x)), color, 4 * sizeof(float));
       job.image.depth[first + static_cast<size_t>(x)] = tile_.depth[i];
     }

@@ -30,26 +30,34 @@ class TilePainter {
   void paint(DrawJob& job, int tile, int x, int y);
 
  private:
-  /// Triangles of one object that follow each other in a tile's list, and their visible pixels.
+  /// Triangles of one object that follow each other in a tile's list.
   struct Run {
     int first_triangle;
     int object;
-    int pixels;  ///< how many; later where the next one goes
+    int pixels;  ///< how many are visible; later where the next one goes
+  };
+  /// Pixels [begin, end) of the tile's storage that show triangles of one run.
+  struct Segment {
+    int begin, end;
+    int run;
   };
 
   void collect(const DrawJob& job, int tile);
-  void shade(const DrawJob& job, int width, int height);
+  void segment();
+  void list_pixels();
+  void shade(const DrawJob& job);
   void write(DrawJob& job, int width, int height) const;
-  size_t run_of(int triangle) const;
+  int run_of(int triangle) const;
 
   int x_ = 0, y_ = 0;
   raster::Tile tile_;
   std::vector<Run> runs_;
+  std::vector<Segment> segments_;
 
   // Visible pixels, those of each run together.
   int pixel_x_[raster::tile_pixels], pixel_y_[raster::tile_pixels], pixel_triangle_[raster::tile_pixels];
   alignas(64) float color_[4 * raster::tile_pixels];
-  /// Where the colour of each pixel of the tile is, or -1.
+  /// Where the colour of each visible pixel of the tile is.
   int place_[raster::tile_pixels];
 };
 
