@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every row of functions.def keeps its error bound over its domain. With ISOSHADE_FULL=1 functions of one
-// float are measured at every float of their domain.
+// Every row of functions.def keeps its error bound over its domain. With ISOSHADE_FULL=1 functions of one float
+// are measured at every float of their domain; ISOSHADE_FUNCTION=name limits that to one.
 #include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>

@@ -90,6 +90,7 @@ void compare(Error& worst, const Result& result, const T&... arguments) {
   const auto unit = Row::unit(exact, precise(arguments)...);
   each(
       [&](float r, Real e, Real u) {
+        if (worst.ulp >= 0.5 && r == static_cast<float>(e)) return;  // most cases, and dear to measure
         const double ulp = error(r, e, u, Row::bound);
         if (ulp <= worst.ulp) return;
         worst.ulp = ulp;
