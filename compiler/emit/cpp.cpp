@@ -35,12 +35,12 @@ class Cpp final : public Language {
   }
   std::string_view op_text(const ir::OpInfo& row) const override { return row.cpp; }
   std::string exactly(const Operand& operand, bool uniform) const override {
-    if (uniform || (!operand.uniform && !operand.literal)) return operand.text;
-    return type(operand.type, false) + "(" + operand.text + ")";
+    if (uniform || (!operand.uniform && !operand.literal)) return std::string(operand.text);
+    return type(operand.type, false) + "(" + std::string(operand.text) + ")";
   }
   // Operators broadcast what is uniform by themselves; a function's arguments are all of one type.
   std::string argument(const Operand& operand, bool uniform, std::string_view pattern) const override {
-    return pattern.ends_with(')') ? exactly(operand, uniform) : operand.text;
+    return pattern.ends_with(')') ? exactly(operand, uniform) : std::string(operand.text);
   }
   std::string load(std::string_view buffer, std::string_view index) const override {
     return "load(buffers." + std::string(buffer) + ", " + std::string(index) + ")";
@@ -68,8 +68,8 @@ class Cpp final : public Language {
                            bool uniform, bool other) const override {
     const std::string name(variable);
     const std::string exact = exactly(value, uniform);
-    return name + " = " + (other ? "select(" + condition.text + ", " + name + ", " + exact + ")" : exact) +
-           ";";
+    return name + " = " +
+           (other ? "select(" + std::string(condition.text) + ", " + name + ", " + exact + ")" : exact) + ";";
   }
   std::string record(std::string_view name, const std::vector<std::pair<ir::Type, std::string>>& fields,
                      bool uniform) const override {

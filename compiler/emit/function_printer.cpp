@@ -19,7 +19,7 @@ class FunctionPrinter {
         text_(text),
         language_(language),
         texts_(texts),
-        names_(&globals),
+        names_(&globals, function.values.size()),
         values_(function.values.size()) {}
 
   std::string print() {
@@ -28,6 +28,7 @@ class FunctionPrinter {
     out_ = language_.function_head(function_, text_, parameters);
     if (function_.is_declaration()) return out_ + ";  // yours to provide\n";
     uniform_ = ir::uniform_values(function_);
+    out_.reserve(80 * function_.instructions.size());
     out_ += " {\n";
     print_block(0);
     return out_ + "  return " + returned() + ";\n}\n";
@@ -122,8 +123,9 @@ class FunctionPrinter {
   void define(const ir::Instruction& instruction, const std::string& expression) {
     const ir::ValueId value = instruction.first_result;
     values_[value] = name_value(value, instruction.origin);
-    line(language_.declared_type(function_.type(value), uniform_[value]) + " " + values_[value] + " = " +
-         expression + ";" + comment(value));
+    out_.append(indent_, ' ').append(language_.declared_type(function_.type(value), uniform_[value]));
+    out_.append(" ").append(values_[value]).append(" = ").append(expression).append(";");
+    out_.append(comment(value)).append("\n");
   }
 
   void print(const ir::Instruction& instruction) {

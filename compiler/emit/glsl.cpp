@@ -35,8 +35,10 @@ class Glsl final : public Language {
     return decimal(bits);
   }
   std::string_view op_text(const ir::OpInfo& row) const override { return row.glsl; }
-  std::string exactly(const Operand& operand, bool) const override { return operand.text; }
-  std::string argument(const Operand& operand, bool, std::string_view) const override { return operand.text; }
+  std::string exactly(const Operand& operand, bool) const override { return std::string(operand.text); }
+  std::string argument(const Operand& operand, bool, std::string_view) const override {
+    return std::string(operand.text);
+  }
   std::string load(std::string_view buffer, std::string_view index) const override {
     return std::string(buffer) + "[" + std::string(index) + "]";
   }
@@ -57,7 +59,7 @@ class Glsl final : public Language {
   }
   std::string branch_value(const Operand&, std::string_view variable, const Operand& value, bool,
                            bool) const override {
-    return std::string(variable) + " = " + value.text + ";";
+    return std::string(variable) + " = " + std::string(value.text) + ";";
   }
   std::string record(std::string_view name, const std::vector<std::pair<ir::Type, std::string>>& fields,
                      bool) const override {

@@ -54,7 +54,15 @@ const std::unordered_set<std::string_view> glsl_functions = {
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+bool is_clean(std::string_view name) {
+  if (name.empty() || name.size() > 100 || !is_letter(name.front()) || name.back() == '_') return false;
+  for (size_t i = 0; i < name.size(); ++i)
+    if (!is_letter(name[i]) && !is_digit(name[i]) && (name[i] != '_' || name[i - 1] == '_')) return false;
+  return !name.starts_with("gl_");
+}
+
 std::string clean(std::string_view wanted) {
+  if (is_clean(wanted)) return std::string(wanted);
   std::string name;
   for (char c : wanted) {
     const char kept = is_letter(c) || is_digit(c) ? c : '_';
@@ -82,15 +90,22 @@ std::string Names::take(std::string_view wanted) { return take(wanted, false); }
 std::string Names::take_function(std::string_view wanted) { return take(wanted, true); }
 
 std::string Names::take(std::string_view wanted, bool function) {
-  const std::string base = clean(wanted);
-  std::string name =
-      reserved.contains(base) || (function && glsl_functions.contains(base)) ? base + "_" : base;
-  int number = 0;
-  if (auto it = used_.find(base); it != used_.end()) number = it->second;
-  while (taken(name)) name = base + "_" + std::to_string(++number);
-  used_[base] = number;
-  used_.emplace(name, 0);
-  return name;
+  std::string name = clean(wanted);
+  const auto [entry, is_new] = used_.try_emplace(name, 0);
+  if (is_new) {
+    const bool forbidden = reserved.contains(name) || (function && glsl_functions.contains(name));
+    if (!forbidden && (outer_ == nullptr || !outer_->taken(name))) return name;
+    if (forbidden && !taken(name + "_")) {
+      used_.emplace(name + "_", 0);
+      return name + "_";
+    }
+  }
+  // References into a map stay good while it grows.
+  int& number = entry->second;
+  std::string numbered;
+  do { numbered = name + "_" + std::to_string(++number); } while (taken(numbered));
+  used_.emplace(numbered, 0);
+  return numbered;
 }
 
 std::string comment_text(std::string_view text) {

@@ -14,13 +14,15 @@ class Names {
  public:
   Names() = default;
   /// A scope inside another: names of the outer one are not taken again.
-  explicit Names(const Names* outer) : outer_(outer) {}
+  explicit Names(const Names* outer, size_t expected = 0) : outer_(outer) { used_.reserve(expected); }
 
   /// `wanted`, or the nearest name that is free: letters, digits and single underscores, no keyword or name
   /// of either language or of the code around it, not beginning with a digit, "gl_" or (unless ours) "iso_".
   std::string take(std::string_view wanted);
   /// The same for a function, which must not redefine one of GLSL's own.
   std::string take_function(std::string_view wanted);
+  /// Keeps a name of our own from being taken.
+  void hold(std::string name) { used_.emplace(std::move(name), 0); }
 
  private:
   std::string take(std::string_view wanted, bool function);

@@ -56,13 +56,17 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   support::check(order.has_value(), "calls are cyclic");
   texts.assign(module.functions.size(), {});
   Names globals;
-  for (const ir::Buffer& buffer : module.buffers) globals.take(buffer.name);
+  for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
+  // Library functions and stages are named by us; lowering keeps authors' names off `shade`.
+  const auto is_ours = [](const ir::Function& function) {
+    return function.document.empty() || function.name == "shade";
+  };
+  for (uint32_t index : *order)
+    if (is_ours(module.functions[index])) globals.hold(module.functions[index].name);
   for (uint32_t index : *order) {
     const ir::Function& function = module.functions[index];
     FunctionText& text = texts[index];
-    // Library functions and stages are named by us; lowering keeps authors' names off `shade`.
-    const bool ours = function.document.empty() || function.name == "shade";
-    text.name = ours ? function.name : globals.take_function(function.name);
+    text.name = is_ours(function) ? function.name : globals.take_function(function.name);
     text.loads = loads_directly(function);
     for (const ir::Instruction& instruction : function.instructions)
       if (instruction.op == ir::Opcode::call) text.loads |= texts[instruction.imm].loads;

@@ -22,7 +22,7 @@ struct FunctionText {
 
 /// How a value is written: a name and its spelling's properties.
 struct Operand {
-  std::string text;
+  std::string_view text;  ///< of the printer
   ir::Type type;
   bool uniform = false;  ///< one value for all lanes
   bool literal = false;

@@ -207,10 +207,11 @@ class Folder {
 
 }  // namespace
 
-void fold(ir::Module& module, Expand expand) {
+void fold(ir::Module& module, Expand expand, size_t first) {
   const lanes::FpGuard guard;
   CallEvaluator calls(module, expand);
-  for (Function& function : module.functions) {
+  for (size_t i = first; i < module.functions.size(); ++i) {
+    Function& function = module.functions[i];
     if (function.is_declaration()) continue;
     Function folded = function;  // the evaluator may copy the module meanwhile, and needs it whole
     Folder(folded, calls).run();

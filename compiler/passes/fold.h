@@ -19,7 +19,8 @@ using Expand = void (*)(ir::Module&);
 /// - a branch whose condition is constant by its side; results that both sides yield alike; a loop that runs
 /// never
 ///   or once by its initial values or its body.
+/// In the functions from index `first` on.
 /// Needs: a valid module. Leaves: the replaced instructions in no block (renumber drops them).
-void fold(ir::Module& module, Expand expand = nullptr);
+void fold(ir::Module& module, Expand expand = nullptr, size_t first = 0);
 
 }  // namespace isoshade::passes

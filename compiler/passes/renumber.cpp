@@ -92,7 +92,8 @@ class Renumberer {
       : f_(f),
         places_(find_places(f)),
         live_(f, places_),
-        uses_(f.instructions.size()),
+        uses_(f.instructions.size(), none),
+        new_origins_(f.origins.size(), none),
         order_(f.blocks.size()) {}
 
   Function run() {
@@ -102,6 +103,10 @@ class Renumberer {
     out_.parameters = f_.parameters;
     out_.results = f_.results;
     values_.assign(f_.values.size(), none);
+    out_.values.reserve(f_.values.size());
+    out_.instructions.reserve(f_.instructions.size());
+    out_.operands.reserve(f_.operands.size());
+    use_lists_.reserve(f_.operands.size() + f_.instructions.size());
     arrange(0, none);
     out_.blocks.emplace_back();
     for (ValueId parameter : f_.blocks[0].parameters)
@@ -124,25 +129,25 @@ class Renumberer {
     std::vector<ValueId> outer;
     struct Visit {
       InstructionId instruction;
-      size_t next;
+      uint32_t next;  ///< in use_lists_
     };
     std::vector<Visit> path;
     const auto reach = [&](ValueId value) {
       const Place& place = places_[value];
       if (place.block != block) {
         outer.push_back(value);
-      } else if (!place.is_parameter && uses_[place.instruction].empty()) {
+      } else if (!place.is_parameter && uses_[place.instruction] == none) {
         open(place.instruction);
-        path.push_back({place.instruction, 0});
+        path.push_back({place.instruction, uses_[place.instruction]});
       }
     };
     for_live(owner, f_.blocks[block].yields, 0, [&](ValueId yield) {
       reach(yield);
       while (!path.empty()) {
         Visit& visit = path.back();
-        const std::vector<ValueId>& uses = uses_[visit.instruction];
-        if (uses[visit.next] != none) {
-          reach(uses[visit.next++]);
+        if (const ValueId use = use_lists_[visit.next]; use != none) {
+          ++visit.next;
+          reach(use);
         } else {
           order_[block].push_back(visit.instruction);
           path.pop_back();
@@ -155,16 +160,18 @@ class Renumberer {
   // Lists what an instruction uses: its operands, then what its blocks use from outside; ends with `none`.
   void open(InstructionId id) {
     const Instruction& made = f_.instructions[id];
-    std::vector<ValueId> uses;
     const bool is_loop = made.op == Opcode::loop;
-    for_live(is_loop ? id : none, f_.operands_of(made), 1, [&](ValueId value) { uses.push_back(value); });
+    std::vector<ValueId> outer;
     for (BlockId inner : made.blocks) {
       if (inner == none) continue;
-      const std::vector<ValueId> outer = arrange(inner, id);
-      uses.insert(uses.end(), outer.begin(), outer.end());
+      const std::vector<ValueId> more = arrange(inner, id);
+      outer.insert(outer.end(), more.begin(), more.end());
     }
-    uses.push_back(none);
-    uses_[id] = std::move(uses);
+    uses_[id] = static_cast<uint32_t>(use_lists_.size());
+    for_live(is_loop ? id : none, f_.operands_of(made), 1,
+             [&](ValueId value) { use_lists_.push_back(value); });
+    use_lists_.insert(use_lists_.end(), outer.begin(), outer.end());
+    use_lists_.push_back(none);
   }
 
   std::vector<ValueId> unique(const std::vector<ValueId>& list, BlockId block) {
@@ -182,10 +189,11 @@ class Renumberer {
 
   uint32_t origin(uint32_t old) {
     if (old == 0) return 0;
+    if (new_origins_[old] != none) return new_origins_[old];
     const Origin& origin = f_.origins[old];
     const auto [it, added] = origins_.try_emplace({origin.node, origin.line}, out_.origins.size());
     if (added) out_.origins.push_back(origin);
-    return it->second;
+    return new_origins_[old] = it->second;
   }
   void rename(ValueId value) { out_.values[value].names = origin(out_.values[value].names); }
 
@@ -228,8 +236,9 @@ class Renumberer {
   const Function& f_;
   const std::vector<Place> places_;
   const Liveness live_;
-  std::vector<std::vector<ValueId>>
-      uses_;  ///< by instruction: empty until it is reached, then ends with none
+  std::vector<ValueId> use_lists_;     ///< what instructions use, one after another; each list ends with none
+  std::vector<uint32_t> uses_;         ///< by instruction: where its list begins; none until it is reached
+  std::vector<uint32_t> new_origins_;  ///< by old origin
   std::vector<std::vector<InstructionId>> order_;  ///< by block
   std::vector<BlockId> seen_in_;                   ///< by value: the last block found to use it from outside
   std::vector<ValueId> values_;                    ///< by old value: the new one

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "compiler/passes/fold.h"
-#include "compiler/passes/renumber.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::passes {
@@ -85,12 +84,21 @@ class Specializer {
     return words;
   }
 
+  static std::vector<ir::InstructionId> calls_in_blocks(const ir::Function& function) {
+    std::vector<ir::InstructionId> calls;
+    for (const ir::Block& block : function.blocks)
+      for (ir::InstructionId id : block.instructions)
+        if (function.instructions[id].op == ir::Opcode::call) calls.push_back(id);
+    return calls;
+  }
+
   bool specialize_calls(size_t f) {
     bool changed = false;
     std::vector<ir::InstructionId> made;
-    for (size_t i = 0; i < module_.functions[f].instructions.size(); ++i) {
+    // Instructions that fold replaced are in no block any more.
+    for (const ir::InstructionId i : calls_in_blocks(module_.functions[f])) {
       const ir::Instruction call = module_.functions[f].instructions[i];
-      if (call.op != ir::Opcode::call || !has_arithmetic(call.imm)) continue;
+      if (!has_arithmetic(call.imm)) continue;
       if (made.empty()) made = definitions(module_.functions[f]);
       std::vector<Words> arguments;
       bool any = false;
@@ -195,9 +203,10 @@ class Specializer {
 void specialize(ir::Module& module) {
   Specializer specializer(module);
   // Folding a clone makes further arguments constant, one level of calls deeper each time.
+  size_t first = module.functions.size();
   while (specializer.step()) {
-    fold(module);
-    renumber(module);
+    fold(module, nullptr, first);
+    first = module.functions.size();
   }
 }
 
