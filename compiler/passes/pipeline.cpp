@@ -32,6 +32,7 @@ constexpr Pass optimisation_table[] = {
      "lowering leaves the order open; all after it sees one order and nothing dead"},
     {"fold", run_fold, "functions of constants are evaluated whole, while calls are calls"},
     {"cse", run_cse, "folding makes equal constants and operands"},
+    {"renumber", run_renumber, "drops what fold and cse replaced, and the calls in it"},
     {"dce", dce, "no body is made for what nobody calls"},
     {"expand", run_expand, "all that reasons about functions has seen them"},
     {"fold", run_fold, "bodies are templates: they have constants to fold"},

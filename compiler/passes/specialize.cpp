@@ -52,9 +52,13 @@ class Specializer {
   bool has_arithmetic(size_t f) {
     if (arithmetic_[f]) return *arithmetic_[f];
     bool found = false;
-    for (const ir::Instruction& instruction : module_.functions[f].instructions)
-      found = found || is_arithmetic(instruction.op) ||
-              (instruction.op == ir::Opcode::call && has_arithmetic(instruction.imm));
+    // Only what is in a block: the rest has been replaced.
+    for (const ir::Block& block : module_.functions[f].blocks)
+      for (ir::InstructionId id : block.instructions) {
+        const ir::Instruction& instruction = module_.functions[f].instructions[id];
+        found = found || is_arithmetic(instruction.op) ||
+                (instruction.op == ir::Opcode::call && has_arithmetic(instruction.imm));
+      }
     arithmetic_[f] = found;
     return found;
   }
