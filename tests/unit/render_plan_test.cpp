@@ -92,7 +92,8 @@ TEST_F(PlanTest, GridsVaryParametersAndPlaces) {
   const auto made = plan(R"("objects": {"grid": {"mesh": "box", "effect": "tinted.json",
     "transform": {"scale": 0.1},
     "repeat": [{"count": 3, "step": [0.5, 0, 0], "parameters": {"gain": {"from": 1, "to": 2}}},
-               {"count": 2, "step": [0, -0.5, 0], "parameters": {"tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
+               {"count": 2, "step": [0, -0.5, 0], "parameters": {
+                 "tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
   ASSERT_TRUE(made) << diagnostics_.text();
   ASSERT_EQ(made->frame.draws.size(), 6u);
   const float* last = record(*made, 5);
@@ -106,7 +107,8 @@ TEST_F(PlanTest, GridsVaryParametersAndPlaces) {
 
 TEST_F(PlanTest, MeshesEffectsAndProgramsAreSharedWhereTheyAreTheSame) {
   const auto made = plan(R"("objects": {
-    "a": {"mesh": "sphere", "effect": "tinted.json"}, "b": {"mesh": {"type": "sphere"}, "effect": "./tinted.json"},
+    "a": {"mesh": "sphere", "effect": "tinted.json"},
+    "b": {"mesh": {"type": "sphere"}, "effect": "./tinted.json"},
     "c": {"mesh": "box", "effect": "twice.json"}})");
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(made->meshes.size(), 2u);
@@ -167,7 +169,8 @@ TEST_F(PlanTest, ReportsWhoNeedsAnEffectThatDoesNotCompile) {
 
 TEST_F(PlanTest, BoundsWhatIsDrawn) {
   EXPECT_TRUE(planning_fails_with(
-      R"("objects": {"a": {"mesh": {"type": "sphere", "segments": 1024, "rings": 1024}, "effect": "tinted.json",
+      R"("objects": {"a": {"mesh": {"type": "sphere", "segments": 1024, "rings": 1024},
+                           "effect": "tinted.json",
                            "repeat": [{"count": 60000, "step": [1, 0, 0]}]}})",
       "too-large"));
 }

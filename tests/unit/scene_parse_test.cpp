@@ -78,7 +78,8 @@ TEST(ParseScene, GridsCountTheFirstAxisFastest) {
   const ParsedScene parsed = parse_members(R"("objects": {"balls": {"mesh": "sphere", "effect": "e.json",
     "transform": {"translate": [10, 0, 0]},
     "repeat": [{"count": 3, "step": [2, 0, 0], "parameters": {"roughness": {"from": 0.1, "to": 0.7}}},
-               {"count": 2, "step": [0, -4, 0], "parameters": {"tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
+               {"count": 2, "step": [0, -4, 0], "parameters": {
+                 "tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
   ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
   const Object& balls = parsed.scene->objects[0];
   ASSERT_EQ(scene::instance_count(balls), 6);
