@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <gtest/gtest.h>
 
@@ -24,15 +26,30 @@ TEST_F(Devices, AreListedByIndex) {
   }
 }
 
-TEST_F(Devices, TheDefaultIsASoftwareDeviceThatPassesTheProbeAndDividesNatively) {
+TEST_F(Devices, TheDefaultIsASoftwareDeviceWhereThereIsOne) {
+  const std::vector<DeviceInfo> devices = list_devices(diagnostics);
   const auto backend = create({}, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();
-  EXPECT_TRUE(backend->device().cpu);
+  EXPECT_EQ(backend->device().cpu,
+            std::any_of(devices.begin(), devices.end(), [](const DeviceInfo& device) { return device.cpu; }));
+}
+
+TEST_F(Devices, TheDefaultPassesTheProbe) {
+  const auto backend = create({}, diagnostics);
+  ASSERT_NE(backend, nullptr) << diagnostics.text();
   for (const Check& check : backend->probe().checks)
     EXPECT_TRUE(check.passed) << check.name << ": " << check.detail;
+  EXPECT_EQ(backend->division(), backend->probe().division);
+  EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
+}
+
+TEST_F(Devices, LavapipeDividesNatively) {
+  Options options;
+  options.device = "llvmpipe";
+  const auto backend = create(options, diagnostics);
+  if (backend == nullptr) GTEST_SKIP() << "lavapipe is not installed";
   EXPECT_EQ(backend->division(), driver::Division::native);
   EXPECT_NE(backend->description().find("native division"), std::string::npos) << backend->description();
-  EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
 }
 
 TEST_F(Devices, AreChosenByIndexAndByPartOfTheNameInAnyCase) {
