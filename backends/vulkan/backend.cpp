@@ -283,19 +283,7 @@ std::unique_ptr<VulkanBackend> create(const Options& options, Diagnostics& diagn
     if (!ran) return nullptr;
     backend->division_ = options.division.value_or(backend->probe_.division);
     if (backend->probe_.passed() || options.allow_unproven) return backend;
-
-    support::Diagnostic* report = nullptr;
-    for (const Check& check : backend->probe_.checks) {
-      if (check.passed) continue;
-      const std::string failure = "fails the check \"" + check.name + "\": " + check.detail;
-      if (report == nullptr)
-        report = &diagnostics.report(
-            support::Id::unproven_device,
-            backend->device().name + " " + failure + "; its images cannot be claimed to be identical");
-      else
-        report->note("it also " + failure);
-    }
-    report->suggest("choose another device");
+    report_unproven(backend->probe_, backend->device().name, diagnostics);
   } catch (const std::exception& error) { report_unusable(error.what(), diagnostics); }
   return nullptr;
 }

@@ -143,4 +143,18 @@ std::optional<Probe> run_probe(Device& device, support::Diagnostics& diagnostics
   return probe;
 }
 
+void report_unproven(const Probe& probe, const std::string& device, support::Diagnostics& diagnostics) {
+  support::Diagnostic* report = nullptr;
+  for (const Check& check : probe.checks) {
+    if (check.passed) continue;
+    const std::string failure = "fails the check \"" + check.name + "\": " + check.detail;
+    if (report == nullptr)
+      report = &diagnostics.report(support::Id::unproven_device,
+                                   device + " " + failure + "; its images cannot be claimed to be identical");
+    else
+      report->note("it also " + failure);
+  }
+  if (report != nullptr) report->suggest("choose another device");
+}
+
 }  // namespace isoshade::vulkan

@@ -34,4 +34,7 @@ struct Probe {
 /// Throws std::exception where Vulkan fails; nothing, with a diagnostic, where a shader does not compile.
 std::optional<Probe> run_probe(Device& device, support::Diagnostics& diagnostics);
 
+/// Reports unproven-device with the checks that a probe did not pass.
+void report_unproven(const Probe& probe, const std::string& device, support::Diagnostics& diagnostics);
+
 }  // namespace isoshade::vulkan

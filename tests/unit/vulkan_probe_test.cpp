@@ -7,6 +7,7 @@
 #include <set>
 
 #include "backends/vulkan/limits.h"
+#include "backends/vulkan/probe.h"
 #include "backends/vulkan/probe_arithmetic.h"
 #include "backends/vulkan/probe_coverage.h"
 #include "runtime/lanes/scalar.h"
@@ -106,6 +107,22 @@ TEST_F(ProbeArithmetic, FitsOneTable) {
   EXPECT_LE(word_topics().size(), max_result_words);
   std::set<Topic> seen(word_topics().begin(), word_topics().end());
   EXPECT_EQ(seen.size(), static_cast<size_t>(topic_count));
+}
+
+TEST(ProbeRefusal, NamesTheDeviceAndEveryCheckItFails) {
+  Probe probe;
+  probe.checks = {{"floor (fragment)", true, ""},
+                  {"comparisons (vertex)", false, "3 differ"},
+                  {"integers", false, "all"}};
+  EXPECT_FALSE(probe.passed());
+  support::Diagnostics diagnostics;
+  report_unproven(probe, "Strange GPU", diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].id, support::Id::unproven_device);
+  const std::string text = diagnostics.text();
+  for (const char* part : {"Strange GPU", "comparisons (vertex)", "3 differ", "integers"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_EQ(text.find("floor"), std::string::npos) << text;
 }
 
 class ProbeCoverage : public testing::TestWithParam<bool> {};
