@@ -25,8 +25,8 @@ struct Options {
   CppText cpp = driver::cpp;
 };
 
-/// Nothing if the lanes, the compiler or the cache cannot be had, which is reported. Id::no_compiler is the sign that
-/// the interpreter should serve instead.
+/// Nothing if the lanes, the compiler or the cache cannot be had, which is reported. Id::no_compiler is the
+/// sign that the interpreter should serve instead.
 std::unique_ptr<backends::Backend> create(const Options& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::cpu

@@ -119,7 +119,8 @@ std::string temporary_parent() {
   return parent.starts_with('/') ? parent : "/tmp";
 }
 
-/// Workshops whose process must be gone, and entries beyond the limit, oldest first. Losing an entry is harmless.
+/// Workshops whose process must be gone, and entries beyond the limit, oldest first. Losing an entry is
+/// harmless.
 void tidy(const std::string& folder) {
   std::error_code ignored;
   const fs::file_time_type now = fs::file_time_type::clock::now();

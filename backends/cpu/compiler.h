@@ -13,8 +13,8 @@ namespace isoshade::cpu {
 
 class Compiler {
  public:
-  /// `wanted` is a path or a name on PATH; empty: $ISOSHADE_CXX, else the first of c++, g++ and clang++ on PATH.
-  /// Reports if there is none.
+  /// `wanted` is a path or a name on PATH; empty: $ISOSHADE_CXX, else the first of c++, g++ and clang++ on
+  /// PATH. Reports if there is none.
   static std::optional<Compiler> find(const std::string& wanted, support::Diagnostics& diagnostics);
 
   const std::string& path() const { return path_; }

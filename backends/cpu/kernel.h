@@ -57,7 +57,8 @@ class KernelStore {
   /// `keep`: a folder that receives every text that is compiled or found, named as its document; or empty.
   KernelStore(Compiler compiler, Cache cache, LaneCount lanes, CppText cpp, std::string keep);
 
-  /// The kernel of each program; several are compiled at once. Nothing if one failed. They live as long as the store.
+  /// The kernel of each program; several are compiled at once. Nothing if one failed. They live as long as
+  /// the store.
   std::optional<std::vector<const Kernel*>> kernels(std::span<const driver::Program* const> programs,
                                                     support::Diagnostics& diagnostics);
 

@@ -16,8 +16,8 @@ struct ProcessEnd {
 
 using Variables = std::vector<std::pair<std::string, std::string>>;
 
-/// Runs the program at the path arguments[0] to its end, with nothing to read and `variables` set in its environment.
-/// Nothing if it cannot be started.
+/// Runs the program at the path arguments[0] to its end, with nothing to read and `variables` set in its
+/// environment. Nothing if it cannot be started.
 std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
                                       const Variables& variables = {});
 

@@ -25,8 +25,8 @@ class Workers {
 
   int count() const { return arena_.max_concurrency(); }
 
-  /// Runs body(i) for all i in [0, count), in any order and at the same time. The guard is made anew in each task: TBB
-  /// gives its threads the float mode that it found when it was first used.
+  /// Runs body(i) for all i in [0, count), in any order and at the same time. The guard is made anew in each
+  /// task: TBB gives its threads the float mode that it found when it was first used.
   template <class Body>
   void for_each(size_t count, const Body& body) {
     arena_.execute([&] {

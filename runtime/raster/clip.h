@@ -32,9 +32,9 @@ struct Surface {
 /// pixels.
 ///
 /// Left out are triangles that are culled, have no area, cover no pixel centre of the image, or have a vertex
-/// that is not finite. Vertices outside of the near plane, more than 2048 pixels left of or above the image's
-/// first pixel, or more than 8190 right of or below it are clipped away. Triangles that share an edge share the
-/// two ends of what is left of it.
+/// that is not finite. What lies beyond the near plane, more than 2048 pixels left of or above the image's
+/// first pixel, or more than 8190 pixels (or the image's size, if greater) right of or below it, is clipped
+/// away. Triangles that share an edge share the two ends of what is left of it.
 void clip_and_snap(const Surface& surface, int width, int height, std::vector<float>& vertices,
                    std::vector<int32_t>& triangles);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame that asks much of a backend: many objects of a few triangles each, scattered over and beyond the image, one
-// over the other and some through the near plane.
+// A frame that asks much of a backend: many objects of a few triangles each, scattered over and beyond the
+// image, one over the other and some through the near plane.
 #pragma once
 
 #include <cstring>

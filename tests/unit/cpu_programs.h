@@ -44,7 +44,8 @@ EXPORT void isoshade_vertex(const BufferView* buffers, int object, int first, in
 }
 )";
 
-/// The colour is (x, y, triangle, first word of the object's record times the number of lights); NaN in a corner.
+/// The colour is (x, y, triangle, first word of the object's record times the number of lights); NaN in a
+/// corner.
 inline const std::string pixel_text = program_head + R"(
 EXPORT void isoshade_pixel(const BufferView* buffers, int object, int light_count, int count, const int* x,
                            const int* y, const int* triangle, float* rgba) {
