@@ -52,7 +52,7 @@ int words_of(graph::Type type) {
 }
 
 Field field(const std::string& name, graph::Type type) {
-  return {name, std::string(graph::type_name(type)), words_of(type), {}};
+  return {name, std::string(graph::type_name(type)), words_of(type), {}, {}, {}};
 }
 
 graph::Type graph_type(ir::Type type) {
@@ -73,6 +73,8 @@ std::vector<Field> parameters_of(const check::TypedGraph& typed) {
   std::vector<Field> fields;
   for (const graph::Input& input : typed.graph.inputs) {
     fields.push_back(field(input.name, input.type));
+    fields.back().min = input.min;
+    fields.back().max = input.max;
     fields.back().value = record_words(*input.value, fields.back().words);
   }
   return fields;
@@ -138,8 +140,11 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
   support::check(function != ir::none, "lowering made no function");
   Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {}};
   program.entry = finish(program.module, lower::add_eval_kernel(program.module, function), options);
-  for (const graph::Input& input : typed->graph.inputs)
+  for (const graph::Input& input : typed->graph.inputs) {
     program.inputs.push_back(field(input.name, input.type));
+    program.inputs.back().min = input.min;
+    program.inputs.back().max = input.max;
+  }
   for (size_t i = 0; i < typed->graph.outputs.size(); ++i)
     program.results.push_back(field(typed->graph.outputs[i].name, typed->outputs[i].type));
   return program;

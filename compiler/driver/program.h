@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,8 @@ struct Field {
   std::string name;
   std::string type;  ///< as documents spell it: "float", "color3", ...
   int words = 1;
-  std::vector<float> value;  ///< the default, `words` long; empty for eval columns
+  std::vector<float> value;       ///< the default, `words` long; empty for eval columns
+  std::optional<float> min, max;  ///< of each component
 };
 
 struct Program {

@@ -125,7 +125,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(lane_names);
   verify_app->add_option("--report", verify.report,
                          "Where images differ, write both and a heat map to this folder");
-  verify_app->add_option("--golden", verify.golden, "A file of recorded hashes to hold the scenes against");
+  CLI::Option* golden = verify_app->add_option("--golden", verify.golden,
+                                               "A file of recorded hashes, of each scene at its own size");
+  golden->excludes(verify_app->get_option("--size"));
   verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
   add_settings(*verify_app, verify.settings);
   add_choice(*verify_app, verify.choice, false);

@@ -77,6 +77,8 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
   for (const driver::Field& field : fields) {
     ordered_json row{{"name", field.name}, {"type", field.type}, {"words", field.words}};
     if (!field.value.empty()) row["value"] = field.value;
+    if (field.min) row["min"] = *field.min;
+    if (field.max) row["max"] = *field.max;
     list.push_back(row);
   }
   return list;

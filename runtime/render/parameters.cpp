@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/support/check.h"
+#include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/host_math.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 /// A field of the record by name, with the word where it begins.
 struct Found {
+  const driver::Field* field = nullptr;
   Type type = Type::floating;
   size_t first_word = 0;
 };
@@ -29,7 +31,7 @@ std::optional<Found> find_field(const driver::Effect& effect, const std::string&
     if (field.name == name) {
       const std::optional<Type> type = graph::find_type(field.type);
       support::check(type.has_value(), "a parameter of a type that does not exist");
-      return Found{*type, word};
+      return Found{&field, *type, word};
     }
     word += static_cast<size_t>(field.words);
   }
@@ -50,9 +52,27 @@ void report_unknown(const scene::Object& object, const driver::Effect& effect, c
   if (report.fix.empty()) report.note(list.empty() ? "it has none at all" : "it has " + list);
 }
 
-bool check_fit(Type type, const Literal& literal, const std::string& name, const support::Span& where,
+/// Whether every number of a value lies where the effect allows it.
+bool check_range(const driver::Field& field, const Literal& literal, const support::Span& where,
+                 Diagnostics& diagnostics) {
+  std::vector<float> numbers = literal.numbers;
+  if (literal.kind == Literal::Kind::number) numbers = {literal.number};
+  for (float number : numbers) {
+    const bool below = field.min && number < *field.min;
+    if (!below && !(field.max && number > *field.max)) continue;
+    std::string range = below ? "at least " + support::format_float(*field.min)
+                              : "at most " + support::format_float(*field.max);
+    diagnostics.report(Id::out_of_range, where, "the parameter " + quote(field.name) + " is " + range);
+    return false;
+  }
+  return true;
+}
+
+bool check_fit(const Found& found, const Literal& literal, const support::Span& where,
                Diagnostics& diagnostics) {
-  if (graph::fits(type, literal)) return true;
+  const Type type = found.type;
+  const std::string& name = found.field->name;
+  if (graph::fits(type, literal)) return check_range(*found.field, literal, where, diagnostics);
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
   if (floats == 1) expected += ", a number";
@@ -87,7 +107,7 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
     const auto found = find_field(effect, parameter.name);
     if (!found) {
       report_unknown(object, effect, parameter.name, parameter.name_where, diagnostics);
-    } else if (check_fit(found->type, parameter.value, parameter.name, parameter.value_where, diagnostics)) {
+    } else if (check_fit(*found, parameter.value, parameter.value_where, diagnostics)) {
       store(found->type, parameter.value, result.common_.data() + found->first_word);
     }
   }
@@ -101,7 +121,7 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
         continue;
       }
       for (const Literal& value : variation.values)
-        if (!check_fit(found->type, value, variation.name, variation.value_where, diagnostics)) break;
+        if (!check_fit(*found, value, variation.value_where, diagnostics)) break;
       if (!variation.listed && found->type == Type::integer) {
         diagnostics.report(Id::wrong_type, variation.value_where,
                            "the parameter " + quote(variation.name) + " is an integer: list its values");
