@@ -250,8 +250,10 @@ void main() {
 
 driver::Program table_program(size_t words, size_t stride) {
   driver::Program program = named("table", Stage::eval);
-  program.inputs.push_back({"in", "vector", static_cast<int>(stride), {}});
-  program.results.push_back({"out", "vector", static_cast<int>(words), {}});
+  program.inputs.resize(1);
+  program.inputs[0].words = static_cast<int>(stride);
+  program.results.resize(1);
+  program.results[0].words = static_cast<int>(words);
   return program;
 }
 
