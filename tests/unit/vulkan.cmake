@@ -3,6 +3,7 @@ isoshade_test(emit_spirv_test SOURCES unit/emit_spirv_test.cpp LINKS isoshade_em
 if(ISOSHADE_VULKAN)
   isoshade_test(vulkan_test
     SOURCES
+      unit/driver_leaks.cpp
       unit/vulkan_backend_test.cpp
       unit/vulkan_device_test.cpp
       unit/vulkan_probe_test.cpp
