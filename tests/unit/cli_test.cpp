@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command as a user meets it: exit codes, what goes where, and what it says when used wrongly.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <string>
+#include <sys/wait.h>
+
+namespace isoshade {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exit = -1;
+  std::string text;  ///< standard output and standard error
+};
+
+Outcome run(const std::string& arguments) {
+  Outcome outcome;
+  FILE* pipe = popen((std::string(ISOSHADE_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  char buffer[4096];
+  for (size_t got; (got = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.text.append(buffer, got);
+  outcome.exit = WEXITSTATUS(pclose(pipe));
+  return outcome;
+}
+
+class Cli : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "isoshade-cli-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string file(const std::string& name, const std::string& text = "") const {
+    if (!text.empty()) std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  static std::string read(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_;
+};
+
+const std::string graphs = ISOSHADE_GRAPHS;
+const std::string scene = graphs + "/scenes/borders.json";
+const std::string ggx = graphs + "/library/brdf/ggx_d.json";
+
+TEST_F(Cli, TellsItsVersionAndItsExitCodes) {
+  EXPECT_EQ(run("--version").text, "isoshade " ISOSHADE_VERSION "\n");
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.exit, 0);
+  EXPECT_NE(help.text.find("Exit codes: 0"), std::string::npos);
+}
+
+TEST_F(Cli, EndsWithTwoWhereItIsUsedWrongly) {
+  for (const char* arguments :
+       {"", "paint", "render", "render x.json", "--no-such-flag", "verify a.json --backends gpu",
+        "render a.json -o b.png --size 0x5", "render a.json -o b.png --size 9000x1",
+        "render a.json -o b.png --lanes 5", "compile a.json", "eval f.json"})
+    EXPECT_EQ(run(arguments).exit, 2) << arguments;
+}
+
+TEST_F(Cli, NamesAMissingFile) {
+  const Outcome outcome = run("render " + file("none.json") + " -o " + file("a.png"));
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.text.find("error[missing-file]"), std::string::npos) << outcome.text;
+  EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(Cli, RendersPngAndExrAndRefusesOtherEndings) {
+  EXPECT_EQ(run("render " + scene + " --size 16x9 -o " + file("a.png")).exit, 0);
+  EXPECT_EQ(read(folder_ / "a.png").substr(1, 3), "PNG");
+  EXPECT_EQ(run("render " + scene + " --size 16x9 --backend interpreter -o " + file("a.exr")).exit, 0);
+  EXPECT_EQ(read(folder_ / "a.exr").substr(0, 4), "\x76\x2f\x31\x01");
+  const Outcome outcome = run("render " + scene + " -o " + file("a.bmp"));
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.text.find(".png"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Cli, SaysOfASettingWhatIsWrongWithIt) {
+  const std::string command =
+      "render " + graphs + "/scenes/material_balls.json --size 8x8 -o " + file("a.png");
+  const Outcome unknown = run(command + " --set balls.roughnes=0.5");
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_NE(unknown.text.find("roughness"), std::string::npos) << unknown.text;
+  const Outcome outside = run(command + " --set roughness=2");
+  EXPECT_EQ(outside.exit, 2);
+  EXPECT_NE(outside.text.find("at most 1"), std::string::npos) << outside.text;
+  EXPECT_EQ(run(command + " --set balls.base_color=0.1,0.2,0.3").exit, 0);
+}
+
+TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
+  const Outcome same = run("verify " + scene + " --backends cpu,interpreter --size 32x18");
+  EXPECT_EQ(same.exit, 0) << same.text;
+  EXPECT_NE(same.text.find("identical: 0 of 576 pixels differ"), std::string::npos) << same.text;
+
+  const std::string golden = file("hashes.json");
+  const std::string command = "verify " + scene + " --backends cpu --golden " + golden;
+  EXPECT_EQ(run(command).exit, 2) << "there is no such file yet";
+  EXPECT_EQ(run(command + " --update").exit, 0);
+  EXPECT_EQ(run(command).exit, 0);
+  const Outcome changed = run(command + " --set background=0.5,0,0,1");
+  EXPECT_EQ(changed.exit, 1) << changed.text;
+  EXPECT_EQ(run("verify " + scene + " --backends cpu --update").exit, 2) << "--update needs --golden";
+}
+
+TEST_F(Cli, EvaluatesATable) {
+  const std::string table = file("in.csv", "n_dot_h, alpha\n1, 0.5\n0x1.8p-1,0.0625\n0.5,nan\n");
+  for (const char* backend : {"cpu", "interpreter"})
+    EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " --backend " + backend).text,
+              "out\n0x1.45f306p+0\n0x1.a57c44p-8\nnan\n");
+  EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " -o " + file("out.csv")).text, "");
+  EXPECT_EQ(read(folder_ / "out.csv"), "out\n0x1.45f306p+0\n0x1.a57c44p-8\nnan\n");
+}
+
+TEST_F(Cli, SaysWhereATableIsWrong) {
+  const auto error = [&](const std::string& text) {
+    return run("eval " + ggx + " --inputs " + file("in.csv", text)).text;
+  };
+  EXPECT_NE(error("alpha,n_dot_l\n1,1\n").find("did you mean \"n_dot_h\"?"), std::string::npos);
+  EXPECT_NE(error("alpha\n1\n").find("there is no column \"n_dot_h\""), std::string::npos);
+  EXPECT_NE(error("alpha,n_dot_h\n1\n").find("this row has 1 cells"), std::string::npos);
+  EXPECT_NE(error("alpha,n_dot_h\n1,one\n").find("in.csv:2:3: error[bad-table]: \"one\" is not a float"),
+            std::string::npos);
+}
+
+TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
+  const Outcome outcome =
+      run("compile " + graphs + "/materials/cook_torrance.json --target glsl,cpp,spirv -o " + file("out"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  for (const char* name :
+       {"cook_torrance.base.pixel.frag", "cook_torrance.base.pixel.frag.spv", "cook_torrance.base.pixel.cpp",
+        "cook_torrance.base.vertex.vert", "cook_torrance.json", "runtime/lanes/lanes.h"})
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  const std::string compiler = "c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " + file("out") + " ";
+  EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
+}
+
+TEST_F(Cli, DumpsEveryStage) {
+  const std::string command = "compile " + ggx + " -o " + file("out") + " --quiet --dump-after ";
+  std::istringstream stages(run(command + "help").text);
+  int count = 0;
+  for (std::string stage; std::getline(stages, stage); ++count)
+    EXPECT_NE(run(command + stage).text.find("# after " + stage + "\n"), std::string::npos) << stage;
+  EXPECT_GE(count, 10);
+  EXPECT_EQ(run(command + "nowhere").exit, 2);
+}
+
+}  // namespace
+}  // namespace isoshade
