@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "backends/cpu/lane_count.h"
 #include "compiler/support/diagnostics.h"
 #include "runtime/compare/golden.h"
 #include "runtime/scene/encode.h"
@@ -54,12 +55,14 @@ TEST(Scenes, AreIdenticalForEveryLaneCountAndThreadCount) {
   for (const std::string& path : shipped_scenes()) {
     const render::Plan made = plan(path, 321, 181);
     const backends::Image expected = draw(made, *first);
-    for (const char* lanes : {"4", "8", "16", "8x2", "16x2"})
+    for (const char* lanes : {"4", "8", "16", "8x2", "16x2"}) {
+      if (!cpu::lane_count(lanes)->available()) continue;  // this machine has no registers of so many lanes
       for (const int threads : {1, 2}) {
         const auto backend = cpu_backend(lanes, threads);
         expect_identical(expected, draw(made, *backend),
                          path + " lanes " + lanes + " threads " + std::to_string(threads));
       }
+    }
   }
 }
 
