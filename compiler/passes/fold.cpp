@@ -93,6 +93,7 @@ class Folder {
       case Opcode::loop: return loop(id, made);
       default: {
         auto same = evaluated(made);
+        if (!same) same = chosen(made);
         if (!same) same = identity(edit_, made);
         return replace_or_keep(id, same);
       }
@@ -106,22 +107,77 @@ class Folder {
       edit_.keep(id);
   }
 
-  std::optional<ValueId> evaluated(const Instruction& made) {
-    const Type type = f_.type(made.first_result);
+  // How operand `i` is chosen among two constants, null if it is not.
+  const Instruction* choice(const Instruction& made, uint32_t i) const {
+    const Instruction* select = edit_.definition(edit_.operand(made, i), Opcode::select);
+    return select != nullptr && known_vector(edit_.operand(*select, 1)) &&
+                   known_vector(edit_.operand(*select, 2))
+               ? select
+               : nullptr;
+  }
+
+  bool known_vector(ValueId value) const {
+    for (uint32_t c = 0; c < f_.type(value).width; ++c)
+      if (!edit_.known(value, c)) return false;
+    return true;
+  }
+
+  // The result if every operand is what `operand(i)` says, all components known.
+  template <class Operand>
+  std::optional<std::array<uint32_t, 4>> result_of(const Instruction& made, Operand operand) const {
     const OpInfo& row = info(made.op);
     std::array<uint32_t, 4> words{};
-    for (uint32_t c = 0; c < type.width; ++c) {
-      std::array<uint32_t, 3> operands{};
+    for (uint32_t c = 0; c < f_.type(made.first_result).width; ++c) {
+      std::array<uint32_t, 3> bits{};
       for (uint32_t i = 0; i < made.operand_count; ++i) {
-        const ValueId operand = edit_.operand(made, i);
-        const auto bits = edit_.known(operand, f_.type(operand).width == 1 ? 0 : c);
-        if (!bits) return std::nullopt;
-        operands[i] = *bits;
+        const ValueId value = operand(i);
+        const auto known = edit_.known(value, f_.type(value).width == 1 ? 0 : c);
+        if (!known) return std::nullopt;
+        bits[i] = *known;
       }
-      if (!holds(row.precondition, operands[0], operands[1])) return std::nullopt;
-      words[c] = evaluate(made.op, operands[0], operands[1], operands[2]);
+      if (!holds(row.precondition, bits[0], bits[1])) return std::nullopt;
+      words[c] = evaluate(made.op, bits[0], bits[1], bits[2]);
     }
+    return words;
+  }
+
+  ValueId constant(const Instruction& made, const std::array<uint32_t, 4>& words) {
+    const Type type = f_.type(made.first_result);
     return edit_.constant(type, std::span(words).first(type.width));
+  }
+
+  std::optional<ValueId> evaluated(const Instruction& made) {
+    const auto words = result_of(made, [&](uint32_t i) { return edit_.operand(made, i); });
+    return words ? std::optional(constant(made, *words)) : std::nullopt;
+  }
+
+  // An op on constants chosen by one condition: the results, chosen. Drivers do so too, but do not flush.
+  std::optional<ValueId> chosen(const Instruction& made) {
+    if (made.op == Opcode::select) return std::nullopt;
+    ValueId condition = none;
+    for (uint32_t i = 0; i < made.operand_count; ++i) {
+      const Instruction* select = choice(made, i);
+      if (select == nullptr) continue;
+      if (condition != none && condition != edit_.operand(*select, 0)) return std::nullopt;
+      condition = edit_.operand(*select, 0);
+    }
+    if (condition == none) return std::nullopt;
+    const auto side = [&](uint32_t arm) {
+      return result_of(made, [&](uint32_t i) {
+        const Instruction* select = choice(made, i);
+        return select != nullptr ? edit_.operand(*select, arm) : edit_.operand(made, i);
+      });
+    };
+    const auto then = side(1), other = side(2);
+    if (!then || !other) return std::nullopt;
+    const ValueId a = constant(made, *then);
+    return select(condition, a, constant(made, *other));
+  }
+
+  ValueId select(ValueId condition, ValueId a, ValueId b) {
+    const ValueId value = edit_.make(Opcode::select, {condition, a, b});
+    const Instruction made = *edit_.definition(value);
+    return identity(edit_, made).value_or(value);
   }
 
   // The vector all of whose components, in order, this constructs.
@@ -170,9 +226,22 @@ class Folder {
     edit_.keep(id);
     edit_.descend(id);
     for (uint32_t k = 0; k < made.result_count; ++k) {
-      const ValueId value = f_.blocks[made.blocks[0]].yields[k];
-      if (value == f_.blocks[made.blocks[1]].yields[k]) edit_.replace(made.first_result + k, value);
+      const ValueId then = f_.blocks[made.blocks[0]].yields[k], other = f_.blocks[made.blocks[1]].yields[k];
+      if (then == other) {
+        edit_.replace(made.first_result + k, then);
+      } else if (known_vector(then) && known_vector(other)) {
+        const ValueId a = copy(then);
+        edit_.replace(made.first_result + k, select(edit_.operand(made, 0), a, copy(other)));
+      }
     }
+  }
+
+  // A known value of a block inside, made again here.
+  ValueId copy(ValueId value) {
+    std::array<uint32_t, 4> words{};
+    const Type type = f_.type(value);
+    for (uint32_t c = 0; c < type.width; ++c) words[c] = *edit_.known(value, c);
+    return edit_.constant(type, std::span(words).first(type.width));
   }
 
   void loop(InstructionId id, const Instruction& made) {

@@ -16,6 +16,8 @@ using Expand = void (*)(ir::Module&);
 /// - what equals one of its operands, or a cheaper op, for every value of the language: NaN, infinities and
 /// both
 ///   zeros included (identities.h);
+/// - ops on constants chosen by one select by a select of their results; a branch's results that are constants on
+///   both sides by a select;
 /// - a branch whose condition is constant by its side; results that both sides yield alike; a loop that runs
 /// never
 ///   or once by its initial values or its body.

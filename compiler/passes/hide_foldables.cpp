@@ -31,6 +31,14 @@ bool is_foldable(Opcode op, int arity, Bits a, Bits b) {
   }
 }
 
+// Whether drivers take a choice among these for a bool made float, +-1 or 0, of which they lose the zero's sign.
+bool is_float_of_bool(Bits a, Bits b) {
+  const auto pair = [](Bits one, Bits zero) {
+    return (one == one_bits && zero == sign_bit) || (one == (one_bits | sign_bit) && zero == 0u);
+  };
+  return pair(a, b) || pair(b, a);
+}
+
 class Hider {
  public:
   explicit Hider(Function& f) : f_(f), edit_(f) {}
@@ -44,8 +52,11 @@ class Hider {
     const Instruction made = f_.instructions[id];
     if (made.blocks[0] != none) {
       edit_.keep(id);
-      return edit_.descend(id);
+      edit_.descend(id);
+      if (made.op == Opcode::branch) hide_yields(made);
+      return;
     }
+    if (made.op == Opcode::select) return hide_select(id, made);
     if (made.op == Opcode::ftoi) {
       const Instruction* from = edit_.definition(edit_.operand(made, 0), Opcode::itof);
       if (from != nullptr) return edit_.replace(made.first_result, truncated(edit_.operand(*from, 0)));
@@ -54,11 +65,55 @@ class Hider {
     if (!is_primitive(made.op) || info(made.op).rule != Rule::same || !has_foldable(made))
       return edit_.keep(id);
     const uint32_t width = f_.type(made.first_result).width;
+    edit_.replace(made.first_result, vector(width, [&](uint32_t c) { return component(made, c); }));
+  }
+
+  // A scalar, or a vector of the components that `component` makes.
+  template <class Component>
+  ValueId vector(uint32_t width, Component component) {
     std::array<ValueId, 4> components;
-    for (uint32_t c = 0; c < width; ++c) components[c] = component(made, c);
-    edit_.replace(made.first_result, width == 1
-                                         ? components[0]
-                                         : edit_.make(Opcode::construct, std::span(components).first(width)));
+    for (uint32_t c = 0; c < width; ++c) components[c] = component(c);
+    return width == 1 ? components[0] : edit_.make(Opcode::construct, std::span(components).first(width));
+  }
+
+  bool has_float_of_bool(ValueId a, ValueId b) const {
+    for (uint32_t c = 0; c < f_.type(a).width; ++c)
+      if (is_float_of_bool(edit_.known(a, c), edit_.known(b, c))) return true;
+    return false;
+  }
+
+  void hide_select(InstructionId id, const Instruction& made) {
+    const ValueId condition = edit_.operand(made, 0), a = edit_.operand(made, 1), b = edit_.operand(made, 2);
+    if (!has_float_of_bool(a, b)) return edit_.keep(id);
+    edit_.replace(made.first_result, vector(f_.type(a).width, [&](uint32_t c) {
+                    const Bits x = edit_.known(a, c), y = edit_.known(b, c);
+                    if (is_float_of_bool(x, y)) return choose(condition, *x, *y, f_.type(a).is_float());
+                    const ValueId values[] = {condition, edit_.component(a, c), edit_.component(b, c)};
+                    return edit_.make(Opcode::select, values);
+                  }));
+  }
+
+  // A branch becomes a select in drivers.
+  void hide_yields(const Instruction& made) {
+    for (uint32_t k = 0; k < made.result_count; ++k) {
+      const ValueId a = f_.blocks[made.blocks[0]].yields[k], b = f_.blocks[made.blocks[1]].yields[k];
+      const ValueId result = made.first_result + k;
+      if (!has_float_of_bool(a, b)) continue;
+      edit_.replace(result, vector(f_.type(a).width, [&](uint32_t c) {
+                      const Bits x = edit_.known(a, c), y = edit_.known(b, c);
+                      return is_float_of_bool(x, y)
+                                 ? choose(edit_.operand(made, 0), *x, *y, f_.type(a).is_float())
+                                 : edit_.component(result, c);
+                    }));
+    }
+  }
+
+  // One of two constants, neither of which stands in the text.
+  ValueId choose(ValueId condition, uint32_t a, uint32_t b, bool is_float) {
+    constexpr uint32_t mask = 0x40000000;
+    const ValueId masked = edit_.make(Opcode::select, {condition, integer(a ^ mask), integer(b ^ mask)});
+    const ValueId bits = edit_.make(Opcode::ixor, {masked, integer(mask)});
+    return is_float ? edit_.make(Opcode::bitsf_normal, {bits}) : bits;
   }
 
   Bits known(const Instruction& made, uint32_t operand, uint32_t component) const {

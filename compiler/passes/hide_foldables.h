@@ -17,6 +17,8 @@ namespace isoshade::passes {
 ///                     itof does
 ///     x < 0           x <= -2^-126: no float is denormal, and LLVM would compare the operands of a sum instead
 ///                     of the sum, which may have been flushed; likewise <= > >= and 0 on the left
+///     c ? -1 : +0     chosen in bits of which none is such a constant, then put right: drivers take it for a bool
+///                     made float and lose the zero's sign; likewise 1 and -0, and branches that yield them
 /// Vectors of which a component has such a shape, or all of whose operands are constant in a component, are
 /// taken apart. Needs: fold before, and not after (it may bring the shapes back by evaluating parts of them).
 /// Leaves: no such shape in any function. specialize has kept constants from crossing calls.

@@ -159,7 +159,15 @@ class Identities {
     return e_.make(Opcode::bnot, {value});
   }
 
+  // What a select on the same condition gives on that side.
+  ValueId arm(ValueId value, uint32_t side) const {
+    const Instruction* made = e_.definition(value, Opcode::select);
+    return made != nullptr && e_.operand(*made, 0) == a_ ? e_.operand(*made, side) : value;
+  }
+
   Result choices() {
+    const ValueId then = arm(b_, 1), other = arm(c_, 2);
+    if (then != b_ || other != c_) return e_.make(Opcode::select, {a_, then, other});
     if (is(a_, 1)) return b_;
     if (is(a_, 0)) return c_;
     if (b_ == c_ || known_alike()) return b_;
