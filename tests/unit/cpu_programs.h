@@ -92,7 +92,7 @@ inline driver::Program program_of(driver::Stage stage, std::string name = "") {
   driver::Program program;
   program.stage = stage;
   program.name = std::move(name);
-  program.results = {{"product", "float", 1, {}}, {"row", "integer", 1, {}}};
+  program.results = {{"product", "float", 1, {}, {}, {}}, {"row", "integer", 1, {}, {}, {}}};
   return program;
 }
 

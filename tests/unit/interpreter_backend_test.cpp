@@ -81,8 +81,8 @@ Program eval_program() {
   b.finish(std::array{b.op(Opcode::fmul, {b.parameter(0), b.parameter(1)}),
                       b.op(Opcode::flt, {b.parameter(0), b.parameter(1)})});
   program.entry = lower::add_eval_kernel(program.module, function);
-  program.inputs = {{"a", "float", 1, {}}, {"b", "float", 1, {}}};
-  program.results = {{"product", "float", 1, {}}, {"less", "boolean", 1, {}}};
+  program.inputs = {{"a", "float", 1, {}, {}, {}}, {"b", "float", 1, {}, {}, {}}};
+  program.results = {{"product", "float", 1, {}, {}, {}}, {"less", "boolean", 1, {}, {}, {}}};
   return program;
 }
 
