@@ -24,4 +24,20 @@ F smoothstep(F low, F high, F x) {
   return (t * t) * (3.0f - 2.0f * t);
 }
 
+/// From the range [in_low, in_high] to [out_low, out_high]: exactly `out_low` at in_low, `out_high` at in_high.
+/// Domain: all floats; x outside the range extrapolates. An empty range gives infinities or NaN.
+/// Error: 3 ULP of |out_low| + |out_high| for x between in_low and in_high.
+template <class F>
+F remap(F x, F in_low, F in_high, F out_low, F out_high) {
+  return mix(out_low, out_high, (x - in_low) / (in_high - in_low));
+}
+
+/// (x - pivot) * amount + pivot: farther from `pivot` for an amount above 1, nearer to it below.
+/// Domain: all floats.
+/// Error: 2 ULP of |(x - pivot) * amount| + |pivot|.
+template <class F>
+F contrast(F x, F amount, F pivot) {
+  return (x - pivot) * amount + pivot;
+}
+
 }  // namespace isoshade::functions

@@ -26,6 +26,8 @@ Result call(std::string_view row, const T&... arguments) {
 #define CALL_1(result, name, A) result name(A a) { return call<result>(#name, a); }
 #define CALL_2(result, name, A, B) result name(A a, B b) { return call<result>(#name, a, b); }
 #define CALL_3(result, name, A, B, C) result name(A a, B b, C c) { return call<result>(#name, a, b, c); }
+#define CALL_5(result, name, A, B, C, D, E) \
+  result name(A a, B b, C c, D d, E e) { return call<result>(#name, a, b, c, d, e); }
 
 #define CALLS_f_f(name) inline CALL_1(Float, name, Float)
 #define CALLS_f_ff(name) inline CALL_2(Float, name, Float, Float)
@@ -38,8 +40,12 @@ Result call(std::string_view row, const T&... arguments) {
 #define CALLS_g_gg(name) CALLS_f_ff(name) CALLS_v_vv(name)
 #define CALLS_g_ggg(name) CALLS_f_fff(name) CALLS_v_vvv(name)
 #define CALLS_g_ggh(name) CALLS_g_ggg(name) CALLS_v_vvf(name)
+#define CALLS_g_ggggg(name) \
+  inline CALL_5(Float, name, Float, Float, Float, Float, Float) \
+  template <int N> CALL_5(V<N>, name, V<N>, V<N>, V<N>, V<N>, V<N>)
 #define CALLS_f_v(name) template <int N> CALL_1(Float, name, V<N>)
 #define CALLS_f_vv(name) template <int N> CALL_2(Float, name, V<N>, V<N>)
+#define CALLS_f_v3(name) inline CALL_1(Float, name, V<3>)
 #define CALLS_v3_v3v3(name) inline CALL_2(V<3>, name, V<3>, V<3>)
 #define CALLS_v_mv(name) template <int N> CALL_2(V<N>, name, M<N>, V<N>)
 #define CALLS_m_mm(name) template <int N> CALL_2(M<N>, name, M<N>, M<N>)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transfer function of sRGB, IEC 61966-2-1. Polynomials are in the distance from the middle or the lower
-// end of their piece, which keeps rounding small; both directions rise monotonically over all floats.
+// Colour. The transfer function of sRGB, IEC 61966-2-1, is made of polynomials in the distance from the middle or
+// the lower end of their piece, which keeps rounding small; both directions rise monotonically over all floats.
 #pragma once
 
 #include "compiler/functions/comparison.h"
@@ -54,6 +54,14 @@ F srgb_decode(F x) {
   const F within = select(x <= 0.04045f, x * 0x1.3d0722p-4f, curve);
   const F below_one = select(x < 1.0f, within, F(1.0f));
   return select(x > 0.0f, below_one, F(0.0f));
+}
+
+/// The luminance of a linear colour with the primaries of Rec. 709 and sRGB. For other primaries take `dot`.
+/// Domain: all floats. White gives exactly 1.
+/// Error: 2 ULP of the sum of the terms' magnitudes.
+template <class F>
+F luminance(vec<F, 3> color) {
+  return (color[0] * 0.2126f + color[1] * 0.7152f) + color[2] * 0.0722f;
 }
 
 }  // namespace isoshade::functions

@@ -27,11 +27,14 @@ struct Signatures {
   using g_ggh = Types<Types<F, F, F>,  // h: as g, or a float for all components
                       Types<V<2>, V<2>, V<2>>, Types<V<3>, V<3>, V<3>>, Types<V<4>, V<4>, V<4>>,
                       Types<V<2>, V<2>, F>, Types<V<3>, V<3>, F>, Types<V<4>, V<4>, F>>;
+  using g_ggggg = Types<Types<F, F, F, F, F>, Types<V<2>, V<2>, V<2>, V<2>, V<2>>,
+                        Types<V<3>, V<3>, V<3>, V<3>, V<3>>, Types<V<4>, V<4>, V<4>, V<4>, V<4>>>;
   using f_v = Types<Types<V<2>>, Types<V<3>>, Types<V<4>>>;
   using f_vv = Types<Types<V<2>, V<2>>, Types<V<3>, V<3>>, Types<V<4>, V<4>>>;
   using v_v = f_v;
   using v_vv = f_vv;
   using v_vvf = Types<Types<V<2>, V<2>, F>, Types<V<3>, V<3>, F>, Types<V<4>, V<4>, F>>;
+  using f_v3 = Types<Types<V<3>>>;
   using v3_v3v3 = Types<Types<V<3>, V<3>>>;
   using v_mv = Types<Types<M<3>, V<3>>, Types<M<4>, V<4>>>;
   using m_mm = Types<Types<M<3>, M<3>>, Types<M<4>, M<4>>>;

@@ -26,6 +26,11 @@ namespace isoshade::functions {
   vec<F, N> name(vec<F, N> a, vec<F, N> b, F c) {                        \
     return componentwise([c](F x, F y) { return name(x, y, c); }, a, b); \
   }
+#define WIDEN_g_ggggg(name)                                                                           \
+  template <class F, int N>                                                                           \
+  vec<F, N> name(vec<F, N> a, vec<F, N> b, vec<F, N> c, vec<F, N> d, vec<F, N> e) {                   \
+    return componentwise([](F v, F w, F x, F y, F z) { return name(v, w, x, y, z); }, a, b, c, d, e); \
+  }
 #define WIDEN_f_f(name)
 #define WIDEN_f_ff(name)
 #define WIDEN_f_v(name)
@@ -33,6 +38,7 @@ namespace isoshade::functions {
 #define WIDEN_v_v(name)
 #define WIDEN_v_vv(name)
 #define WIDEN_v_vvf(name)
+#define WIDEN_f_v3(name)
 #define WIDEN_v3_v3v3(name)
 #define WIDEN_v_mv(name)
 #define WIDEN_m_mm(name)

@@ -11,7 +11,7 @@ namespace isoshade::reference {
 using Real = long double;
 static_assert(std::numeric_limits<Real>::digits >= 64);
 
-using std::abs, std::floor, std::sqrt;
+using std::abs, std::ceil, std::floor, std::sqrt;
 using std::acos, std::asin, std::atan, std::atan2, std::cos, std::sin, std::tan;
 using std::exp, std::exp2, std::log, std::log2, std::pow;
 
@@ -147,6 +147,8 @@ inline Real mod_magnitude(Real x, Real y) {
   return abs(quotient - std::round(quotient)) < abs(quotient) * 0x1p-23L ? NAN : abs(x) + abs(y);
 }
 
+inline Real round_half_even(Real x) { return std::nearbyint(x); }
+
 inline Real smoothstep(Real low, Real high, Real x) {
   Real t = (x - low) / (high - low);
   t = t < 0 ? 0 : t > 1 ? 1 : t;
@@ -155,5 +157,7 @@ inline Real smoothstep(Real low, Real high, Real x) {
 
 inline Real srgb_encode(Real x) { return x <= 0.0031308L ? x * 12.92L : 1.055L * pow(x, 1 / 2.4L) - 0.055L; }
 inline Real srgb_decode(Real x) { return x <= 0.04045L ? x / 12.92L : pow((x + 0.055L) / 1.055L, 2.4L); }
+
+inline Real luminance(Vector<3> c) { return 0.2126L * c[0] + 0.7152L * c[1] + 0.0722L * c[2]; }
 
 }  // namespace isoshade::reference

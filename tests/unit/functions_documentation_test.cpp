@@ -16,7 +16,7 @@ std::map<std::string, std::string> docstrings() {
     if (entry.path().extension() != ".h") continue;
     std::ifstream file(entry.path());
     std::string doc, line;
-    const std::regex signature("(?:[A-Za-z_]+|[a-z]+<F, [N34]>) ([a-z_0-9]+)\\(.*");
+    const std::regex signature("(?:[A-Za-z_]+|[a-z]+<F, [N234]>) ([a-z_0-9]+)\\(.*");
     bool in_doc = false;
     while (std::getline(file, line)) {
       std::smatch match;

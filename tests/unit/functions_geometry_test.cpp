@@ -103,6 +103,12 @@ TEST(NormalMatrix, KeepsNormalsOutsideUnderMirroring) {
   EXPECT_GT(normals[2][2], 0);
 }
 
+TEST(Luminance, OfWhiteIsOne) {
+  const lanes::FpGuard guard;
+  EXPECT_EQ(luminance(hidden(Vec3{1, 1, 1})), 1.0f);
+  EXPECT_EQ(luminance(hidden(Vec3{0, 0, 0})), 0.0f);
+}
+
 TEST(Matmul, ActsAsItsFactorsInTurn) {
   const lanes::FpGuard guard;
   const mat<float, 3> turn{{hidden(Vec3{0, 1, 0}), hidden(Vec3{-1, 0, 0}), hidden(Vec3{0, 0, 1})}};

@@ -43,6 +43,30 @@ TEST(SpecialValues, OfFunctionsThatChoose) {
   });
 }
 
+TEST(SpecialValues, OfRounding) {
+  expect_rows({
+      {CALL(ceil, 0.25f), 1},
+      {CALL(ceil, -0.75f), -0.0f},
+      {CALL(ceil, -0.0f), -0.0f},
+      {CALL(ceil, tiny), 1},
+      {CALL(ceil, -inf), -inf},
+      {CALL(ceil, nan), nan},
+      {CALL(round, 0.5f), 0.0f},
+      {CALL(round, 1.5f), 2},
+      {CALL(round, 2.5f), 2},
+      {CALL(round, -0.5f), -0.0f},
+      {CALL(round, -1.5f), -2},
+      {CALL(round, 0.49999997f), 0.0f},
+      {CALL(round, 8388607.5f), 8388608},
+      {CALL(round, 8388606.5f), 8388606},
+      {CALL(round, -8388609), -8388609},
+      {CALL(round, -0.0f), -0.0f},
+      {CALL(round, huge), huge},
+      {CALL(round, -inf), -inf},
+      {CALL(round, nan), nan},
+  });
+}
+
 TEST(SpecialValues, OfRemainders) {
   expect_rows({
       {CALL(fract, 2.75f), 0.75f},
@@ -81,6 +105,12 @@ TEST(SpecialValues, OfBlends) {
       {CALL(smoothstep, 1, 0, 2), 0},
       {CALL(smoothstep, 1, 0, -1), 1},
       {CALL(smoothstep, -huge, huge, 0), 0},
+      {CALL(remap, 0.3f, 0.3f, 0.9f, 7.7f, -0.1f), 7.7f},
+      {CALL(remap, 0.9f, 0.3f, 0.9f, 7.7f, -0.1f), -0.1f},
+      {CALL(remap, 1, 0, 0.5f, 0, 1), 2},
+      {CALL(remap, 1, 1, 1, 0, 1), nan},
+      {CALL(contrast, 0.25f, 2, 0.5f), 0},
+      {CALL(contrast, 0.5f, inf, 0.5f), nan},
   });
 }
 
@@ -145,6 +175,22 @@ TEST(SpecialValues, OfPow) {
       {CALL(pow, tiny, 1), tiny},
       {CALL(pow, 1.0000001f, huge), inf},
       {CALL(pow, 0.99999994f, huge), 0.0f},
+  });
+}
+
+TEST(SpecialValues, OfSafepower) {
+  expect_rows({
+      {CALL(safepower, 2, 3), 8},
+      {CALL(safepower, -2, 3), -8},
+      {CALL(safepower, -2, 2), -4},
+      {CALL(safepower, -4, 0.5f), -2},
+      {CALL(safepower, -3, 0.0f), -1},
+      {CALL(safepower, 0.0f, 0.0f), 1},
+      {CALL(safepower, -0.0f, 2), 0.0f},
+      {CALL(safepower, -0.0f, -1), inf},
+      {CALL(safepower, -inf, 1), -inf},
+      {CALL(safepower, nan, 1), nan},
+      {CALL(safepower, -1, nan), nan},
   });
 }
 
