@@ -10,17 +10,18 @@ namespace {
 
 class Cpp final : public Language {
  public:
-  std::string declared_type(ir::Type type, bool uniform) const override {
-    return "const " + this->type(type, uniform);
-  }
-  std::string type(ir::Type type, bool uniform) const override {
-    const std::string lane = uniform ? "float" : "F";
+  std::string_view type(ir::Type type, bool uniform) const override {
+    constexpr std::string_view one[] = {"float", "vec2<float>", "vec3<float>", "vec4<float>"};
+    constexpr std::string_view lanes[] = {"F", "vec2<F>", "vec3<F>", "vec4<F>"};
     switch (type.scalar) {
       case ir::Scalar::boolean: return uniform ? "bool" : "bool_of<F>";
       case ir::Scalar::integer: return uniform ? "int" : "int_of<F>";
       case ir::Scalar::floating: break;
     }
-    return type.width == 1 ? lane : std::string(ir::name(type)) + "<" + lane + ">";
+    return uniform ? one[type.width - 1] : lanes[type.width - 1];
+  }
+  void declared_type(std::string& out, ir::Type type, bool uniform) const override {
+    out.append("const ").append(this->type(type, uniform));
   }
   std::string literal(ir::Type type, uint32_t bits) const override {
     switch (type.scalar) {
@@ -34,66 +35,79 @@ class Cpp final : public Language {
     return bits == 0xff800000u ? "(-__builtin_inff())" : "__builtin_nanf(\"\")";
   }
   std::string_view op_text(const ir::OpInfo& row) const override { return row.cpp; }
-  std::string exactly(const Operand& operand, bool uniform) const override {
-    if (uniform || (!operand.uniform && !operand.literal)) return std::string(operand.text);
-    return type(operand.type, false) + "(" + std::string(operand.text) + ")";
+  void exactly(std::string& out, const Operand& operand, bool uniform) const override {
+    if (uniform || (!operand.uniform && !operand.literal))
+      out += operand.text;
+    else
+      out.append(type(operand.type, false)).append("(").append(operand.text).append(")");
   }
   // Operators broadcast what is uniform by themselves; a function's arguments are all of one type.
-  std::string argument(const Operand& operand, bool uniform, std::string_view pattern) const override {
-    return pattern.ends_with(')') ? exactly(operand, uniform) : std::string(operand.text);
+  void argument(std::string& out, const Operand& operand, bool uniform,
+                std::string_view pattern) const override {
+    if (pattern.ends_with(')'))
+      exactly(out, operand, uniform);
+    else
+      out += operand.text;
   }
-  std::string load(std::string_view buffer, std::string_view index) const override {
-    return "load(buffers." + std::string(buffer) + ", " + std::string(index) + ")";
+  void load(std::string& out, std::string_view buffer, std::string_view index) const override {
+    out.append("load(buffers.").append(buffer).append(", ").append(index).append(")");
   }
-  std::string callee(const FunctionText& function, bool uniform) const override {
-    return function.name + (uniform ? "<float>" : "<F>");
+  void callee(std::string& out, const FunctionText& function, bool uniform) const override {
+    out.append(function.name).append(lanes_of(uniform));
   }
   bool passes_buffers() const override { return true; }
-  std::string result_type(const ir::Function& function, const FunctionText& text,
-                          bool uniform) const override {
-    if (text.result_type.empty()) return type(function.results[0].type, uniform);
-    return "const " + text.result_type + (uniform ? "<float>" : "<F>");
+  void result_record(std::string& out, std::string_view record, bool uniform) const override {
+    out.append("const ").append(record).append(lanes_of(uniform));
   }
-  std::string parameter(ir::Type type, bool uniform, std::string_view name, bool used) const override {
-    return (used ? "" : "[[maybe_unused]] ") + this->type(type, uniform) + " " + std::string(name);
+  void parameter(std::string& out, ir::Type type, bool uniform, std::string_view name,
+                 bool used) const override {
+    out.append(used ? "" : "[[maybe_unused]] ").append(this->type(type, uniform)).append(" ").append(name);
+  }
+  void variable(std::string& out, ir::Type type, bool uniform, std::string_view name) const override {
+    out.append(this->type(type, uniform)).append(" ").append(name);
   }
   std::string_view no_value() const override { return "{}"; }
-  std::string variable(ir::Type type, bool uniform, std::string_view name) const override {
-    return this->type(type, uniform) + " " + std::string(name);
+  void branch_head(std::string& out, std::string_view condition, bool other) const override {
+    out.append(other ? "if (!all(" : "if (any(").append(condition).append(")) {");
   }
-  std::string branch_head(std::string_view condition, bool other) const override {
-    return (other ? "if (!all(" : "if (any(") + std::string(condition) + ")) {";
+  void branch_value(std::string& out, const Operand& condition, std::string_view variable,
+                    const Operand& value, bool uniform, bool other) const override {
+    out.append(variable).append(" = ");
+    if (other) out.append("select(").append(condition.text).append(", ").append(variable).append(", ");
+    exactly(out, value, uniform);
+    out += other ? ");" : ";";
   }
-  std::string branch_value(const Operand& condition, std::string_view variable, const Operand& value,
-                           bool uniform, bool other) const override {
-    const std::string name(variable);
-    const std::string exact = exactly(value, uniform);
-    return name + " = " +
-           (other ? "select(" + std::string(condition.text) + ", " + name + ", " + exact + ")" : exact) + ";";
+  void record(std::string& out, std::string_view name,
+              const std::vector<std::pair<ir::Type, std::string>>& fields, bool uniform) const override {
+    out.append(uniform ? "struct " : "template <class F>\nstruct ").append(name).append(" {\n");
+    for (const auto& [type, field] : fields)
+      out.append("  ").append(this->type(type, uniform)).append(" ").append(field).append(";\n");
+    out += "};\n";
   }
-  std::string record(std::string_view name, const std::vector<std::pair<ir::Type, std::string>>& fields,
-                     bool uniform) const override {
-    std::string text = (uniform ? "" : "template <class F>\n") + ("struct " + std::string(name)) + " {\n";
-    for (const auto& [type, field] : fields) text += "  " + this->type(type, uniform) + " " + field + ";\n";
-    return text + "};\n";
+  void make_record(std::string& out, std::string_view name, bool uniform,
+                   const std::vector<Operand>& fields) const override {
+    out.append(name).append(uniform ? "{" : "<F>{");
+    for (size_t i = 0; i < fields.size(); ++i) {
+      if (i != 0) out += ", ";
+      exactly(out, fields[i], uniform);
+    }
+    out += "}";
   }
-  std::string make_record(std::string_view name, bool uniform,
-                          const std::vector<std::string>& fields) const override {
-    std::string list;
-    for (const std::string& field : fields) list += (list.empty() ? "" : ", ") + field;
-    return std::string(name) + (uniform ? "" : "<F>") + "{" + list + "}";
+  void function_head(std::string& out, const ir::Function& function,
+                     const FunctionText& text) const override {
+    out += "template <class F>\nISOSHADE_INLINE ";
+    if (text.result_type.empty())
+      out += type(function.results[0].type, false);
+    else
+      out.append(text.result_type).append("<F>");
+    out.append(" ").append(text.name).append(text.loads ? "(const Buffers& buffers" : "(");
   }
-  std::string function_head(const ir::Function& function, const FunctionText& text,
-                            const std::vector<std::string>& parameters) const override {
-    std::string list = text.loads ? "const Buffers& buffers" : "";
-    for (const std::string& parameter : parameters) list += (list.empty() ? "" : ", ") + parameter;
-    const std::string result =
-        text.result_type.empty() ? type(function.results[0].type, false) : text.result_type + "<F>";
-    return "template <class F>\nISOSHADE_INLINE " + result + " " + text.name + "(" + list + ")";
+  void group_type(std::string& out, std::string_view record, bool uniform) const override {
+    out.append("const ").append(record).append(uniform ? "&" : "<F>&");
   }
-  std::string group_type(std::string_view record, bool uniform) const override {
-    return "const " + std::string(record) + (uniform ? "&" : "<F>&");
-  }
+
+ private:
+  static std::string_view lanes_of(bool uniform) { return uniform ? "<float>" : "<F>"; }
 };
 
 }  // namespace

@@ -12,9 +12,11 @@ constexpr std::string_view component_names[] = {"x", "y", "z", "w"};
 
 class FunctionPrinter {
  public:
-  FunctionPrinter(const ir::Module& module, const ir::Function& function, const FunctionText& text,
-                  const Language& language, const std::vector<FunctionText>& texts, const Names& globals)
-      : module_(module),
+  FunctionPrinter(std::string& out, const ir::Module& module, const ir::Function& function,
+                  const FunctionText& text, const Language& language, const std::vector<FunctionText>& texts,
+                  const Names& globals)
+      : out_(out),
+        module_(module),
         function_(function),
         text_(text),
         language_(language),
@@ -22,27 +24,42 @@ class FunctionPrinter {
         names_(&globals, function.values.size()),
         values_(function.values.size()) {}
 
-  std::string print() {
+  void print() {
     find_used();
-    const std::vector<std::string> parameters = declare_parameters();
-    out_ = language_.function_head(function_, text_, parameters);
-    if (function_.is_declaration()) return out_ + ";  // yours to provide\n";
+    language_.function_head(out_, function_, text_);
+    declare_parameters();
+    if (function_.is_declaration()) {
+      out_ += ");  // yours to provide\n";
+      return;
+    }
     uniform_ = ir::uniform_values(function_);
-    out_.reserve(80 * function_.instructions.size());
-    out_ += " {\n";
+    out_ += ") {\n";
     print_block(0);
-    return out_ + "  return " + returned() + ";\n}\n";
+    out_ += "  return ";
+    print_returned();
+    out_ += ";\n}\n";
   }
 
  private:
-  void line(std::string_view text) { out_.append(indent_, ' ').append(text).append("\n"); }
+  std::string& indent() { return out_.append(indent_, ' '); }
 
-  /// `// a :12` behind the statement that makes a node's value.
-  std::string comment(ir::ValueId value) const {
+  /// What stands before the next part of a list in parentheses.
+  void separate() {
+    if (out_.back() != '(') out_ += ", ";
+  }
+
+  /// Behind the statement that makes a node's value stands `// a :12`.
+  void end_line(ir::ValueId value) {
     const uint32_t origin = function_.values[value].names;
     const ir::Origin& from = function_.origins[origin];
-    if (from.line == 0) return "";
-    return "  // " + comment_text(from.node) + " :" + std::to_string(from.line);
+    if (from.line != 0)
+      out_.append("  // ").append(comment_text(from.node)).append(" :").append(std::to_string(from.line));
+    out_ += "\n";
+  }
+
+  void end_statement(ir::ValueId value) {
+    out_ += ";";
+    end_line(value);
   }
 
   std::string name_value(ir::ValueId value, uint32_t origin) {
@@ -75,8 +92,7 @@ class FunctionPrinter {
     }
   }
 
-  std::vector<std::string> declare_parameters() {
-    std::vector<std::string> declared;
+  void declare_parameters() {
     Names fields;
     for (size_t i = 0; i < function_.parameters.size(); ++i) {
       const ir::Parameter& parameter = function_.parameters[i];
@@ -84,19 +100,20 @@ class FunctionPrinter {
       if (parameter.group.empty()) {
         name = names_.take(parameter.name);
         const bool used = !function_.is_declaration() && used_[function_.blocks[0].parameters[i]];
-        declared.push_back(language_.parameter(parameter.type, parameter.uniform, name, used));
+        separate();
+        language_.parameter(out_, parameter.type, parameter.uniform, name, used);
       } else {
         if (i == 0 || function_.parameters[i - 1].group != parameter.group) {
           fields = Names();
           group_ = names_.take(parameter.group);
-          declared.push_back(language_.group_type(record_name(parameter.group), parameter.uniform) + " " +
-                             group_);
+          separate();
+          language_.group_type(out_, record_name(parameter.group), parameter.uniform);
+          out_.append(" ").append(group_);
         }
         name = group_ + "." + fields.take(parameter.name);
       }
       if (!function_.is_declaration()) values_[function_.blocks[0].parameters[i]] = name;
     }
-    return declared;
   }
 
   Operand operand(ir::ValueId value) const {
@@ -105,12 +122,12 @@ class FunctionPrinter {
   }
   const std::string& text(ir::ValueId value) const { return values_[value]; }
 
-  std::string returned() const {
+  void print_returned() {
     const std::vector<ir::ValueId>& yields = function_.blocks[0].yields;
-    if (yields.size() == 1) return language_.exactly(operand(yields[0]), false);
-    std::vector<std::string> fields;
-    for (ir::ValueId value : yields) fields.push_back(language_.exactly(operand(value), false));
-    return language_.make_record(text_.result_type, false, fields);
+    if (yields.size() == 1) return language_.exactly(out_, operand(yields[0]), false);
+    std::vector<Operand> fields;
+    for (ir::ValueId value : yields) fields.push_back(operand(value));
+    language_.make_record(out_, text_.result_type, false, fields);
   }
 
   void print_block(ir::BlockId block) {
@@ -119,13 +136,12 @@ class FunctionPrinter {
     indent_ -= 2;
   }
 
-  /// `const F name = expression;`
-  void define(const ir::Instruction& instruction, const std::string& expression) {
+  /// `const F name = `; an expression and end_statement() follow.
+  void begin_definition(const ir::Instruction& instruction) {
     const ir::ValueId value = instruction.first_result;
     values_[value] = name_value(value, instruction.origin);
-    out_.append(indent_, ' ').append(language_.declared_type(function_.type(value), uniform_[value]));
-    out_.append(" ").append(values_[value]).append(" = ").append(expression).append(";");
-    out_.append(comment(value)).append("\n");
+    language_.declared_type(indent(), function_.type(value), uniform_[value]);
+    out_.append(" ").append(values_[value]).append(" = ");
   }
 
   void print(const ir::Instruction& instruction) {
@@ -138,25 +154,27 @@ class FunctionPrinter {
         literals_[result] = true;
         return;
       case ir::Opcode::extract:
-        values_[result] = text(operands[0]) + "." + std::string(component_names[instruction.imm]);
+        values_[result].append(text(operands[0])).append(".").append(component_names[instruction.imm]);
         return;
-      case ir::Opcode::construct: {
-        std::string components;
-        for (ir::ValueId value : operands)
-          components +=
-              (components.empty() ? "" : ", ") + language_.exactly(operand(value), uniform_[result]);
-        return define(instruction,
-                      language_.type(function_.type(result), uniform_[result]) + "(" + components + ")");
-      }
+      case ir::Opcode::construct:
+        begin_definition(instruction);
+        out_.append(language_.type(function_.type(result), uniform_[result])).append("(");
+        for (ir::ValueId value : operands) {
+          separate();
+          language_.exactly(out_, operand(value), uniform_[result]);
+        }
+        out_ += ")";
+        return end_statement(result);
       case ir::Opcode::load: {
-        const std::string word = language_.load(module_.buffers[instruction.imm].name, text(operands[0]));
-        if (!nested_[result]) return define(instruction, word);
-        values_[result] = word;
-        return;
+        const std::string& buffer = module_.buffers[instruction.imm].name;
+        if (nested_[result]) return language_.load(values_[result], buffer, text(operands[0]));
+        begin_definition(instruction);
+        language_.load(out_, buffer, text(operands[0]));
+        return end_statement(result);
       }
       case ir::Opcode::iadd:
         if (!nested_[result]) return print_primitive(instruction);
-        values_[result] = text(operands[0]) + " + " + text(operands[1]);
+        values_[result].append(text(operands[0])).append(" + ").append(text(operands[1]));
         return;
       case ir::Opcode::call: return print_call(instruction);
       case ir::Opcode::branch: return print_branch(instruction);
@@ -170,51 +188,65 @@ class FunctionPrinter {
     const ir::ValueId result = instruction.first_result;
     const std::string_view pattern = language_.op_text(ir::info(instruction.op));
     const bool statement = pattern.starts_with(';');
-    if (statement) values_[result] = name_value(result, instruction.origin);
-    std::string filled;
+    if (statement) {
+      values_[result] = name_value(result, instruction.origin);
+      indent();
+    } else {
+      begin_definition(instruction);
+    }
     for (size_t i = statement ? 1 : 0; i < pattern.size(); ++i) {
       if (pattern[i] != '$') {
-        filled += pattern[i];
+        out_ += pattern[i];
       } else if (pattern[++i] == '=') {
-        filled += values_[result];
+        out_ += values_[result];
       } else {
         const ir::ValueId value = operands[static_cast<size_t>(pattern[i] - '0')];
-        const bool condition = instruction.op == ir::Opcode::select && pattern[i] == '0';
-        filled += condition ? text(value) : language_.argument(operand(value), uniform_[result], pattern);
+        if (instruction.op == ir::Opcode::select && pattern[i] == '0')
+          out_ += text(value);
+        else
+          language_.argument(out_, operand(value), uniform_[result], pattern);
       }
     }
-    if (statement) return line(filled + comment(result));
-    define(instruction, filled);
+    statement ? end_line(result) : end_statement(result);
   }
 
-  void print_call(const ir::Instruction& instruction) {
+  /// `f(a, b)`.
+  void print_call_expression(const ir::Instruction& instruction) {
     const ir::Function& callee = module_.functions[instruction.imm];
     const FunctionText& called = texts_[instruction.imm];
-    const bool uniform = uniform_[instruction.first_result];
-    std::vector<std::string> arguments;
-    if (called.loads && language_.passes_buffers()) arguments.push_back("buffers");
+    language_.callee(out_, called, uniform_[instruction.first_result]);
+    out_ += called.loads && language_.passes_buffers() ? "(buffers" : "(";
     const auto operands = function_.operands_of(instruction);
     for (size_t i = 0; i < operands.size();) {
       const ir::Parameter& parameter = callee.parameters[i];
+      separate();
       if (parameter.group.empty()) {
-        arguments.push_back(text(operands[i++]));
+        out_ += text(operands[i++]);
         continue;
       }
-      std::vector<std::string> fields;
+      std::vector<Operand> fields;
       for (; i < operands.size() && callee.parameters[i].group == parameter.group; ++i)
-        fields.push_back(language_.exactly(operand(operands[i]), parameter.uniform));
-      arguments.push_back(language_.make_record(record_name(parameter.group), parameter.uniform, fields));
+        fields.push_back(operand(operands[i]));
+      language_.make_record(out_, record_name(parameter.group), parameter.uniform, fields);
     }
-    std::string list;
-    for (const std::string& argument : arguments) list += (list.empty() ? "" : ", ") + argument;
-    const std::string expression = language_.callee(called, uniform) + "(" + list + ")";
-    if (callee.results.size() == 1) return define(instruction, expression);
-    const std::string name =
-        names_.take(instruction.origin != 0 ? function_.origins[instruction.origin].node : "t");
-    line(language_.result_type(callee, called, uniform) + " " + name + " = " + expression + ";" +
-         comment(instruction.first_result));
-    for (uint32_t i = 0; i < instruction.result_count; ++i)
-      values_[instruction.first_result + i] = name + "." + called.result_fields[i];
+    out_ += ")";
+  }
+
+  void print_call(const ir::Instruction& instruction) {
+    const FunctionText& called = texts_[instruction.imm];
+    const ir::ValueId first = instruction.first_result;
+    if (instruction.result_count == 1) {
+      begin_definition(instruction);
+    } else {
+      const std::string name =
+          names_.take(instruction.origin != 0 ? function_.origins[instruction.origin].node : "t");
+      language_.result_record(indent(), called.result_type, uniform_[first]);
+      out_.append(" ").append(name).append(" = ");
+      for (uint32_t i = 0; i < instruction.result_count; ++i)
+        values_[first + i] = name + "." + called.result_fields[i];
+    }
+    print_call_expression(instruction);
+    end_statement(first);
   }
 
   void declare_results(const ir::Instruction& instruction) {
@@ -228,22 +260,25 @@ class FunctionPrinter {
     declare_results(instruction);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
       const ir::ValueId value = instruction.first_result + i;
-      line(language_.variable(function_.type(value), uniform_[value], values_[value]) +
-           std::string(language_.no_value()) + ";" + comment(value));
+      language_.variable(indent(), function_.type(value), uniform_[value], values_[value]);
+      out_ += language_.no_value();
+      end_statement(value);
     }
     const Operand condition = operand(function_.operands_of(instruction)[0]);
     for (int side = 0; side < 2; ++side) {
-      line(language_.branch_head(condition.text, side == 1));
+      language_.branch_head(indent(), condition.text, side == 1);
+      out_ += "\n";
       const ir::BlockId block = instruction.blocks[side];
       print_block(block);
       indent_ += 2;
       for (uint32_t i = 0; i < instruction.result_count; ++i) {
         const ir::ValueId value = instruction.first_result + i;
-        line(language_.branch_value(condition, values_[value], operand(function_.blocks[block].yields[i]),
-                                    uniform_[value], side == 1));
+        language_.branch_value(indent(), condition, values_[value],
+                               operand(function_.blocks[block].yields[i]), uniform_[value], side == 1);
+        out_ += "\n";
       }
       indent_ -= 2;
-      line("}");
+      indent() += "}\n";
     }
   }
 
@@ -254,32 +289,36 @@ class FunctionPrinter {
     declare_results(instruction);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
       const ir::ValueId value = instruction.first_result + i;
-      line(language_.variable(function_.type(value), uniform_[value], values_[value]) + " = " +
-           language_.exactly(operand(operands[i + 1]), uniform_[value]) + ";" + comment(value));
+      language_.variable(indent(), function_.type(value), uniform_[value], values_[value]);
+      out_ += " = ";
+      language_.exactly(out_, operand(operands[i + 1]), uniform_[value]);
+      end_statement(value);
       values_[body.parameters[i + 1]] = values_[value];
     }
     const std::string index = names_.take("index");
     values_[body.parameters[0]] = index;
-    line("for (int " + index + " = 0; " + index + " < " + text(operands[0]) + "; ++" + index + ") {");
+    indent().append("for (int ").append(index).append(" = 0; ").append(index).append(" < ");
+    out_.append(text(operands[0])).append("; ++").append(index).append(") {\n");
     print_block(instruction.blocks[0]);
     indent_ += 2;
     // All at once: what one carried value becomes may be what another was.
     std::vector<std::string> next(instruction.result_count);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
       const ir::ValueId value = instruction.first_result + i;
-      next[i] = language_.exactly(operand(body.yields[i]), uniform_[value]);
+      language_.exactly(next[i], operand(body.yields[i]), uniform_[value]);
       if (instruction.result_count == 1) continue;
       const std::string name = names_.take(values_[value] + "_next");
-      line(language_.declared_type(function_.type(value), uniform_[value]) + " " + name + " = " + next[i] +
-           ";");
+      language_.declared_type(indent(), function_.type(value), uniform_[value]);
+      out_.append(" ").append(name).append(" = ").append(next[i]).append(";\n");
       next[i] = name;
     }
     for (uint32_t i = 0; i < instruction.result_count; ++i)
-      line(values_[instruction.first_result + i] + " = " + next[i] + ";");
+      indent().append(values_[instruction.first_result + i]).append(" = ").append(next[i]).append(";\n");
     indent_ -= 2;
-    line("}");
+    indent() += "}\n";
   }
 
+  std::string& out_;
   const ir::Module& module_;
   const ir::Function& function_;
   const FunctionText& text_;
@@ -292,16 +331,15 @@ class FunctionPrinter {
   std::vector<bool> used_;
   std::vector<bool> nested_;
   std::string group_;
-  std::string out_;
   size_t indent_ = 0;
 };
 
 }  // namespace
 
-std::string print_function(const ir::Module& module, const ir::Function& function, const FunctionText& text,
-                           const Language& language, const std::vector<FunctionText>& texts,
-                           const Names& globals) {
-  return FunctionPrinter(module, function, text, language, texts, globals).print();
+void print_function(std::string& out, const ir::Module& module, const ir::Function& function,
+                    const FunctionText& text, const Language& language,
+                    const std::vector<FunctionText>& texts, const Names& globals) {
+  FunctionPrinter(out, module, function, text, language, texts, globals).print();
 }
 
 }  // namespace isoshade::emit

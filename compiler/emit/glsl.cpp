@@ -17,12 +17,12 @@ std::string hexadecimal(uint32_t bits) {
 
 class Glsl final : public Language {
  public:
+  std::string_view type(ir::Type type, bool) const override { return ir::name(type); }
   // `precise` stands at every float, in every function: glslang drops it from locals that do not have their
   // own.
-  std::string declared_type(ir::Type type, bool) const override {
-    return (type.is_float() ? "precise " : "") + std::string(ir::name(type));
+  void declared_type(std::string& out, ir::Type type, bool) const override {
+    out.append(type.is_float() ? "precise " : "").append(ir::name(type));
   }
-  std::string type(ir::Type type, bool) const override { return std::string(ir::name(type)); }
   std::string literal(ir::Type type, uint32_t bits) const override {
     switch (type.scalar) {
       case ir::Scalar::boolean: return bits != 0 ? "true" : "false";
@@ -35,51 +35,53 @@ class Glsl final : public Language {
     return decimal(bits);
   }
   std::string_view op_text(const ir::OpInfo& row) const override { return row.glsl; }
-  std::string exactly(const Operand& operand, bool) const override { return std::string(operand.text); }
-  std::string argument(const Operand& operand, bool, std::string_view) const override {
-    return std::string(operand.text);
+  void exactly(std::string& out, const Operand& operand, bool) const override { out += operand.text; }
+  void argument(std::string& out, const Operand& operand, bool, std::string_view) const override {
+    out += operand.text;
   }
-  std::string load(std::string_view buffer, std::string_view index) const override {
-    return std::string(buffer) + "[" + std::string(index) + "]";
+  void load(std::string& out, std::string_view buffer, std::string_view index) const override {
+    out.append(buffer).append("[").append(index).append("]");
   }
-  std::string callee(const FunctionText& function, bool) const override { return function.name; }
+  void callee(std::string& out, const FunctionText& function, bool) const override { out += function.name; }
   bool passes_buffers() const override { return false; }
-  std::string result_type(const ir::Function& function, const FunctionText& text, bool) const override {
-    return text.result_type.empty() ? std::string(ir::name(function.results[0].type)) : text.result_type;
+  void result_record(std::string& out, std::string_view record, bool) const override { out += record; }
+  void parameter(std::string& out, ir::Type type, bool, std::string_view name, bool) const override {
+    out.append(ir::name(type)).append(" ").append(name);
   }
-  std::string parameter(ir::Type type, bool, std::string_view name, bool) const override {
-    return std::string(ir::name(type)) + " " + std::string(name);
+  void variable(std::string& out, ir::Type type, bool uniform, std::string_view name) const override {
+    declared_type(out, type, uniform);
+    out.append(" ").append(name);
   }
   std::string_view no_value() const override { return ""; }
-  std::string variable(ir::Type type, bool uniform, std::string_view name) const override {
-    return declared_type(type, uniform) + " " + std::string(name);
+  void branch_head(std::string& out, std::string_view condition, bool other) const override {
+    if (other)
+      out += "else {";
+    else
+      out.append("if (").append(condition).append(") {");
   }
-  std::string branch_head(std::string_view condition, bool other) const override {
-    return other ? "else {" : "if (" + std::string(condition) + ") {";
+  void branch_value(std::string& out, const Operand&, std::string_view variable, const Operand& value, bool,
+                    bool) const override {
+    out.append(variable).append(" = ").append(value.text).append(";");
   }
-  std::string branch_value(const Operand&, std::string_view variable, const Operand& value, bool,
-                           bool) const override {
-    return std::string(variable) + " = " + std::string(value.text) + ";";
+  void record(std::string& out, std::string_view name,
+              const std::vector<std::pair<ir::Type, std::string>>& fields, bool) const override {
+    out.append("struct ").append(name).append(" {\n");
+    for (const auto& [type, field] : fields)
+      out.append("  ").append(ir::name(type)).append(" ").append(field).append(";\n");
+    out += "};\n";
   }
-  std::string record(std::string_view name, const std::vector<std::pair<ir::Type, std::string>>& fields,
-                     bool) const override {
-    std::string text = "struct " + std::string(name) + " {\n";
-    for (const auto& [type, field] : fields) text += "  " + std::string(ir::name(type)) + " " + field + ";\n";
-    return text + "};\n";
+  void make_record(std::string& out, std::string_view name, bool,
+                   const std::vector<Operand>& fields) const override {
+    out.append(name).append("(");
+    for (size_t i = 0; i < fields.size(); ++i) out.append(i == 0 ? "" : ", ").append(fields[i].text);
+    out += ")";
   }
-  std::string make_record(std::string_view name, bool,
-                          const std::vector<std::string>& fields) const override {
-    std::string list;
-    for (const std::string& field : fields) list += (list.empty() ? "" : ", ") + field;
-    return std::string(name) + "(" + list + ")";
+  void function_head(std::string& out, const ir::Function& function,
+                     const FunctionText& text) const override {
+    out.append(text.result_type.empty() ? ir::name(function.results[0].type) : text.result_type);
+    out.append(" ").append(text.name).append("(");
   }
-  std::string function_head(const ir::Function& function, const FunctionText& text,
-                            const std::vector<std::string>& parameters) const override {
-    std::string list;
-    for (const std::string& parameter : parameters) list += (list.empty() ? "" : ", ") + parameter;
-    return result_type(function, text, false) + " " + text.name + "(" + list + ")";
-  }
-  std::string group_type(std::string_view record, bool) const override { return std::string(record); }
+  void group_type(std::string& out, std::string_view record, bool) const override { out += record; }
 };
 
 }  // namespace

@@ -24,13 +24,14 @@ bool loads_directly(const ir::Function& function) {
 }
 
 /// The structs of a function: one for its results if there are several, one for each parameter group.
-std::string records_of(const ir::Function& function, const FunctionText& text, const Language& language) {
-  std::string out;
+void print_records(std::string& out, const ir::Function& function, const FunctionText& text,
+                   const Language& language) {
   if (!text.result_type.empty()) {
     std::vector<std::pair<ir::Type, std::string>> fields;
     for (size_t i = 0; i < function.results.size(); ++i)
       fields.emplace_back(function.results[i].type, text.result_fields[i]);
-    out += language.record(text.result_type, fields, false) + "\n";
+    language.record(out, text.result_type, fields, false);
+    out += "\n";
   }
   for (size_t i = 0; i < function.parameters.size();) {
     const ir::Parameter& first = function.parameters[i];
@@ -42,9 +43,9 @@ std::string records_of(const ir::Function& function, const FunctionText& text, c
     std::vector<std::pair<ir::Type, std::string>> fields;
     for (; i < function.parameters.size() && function.parameters[i].group == first.group; ++i)
       fields.emplace_back(function.parameters[i].type, names.take(function.parameters[i].name));
-    out += language.record(record_name(first.group), fields, first.uniform) + "\n";
+    language.record(out, record_name(first.group), fields, first.uniform);
+    out += "\n";
   }
-  return out;
 }
 
 }  // namespace
@@ -79,8 +80,8 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
     const ir::Function& function = module.functions[index];
     if (!out.empty()) out += "\n";
     if (!function.document.empty()) out += "// " + comment_text(function.document) + "\n";
-    out += records_of(function, texts[index], language);
-    out += print_function(module, function, texts[index], language, texts, globals);
+    print_records(out, function, texts[index], language);
+    print_function(out, module, function, texts[index], language, texts, globals);
   }
   return out;
 }

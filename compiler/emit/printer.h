@@ -28,48 +28,49 @@ struct Operand {
   bool literal = false;
 };
 
-/// The spelling of one language.
+/// The spelling of one language. What is made of parts is appended to `out`.
 class Language {
  public:
   virtual ~Language() = default;
-  /// "precise float" or "const F".
-  virtual std::string declared_type(ir::Type type, bool uniform) const = 0;
   /// A type as it stands in a parameter list, a field or a construction: "float", "F", "vec3<F>".
-  virtual std::string type(ir::Type type, bool uniform) const = 0;
+  virtual std::string_view type(ir::Type type, bool uniform) const = 0;
+  /// "precise float" or "const F".
+  virtual void declared_type(std::string& out, ir::Type type, bool uniform) const = 0;
   virtual std::string literal(ir::Type type, uint32_t bits) const = 0;
   virtual std::string_view op_text(const ir::OpInfo& row) const = 0;
   /// An operand where its type must be exactly this: an arm of a select, a value that is assigned.
-  virtual std::string exactly(const Operand& operand, bool uniform) const = 0;
+  virtual void exactly(std::string& out, const Operand& operand, bool uniform) const = 0;
   /// An operand of a primitive op, in its text `pattern`.
-  virtual std::string argument(const Operand& operand, bool uniform, std::string_view pattern) const = 0;
-  virtual std::string load(std::string_view buffer, std::string_view index) const = 0;
+  virtual void argument(std::string& out, const Operand& operand, bool uniform,
+                        std::string_view pattern) const = 0;
+  virtual void load(std::string& out, std::string_view buffer, std::string_view index) const = 0;
   /// What stands before the argument list: name, and in C++ the lanes of the instance.
-  virtual std::string callee(const FunctionText& function, bool uniform) const = 0;
+  virtual void callee(std::string& out, const FunctionText& function, bool uniform) const = 0;
   /// Whether functions that load are given the buffers, as their first argument.
   virtual bool passes_buffers() const = 0;
-  /// The type of a call's or a function's result.
-  virtual std::string result_type(const ir::Function& function, const FunctionText& text,
-                                  bool uniform) const = 0;
-  virtual std::string parameter(ir::Type type, bool uniform, std::string_view name, bool used) const = 0;
+  /// The type of a call's result that is a record.
+  virtual void result_record(std::string& out, std::string_view record, bool uniform) const = 0;
+  virtual void parameter(std::string& out, ir::Type type, bool uniform, std::string_view name,
+                         bool used) const = 0;
   /// A variable that is assigned later, and its initialiser until then.
-  virtual std::string variable(ir::Type type, bool uniform, std::string_view name) const = 0;
+  virtual void variable(std::string& out, ir::Type type, bool uniform, std::string_view name) const = 0;
   virtual std::string_view no_value() const = 0;
   /// The head of a block that runs where the condition holds (or where it does not), and what is assigned at
   /// its end.
-  virtual std::string branch_head(std::string_view condition, bool other) const = 0;
-  virtual std::string branch_value(const Operand& condition, std::string_view variable, const Operand& value,
-                                   bool uniform, bool other) const = 0;
+  virtual void branch_head(std::string& out, std::string_view condition, bool other) const = 0;
+  virtual void branch_value(std::string& out, const Operand& condition, std::string_view variable,
+                            const Operand& value, bool uniform, bool other) const = 0;
   /// "struct Surface {" with fields, whole.
-  virtual std::string record(std::string_view name,
-                             const std::vector<std::pair<ir::Type, std::string>>& fields,
-                             bool uniform) const = 0;
-  /// A value of a record.
-  virtual std::string make_record(std::string_view name, bool uniform,
-                                  const std::vector<std::string>& fields) const = 0;
-  virtual std::string function_head(const ir::Function& function, const FunctionText& text,
-                                    const std::vector<std::string>& parameters) const = 0;
-  /// A parameter that is a whole group.
-  virtual std::string group_type(std::string_view record, bool uniform) const = 0;
+  virtual void record(std::string& out, std::string_view name,
+                      const std::vector<std::pair<ir::Type, std::string>>& fields, bool uniform) const = 0;
+  /// A value of a record whose fields are these.
+  virtual void make_record(std::string& out, std::string_view name, bool uniform,
+                           const std::vector<Operand>& fields) const = 0;
+  /// All before the first parameter; in C++ with the buffers, if the function loads.
+  virtual void function_head(std::string& out, const ir::Function& function,
+                             const FunctionText& text) const = 0;
+  /// The type of a parameter that is a whole group.
+  virtual void group_type(std::string& out, std::string_view record, bool uniform) const = 0;
 };
 
 /// Prints the functions that `entry` needs, callees first, and the records they use. Needs: every function
