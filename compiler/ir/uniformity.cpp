@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/ir/uniformity.h"
 
-#include <algorithm>
+#include <numeric>
+#include <span>
 
 namespace isoshade::ir {
 
@@ -10,7 +11,6 @@ namespace {
 // `to` varies if `from` does.
 struct Edge {
   ValueId from, to;
-  friend bool operator<(Edge a, Edge b) { return a.from < b.from; }
 };
 
 void collect_edges(const Function& f, BlockId block, std::vector<Edge>& edges) {
@@ -36,14 +36,33 @@ void collect_edges(const Function& f, BlockId block, std::vector<Edge>& edges) {
   }
 }
 
+// By value: what varies with it.
+class Dependents {
+ public:
+  explicit Dependents(const Function& f) : begin_(f.values.size() + 1) {
+    std::vector<Edge> edges;
+    edges.reserve(f.operands.size() + f.values.size());
+    collect_edges(f, 0, edges);
+    for (const Edge& edge : edges) ++begin_[edge.from];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    list_.resize(edges.size());
+    for (const Edge& edge : edges) list_[--begin_[edge.from]] = edge.to;  // from ends to begins
+  }
+  std::span<const ValueId> of(ValueId value) const {
+    return std::span(list_).subspan(begin_[value], begin_[value + 1] - begin_[value]);
+  }
+
+ private:
+  std::vector<uint32_t> begin_;
+  std::vector<ValueId> list_;
+};
+
 }  // namespace
 
 std::vector<bool> uniform_values(const Function& function) {
   std::vector<bool> uniform(function.values.size(), true);
   if (function.is_declaration()) return uniform;
-  std::vector<Edge> edges;
-  collect_edges(function, 0, edges);
-  std::sort(edges.begin(), edges.end());
+  const Dependents dependents(function);
   std::vector<ValueId> varying;
   const auto vary = [&](ValueId value) {
     if (!uniform[value]) return;
@@ -55,8 +74,7 @@ std::vector<bool> uniform_values(const Function& function) {
   while (!varying.empty()) {
     const ValueId value = varying.back();
     varying.pop_back();
-    const auto [first, last] = std::equal_range(edges.begin(), edges.end(), Edge{value, 0});
-    for (auto edge = first; edge != last; ++edge) vary(edge->to);
+    for (ValueId dependent : dependents.of(value)) vary(dependent);
   }
   return uniform;
 }

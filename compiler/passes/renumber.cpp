@@ -2,6 +2,7 @@
 #include "compiler/passes/renumber.h"
 
 #include <map>
+#include <string_view>
 #include <utility>
 
 namespace isoshade::passes {
@@ -18,8 +19,8 @@ struct Place {
   bool is_parameter = false;
 };
 
-std::vector<Place> find_places(const Function& f) {
-  std::vector<Place> places(f.values.size());
+void find_places(const Function& f, std::vector<Place>& places) {
+  places.assign(f.values.size(), {});
   const auto enter = [&](const auto& self, BlockId block, InstructionId owner) -> void {
     const std::vector<ValueId>& parameters = f.blocks[block].parameters;
     for (uint32_t k = 0; k < parameters.size(); ++k) places[parameters[k]] = {block, owner, k, true};
@@ -31,18 +32,18 @@ std::vector<Place> find_places(const Function& f) {
     }
   };
   enter(enter, 0, none);
-  return places;
 }
 
 // Which values are needed, each by itself: an unused result of a branch or loop does not keep its yields
 // alive.
 class Liveness {
  public:
-  Liveness(const Function& f, const std::vector<Place>& places)
-      : f_(f), places_(places), live_(f.values.size(), false) {
+  void find(const Function& f, const std::vector<Place>& places) {
+    f_ = &f;
+    live_.assign(f.values.size(), false);
     for (ValueId value : f.blocks[0].yields) mark(value);
     while (!work_.empty()) {
-      const Place& place = places_[work_.back()];
+      const Place& place = places[work_.back()];
       work_.pop_back();
       if (place.instruction != none) follow(place);
     }
@@ -51,7 +52,7 @@ class Liveness {
   /// Whether a branch or loop keeps its k-th result.
   bool keeps(const Instruction& made, uint32_t k) const {
     return live_[made.first_result + k] ||
-           (made.op == Opcode::loop && live_[f_.blocks[made.blocks[0]].parameters[k + 1]]);
+           (made.op == Opcode::loop && live_[f_->blocks[made.blocks[0]].parameters[k + 1]]);
   }
 
  private:
@@ -62,13 +63,13 @@ class Liveness {
   }
 
   void follow(const Place& place) {
-    const Instruction& made = f_.instructions[place.instruction];
-    const auto operands = f_.operands_of(made);
+    const Instruction& made = f_->instructions[place.instruction];
+    const auto operands = f_->operands_of(made);
     if (made.op == Opcode::branch) {
       mark(operands[0]);
-      for (BlockId side : made.blocks) mark(f_.blocks[side].yields[place.position]);
+      for (BlockId side : made.blocks) mark(f_->blocks[side].yields[place.position]);
     } else if (made.op == Opcode::loop) {
-      const Block& body = f_.blocks[made.blocks[0]];
+      const Block& body = f_->blocks[made.blocks[0]];
       mark(operands[0]);
       if (place.is_parameter && place.position == 0) return;
       const uint32_t k = place.is_parameter ? place.position - 1 : place.position;
@@ -80,39 +81,42 @@ class Liveness {
     }
   }
 
-  const Function& f_;
-  const std::vector<Place>& places_;
-  std::vector<bool> live_;
+  const Function* f_ = nullptr;
+  std::vector<char> live_;  ///< by value
   std::vector<ValueId> work_;
 };
 
+// What it needs while it works on a function is kept for the next one: most functions are small.
 class Renumberer {
  public:
-  explicit Renumberer(const Function& f)
-      : f_(f),
-        places_(find_places(f)),
-        live_(f, places_),
-        uses_(f.instructions.size(), none),
-        new_origins_(f.origins.size(), none),
-        order_(f.blocks.size()) {}
-
-  Function run() {
-    out_.name = f_.name;
-    out_.document = f_.document;
-    out_.library = f_.library;
-    out_.parameters = f_.parameters;
-    out_.results = f_.results;
-    values_.assign(f_.values.size(), none);
-    out_.values.reserve(f_.values.size());
-    out_.instructions.reserve(f_.instructions.size());
-    out_.operands.reserve(f_.operands.size());
-    use_lists_.reserve(f_.operands.size() + f_.instructions.size());
+  void run(Function& f) {
+    f_ = &f;
+    find_places(f, places_);
+    live_.find(f, places_);
+    use_lists_.clear();
+    uses_.assign(f.instructions.size(), none);
+    new_origins_.assign(f.origins.size(), none);
+    origins_.clear();
+    if (order_.size() < f.blocks.size()) order_.resize(f.blocks.size());
+    for (std::vector<InstructionId>& block : order_) block.clear();
+    seen_in_.assign(f.values.size(), none);
+    values_.assign(f.values.size(), none);
     arrange(0, none);
+    out_ = {};
+    out_.values.reserve(f.values.size());
+    out_.instructions.reserve(f.instructions.size());
+    out_.operands.reserve(f.operands.size());
+    out_.origins.reserve(f.origins.size());  // origins_ points into it
+    out_.blocks.reserve(f.blocks.size());
     out_.blocks.emplace_back();
-    for (ValueId parameter : f_.blocks[0].parameters)
+    for (ValueId parameter : f.blocks[0].parameters)
       out_.blocks[0].parameters.push_back(add_value(parameter));
     emit(0, 0, none);
-    return std::move(out_);
+    f.values = std::move(out_.values);
+    f.instructions = std::move(out_.instructions);
+    f.operands = std::move(out_.operands);
+    f.origins = std::move(out_.origins);
+    f.blocks = std::move(out_.blocks);
   }
 
  private:
@@ -120,37 +124,33 @@ class Renumberer {
   template <class Use>
   void for_live(InstructionId owner, std::span<const ValueId> list, uint32_t skip, Use use) const {
     for (uint32_t i = 0; i < list.size(); ++i)
-      if (owner == none || i < skip || live_.keeps(f_.instructions[owner], i - skip)) use(list[i]);
+      if (owner == none || i < skip || live_.keeps(f_->instructions[owner], i - skip)) use(list[i]);
   }
 
   // Puts the needed instructions of a block in order; returns what it uses from outside, in order of first
   // use.
   std::vector<ValueId> arrange(BlockId block, InstructionId owner) {
     std::vector<ValueId> outer;
-    struct Visit {
-      InstructionId instruction;
-      uint32_t next;  ///< in use_lists_
-    };
-    std::vector<Visit> path;
+    const size_t bottom = path_.size();
     const auto reach = [&](ValueId value) {
       const Place& place = places_[value];
       if (place.block != block) {
         outer.push_back(value);
       } else if (!place.is_parameter && uses_[place.instruction] == none) {
         open(place.instruction);
-        path.push_back({place.instruction, uses_[place.instruction]});
+        path_.push_back({place.instruction, uses_[place.instruction]});
       }
     };
-    for_live(owner, f_.blocks[block].yields, 0, [&](ValueId yield) {
+    for_live(owner, f_->blocks[block].yields, 0, [&](ValueId yield) {
       reach(yield);
-      while (!path.empty()) {
-        Visit& visit = path.back();
+      while (path_.size() > bottom) {
+        Visit& visit = path_.back();
         if (const ValueId use = use_lists_[visit.next]; use != none) {
           ++visit.next;
           reach(use);
         } else {
           order_[block].push_back(visit.instruction);
-          path.pop_back();
+          path_.pop_back();
         }
       }
     });
@@ -159,7 +159,7 @@ class Renumberer {
 
   // Lists what an instruction uses: its operands, then what its blocks use from outside; ends with `none`.
   void open(InstructionId id) {
-    const Instruction& made = f_.instructions[id];
+    const Instruction& made = f_->instructions[id];
     const bool is_loop = made.op == Opcode::loop;
     std::vector<ValueId> outer;
     for (BlockId inner : made.blocks) {
@@ -168,14 +168,13 @@ class Renumberer {
       outer.insert(outer.end(), more.begin(), more.end());
     }
     uses_[id] = static_cast<uint32_t>(use_lists_.size());
-    for_live(is_loop ? id : none, f_.operands_of(made), 1,
+    for_live(is_loop ? id : none, f_->operands_of(made), 1,
              [&](ValueId value) { use_lists_.push_back(value); });
     use_lists_.insert(use_lists_.end(), outer.begin(), outer.end());
     use_lists_.push_back(none);
   }
 
   std::vector<ValueId> unique(const std::vector<ValueId>& list, BlockId block) {
-    if (seen_in_.empty()) seen_in_.assign(f_.values.size(), none);
     std::vector<ValueId> once;
     for (ValueId value : list)
       if (std::exchange(seen_in_[value], block) != block) once.push_back(value);
@@ -183,28 +182,33 @@ class Renumberer {
   }
 
   ValueId add_value(ValueId old) {
-    out_.values.push_back(f_.values[old]);
+    out_.values.push_back(f_->values[old]);
     return values_[old] = static_cast<ValueId>(out_.values.size() - 1);
   }
 
   uint32_t origin(uint32_t old) {
     if (old == 0) return 0;
     if (new_origins_[old] != none) return new_origins_[old];
-    const Origin& origin = f_.origins[old];
-    const auto [it, added] = origins_.try_emplace({origin.node, origin.line}, out_.origins.size());
-    if (added) out_.origins.push_back(origin);
-    return new_origins_[old] = it->second;
+    Origin& from = f_->origins[old];
+    const auto known = origins_.find({from.line, from.node});
+    if (known != origins_.end()) return new_origins_[old] = known->second;
+    new_origins_[old] = static_cast<uint32_t>(out_.origins.size());
+    out_.origins.push_back(std::move(from));
+    origins_.emplace(std::pair(out_.origins.back().line, std::string_view(out_.origins.back().node)),
+                     new_origins_[old]);
+    return new_origins_[old];
   }
   void rename(ValueId value) { out_.values[value].names = origin(out_.values[value].names); }
 
   void emit(BlockId from, BlockId to, InstructionId owner) {
+    out_.blocks[to].instructions.reserve(order_[from].size());
     for (InstructionId id : order_[from]) {
-      const Instruction& made = f_.instructions[id];
+      const Instruction& made = f_->instructions[id];
       const bool is_loop = made.op == Opcode::loop;
       Instruction copy = made;
       copy.origin = origin(made.origin);
       copy.first_operand = static_cast<uint32_t>(out_.operands.size());
-      for_live(is_loop ? id : none, f_.operands_of(made), 1,
+      for_live(is_loop ? id : none, f_->operands_of(made), 1,
                [&](ValueId v) { out_.operands.push_back(values_[v]); });
       copy.operand_count = static_cast<uint32_t>(out_.operands.size()) - copy.first_operand;
       copy.first_result = static_cast<ValueId>(out_.values.size());
@@ -222,35 +226,42 @@ class Renumberer {
         const auto inner = static_cast<BlockId>(out_.blocks.size());
         out_.blocks.emplace_back();
         out_.instructions[copied].blocks[side] = inner;
-        for_live(id, f_.blocks[made.blocks[side]].parameters, 1, [&](ValueId parameter) {
+        for_live(id, f_->blocks[made.blocks[side]].parameters, 1, [&](ValueId parameter) {
           out_.blocks[inner].parameters.push_back(add_value(parameter));
           rename(values_[parameter]);
         });
         emit(made.blocks[side], inner, id);
       }
     }
-    for_live(owner, f_.blocks[from].yields, 0,
+    for_live(owner, f_->blocks[from].yields, 0,
              [&](ValueId v) { out_.blocks[to].yields.push_back(values_[v]); });
   }
 
-  const Function& f_;
-  const std::vector<Place> places_;
-  const Liveness live_;
+  struct Visit {
+    InstructionId instruction;
+    uint32_t next;  ///< in use_lists_
+  };
+
+  Function* f_ = nullptr;
+  std::vector<Place> places_;  ///< by value
+  Liveness live_;
+  std::vector<Visit> path_;
   std::vector<ValueId> use_lists_;     ///< what instructions use, one after another; each list ends with none
   std::vector<uint32_t> uses_;         ///< by instruction: where its list begins; none until it is reached
   std::vector<uint32_t> new_origins_;  ///< by old origin
   std::vector<std::vector<InstructionId>> order_;  ///< by block
   std::vector<BlockId> seen_in_;                   ///< by value: the last block found to use it from outside
   std::vector<ValueId> values_;                    ///< by old value: the new one
-  std::map<std::pair<std::string, uint32_t>, uint32_t> origins_;
+  std::map<std::pair<uint32_t, std::string_view>, uint32_t> origins_;  ///< by line and node: the new one
   Function out_;
 };
 
 }  // namespace
 
 void renumber(ir::Module& module) {
+  Renumberer renumberer;
   for (Function& function : module.functions)
-    if (!function.is_declaration()) function = Renumberer(function).run();
+    if (!function.is_declaration()) renumberer.run(function);
 }
 
 }  // namespace isoshade::passes
