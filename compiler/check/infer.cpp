@@ -19,6 +19,7 @@ using support::quote;
 std::string name_of(Type type) { return std::string(graph::type_name(type)); }
 
 std::string conversion_hint(const Link& link, Type to) {
+  if (link.node != Link::unresolved) return "convert it: " + name_of(to) + "(...)";
   std::string text = link.name;
   for (const std::string& selector : link.selectors) text += "." + selector;
   return R"(convert it by a node {"type": "convert", "in": ")" + text + R"(", "to": ")" + name_of(to) +
@@ -75,7 +76,18 @@ class NodeInference {
     const Given& at = given(port);
     return work_.report(id, at.port != nullptr ? at.port->place : source_.id_place, std::move(message));
   }
-  std::string of_node(std::string_view port) const { return quote(port) + " of " + quote(source_.type); }
+  /// `"in1" of "add"`; of what stands in an expression `the left side of "+"`.
+  std::string of_node(size_t i) {
+    const graph::Port* port = given(i).port;
+    const std::string_view name = node_.row != nullptr ? node_.row->ports[i].name
+                                                       : std::string_view(node_.callee->graph.inputs[i].name);
+    return (port != nullptr && !port->shown.empty() ? port->shown : quote(name)) + " of " +
+           quote(source_.label());
+  }
+  std::string of_other(size_t i) {
+    const graph::Port* port = given(i).port;
+    return port != nullptr && !port->shown.empty() ? port->shown : quote(node_.row->ports[i].name);
+  }
 
   // Rows of the node table.
   const nodes::Port& port(size_t i) const { return node_.row->ports[i]; }
@@ -100,6 +112,7 @@ class NodeInference {
   void check_condition();
   // Functions.
   void infer_call();
+  void settle_instance();
   void place_argument(size_t i);
   void check_range(size_t i, const graph::Input& input);
 
@@ -137,7 +150,7 @@ void NodeInference::read_text(size_t i) {
   } else if (literal(i)->kind == Literal::Kind::string) {
     text = literal(i)->string;
   } else {
-    report(Id::wrong_type, i, of_node(port(i).name) + " is a string, not " + described(*literal(i)));
+    report(Id::wrong_type, i, of_node(i) + " is a string, not " + described(*literal(i)));
     return;
   }
   if (is_type) return read_type_name(i, text);
@@ -147,8 +160,7 @@ void NodeInference::read_text(size_t i) {
     operand(i).index = choice;
     if (choices[choice] == text) return;
   }
-  support::Diagnostic& wrong =
-      report(Id::unknown_choice, i, of_node(port(i).name) + " cannot be " + quote(text));
+  support::Diagnostic& wrong = report(Id::unknown_choice, i, of_node(i) + " cannot be " + quote(text));
   suggest_nearest(work_.diagnostics, wrong, text, choices);
   wrong.note("it can be " + listed(choices));
 }
@@ -163,7 +175,7 @@ void NodeInference::read_type_name(size_t i, std::string_view text) {
   }
   support::Diagnostic& wrong =
       report(type ? Id::type_mismatch : Id::unknown_type, i,
-             type ? of_node(port(i).name) + " cannot be " + name_of(*type) : "no type " + quote(text));
+             type ? of_node(i) + " cannot be " + name_of(*type) : "no type " + quote(text));
   if (!type) suggest_nearest(work_.diagnostics, wrong, text, graph::all_type_names());
   wrong.note("it can be " + described(port(i).type.accepts));
 }
@@ -173,7 +185,7 @@ void NodeInference::read_component(size_t i) {
   if (given(i).port != nullptr) {
     const Literal& written = *literal(i);
     if (!graph::fits(Type::integer, written)) {
-      report(Id::wrong_type, i, of_node(port(i).name) + " is a whole number, not " + described(written));
+      report(Id::wrong_type, i, of_node(i) + " is a whole number, not " + described(written));
       return;
     }
     index = written.integer;
@@ -192,9 +204,9 @@ void NodeInference::join(size_t i, Type type) {
   const std::optional<Type> both = named && !converts(type, *at.type) ? std::nullopt : joined(*at.type, type);
   if (!both) {
     const std::string other =
-        named ? "it is to be " + name_of(*at.type) : quote(port(at.port).name) + " is " + name_of(*at.type);
+        named ? "it is to be " + name_of(*at.type) : of_other(at.port) + " is " + name_of(*at.type);
     support::Diagnostic& wrong =
-        report(Id::type_mismatch, i, of_node(port(i).name) + " is " + name_of(type) + ", but " + other);
+        report(Id::type_mismatch, i, of_node(i) + " is " + name_of(type) + ", but " + other);
     if (given(i).link != nullptr) wrong.suggest(conversion_hint(*given(i).link, *at.type));
   } else if (*both != *at.type) {
     at = {*both, i};
@@ -222,9 +234,8 @@ void NodeInference::settle_by_literals() {
     } else if (tuple && !(at.type && graph::float_count(*at.type) == static_cast<int>(numbers))) {
       join(i, vector_of(numbers));
     } else if (value->kind == Literal::Kind::numbers) {
-      report(
-          Id::wrong_type, i,
-          of_node(port(i).name) + " takes " + described(port(i).type.accepts) + ", not " + described(*value));
+      report(Id::wrong_type, i,
+             of_node(i) + " takes " + described(port(i).type.accepts) + ", not " + described(*value));
     }
   }
   for (size_t i = 0; i < node_.operand_count; ++i)
@@ -243,7 +254,7 @@ void NodeInference::check_settled() {
       continue;
     }
     report(Id::type_mismatch, at.port,
-           of_node(port(at.port).name) + " takes " + described(accepts) + ", not " + name_of(*at.type));
+           of_node(at.port) + " takes " + described(accepts) + ", not " + name_of(*at.type));
   }
 }
 
@@ -253,13 +264,11 @@ void NodeInference::place_value(size_t i) {
   if (given(i).link != nullptr) {
     to.needed = needed;
     if (converts(to.type, needed)) return;
-    report(Id::type_mismatch, i,
-           of_node(port(i).name) + " takes " + name_of(needed) + ", not " + name_of(to.type))
+    report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(needed) + ", not " + name_of(to.type))
         .suggest(conversion_hint(*given(i).link, needed));
   } else if (const Literal* value = literal(i)) {
     if (fits(*value, needed)) return place(work_.typed, *value, needed, to);
-    report(Id::wrong_type, i,
-           of_node(port(i).name) + " is " + name_of(needed) + ", not " + described(*value));
+    report(Id::wrong_type, i, of_node(i) + " is " + name_of(needed) + ", not " + described(*value));
   } else {
     place(work_.typed, std::get<float>(port(i).value), needed, to);
   }
@@ -277,7 +286,42 @@ void NodeInference::check_condition() {
     report(refusal->id, refusal->port, std::move(refusal->message));
 }
 
+/// What is linked to inputs of any type tells the type, else literals do.
+void NodeInference::settle_instance() {
+  Settled any;
+  const auto join_any = [&](size_t i, Type type) {
+    if (type == Type::integer) type = Type::floating;
+    const std::optional<Type> both = any.type ? joined(*any.type, type) : type;
+    if (!both || !nodes::float_types.has(type)) {
+      support::Diagnostic& wrong =
+          report(Id::type_mismatch, i,
+                 of_node(i) + (both ? " takes " + described(nodes::float_types) + ", not " + name_of(type)
+                                    : " is " + name_of(type) + ", but " +
+                                          quote(node_.callee->graph.inputs[any.port].name) + " is " +
+                                          name_of(*any.type)));
+      if (!both && given(i).link != nullptr) wrong.suggest(conversion_hint(*given(i).link, *any.type));
+    } else if (!any.type || *both != *any.type) {
+      any = {*both, i};
+    }
+  };
+  const std::vector<graph::Input>& inputs = node_.callee->graph.inputs;
+  for (size_t i = 0; i < inputs.size() && !broken(); ++i)
+    if (inputs[i].any && given(i).link != nullptr) join_any(i, operand(i).type);
+  for (size_t i = 0; i < inputs.size() && !broken(); ++i) {
+    const Literal* value = literal(i);
+    if (!inputs[i].any || value == nullptr || (any.type && fits(*value, *any.type))) continue;
+    const size_t numbers = value->numbers.size();
+    if (numbers >= 2 && numbers <= 4) join_any(i, vector_of(numbers));
+  }
+  if (broken() || !any.type || *any.type == Type::floating) return;
+  const support::Span where = work_.span(source_.type_place);
+  node_.callee = work_.library.instance(node_.callee, *any.type, where, work_.diagnostics);
+  if (node_.callee == nullptr) fail();
+}
+
 void NodeInference::infer_call() {
+  if (node_.callee->graph.is_generic()) settle_instance();
+  if (broken()) return;
   for (size_t i = 0; i < node_.operand_count; ++i) place_argument(i);
   node_.first_type = static_cast<uint32_t>(work_.typed.types.size());
   node_.output_count = static_cast<uint32_t>(node_.callee->outputs.size());
@@ -290,15 +334,13 @@ void NodeInference::place_argument(size_t i) {
   if (given(i).link != nullptr) {
     to.needed = input.type;
     if (converts(to.type, input.type)) return;
-    report(Id::type_mismatch, i,
-           of_node(input.name) + " takes " + name_of(input.type) + ", not " + name_of(to.type))
+    report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(input.type) + ", not " + name_of(to.type))
         .suggest(conversion_hint(*given(i).link, input.type));
     return;
   }
   const Literal& value = literal(i) != nullptr ? *literal(i) : *input.value;
   if (!fits(value, input.type)) {
-    report(Id::wrong_type, i,
-           of_node(input.name) + " is " + name_of(input.type) + ", not " + described(value));
+    report(Id::wrong_type, i, of_node(i) + " is " + name_of(input.type) + ", not " + described(value));
     return;
   }
   check_range(i, input);
@@ -312,8 +354,8 @@ void NodeInference::check_range(size_t i, const graph::Input& input) {
     const bool low = input.min && number < *input.min;
     if (!low && !(input.max && number > *input.max)) return true;
     report(Id::out_of_range, i,
-           of_node(input.name) + (low ? " is at least " + support::format_float(*input.min)
-                                      : " is at most " + support::format_float(*input.max)))
+           of_node(i) + (low ? " is at least " + support::format_float(*input.min)
+                             : " is at most " + support::format_float(*input.max)))
         .note(node_.callee->graph.span(input.place), "as declared here");
     return false;
   };

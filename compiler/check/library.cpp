@@ -106,8 +106,9 @@ support::Source Library::read(const Location& location, const Span& where, Diagn
   return found != memory_.end() ? found->second : graph::read_source(location.path, diagnostics, where);
 }
 
-std::shared_ptr<const TypedGraph> Library::function(std::string_view reference, const Scope& from,
+std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, const Scope& from,
                                                     const Span& where, Diagnostics& diagnostics) {
+  const std::string_view reference = referred.name;
   const bool is_path = reference.ends_with(extension) && reference.size() <= longest_path &&
                        reference.find('\0') == std::string_view::npos;
   const Location location = is_path || is_library_name(reference) ? locate(reference, from) : Location{};
@@ -122,7 +123,7 @@ std::shared_ptr<const TypedGraph> Library::function(std::string_view reference, 
     if (diagnostics.full()) return nullptr;
     const std::vector<std::string> functions = names();
     std::vector<std::string_view> candidates(functions.begin(), functions.end());
-    for (const nodes::Row& row : nodes::table()) candidates.push_back(row.name);
+    for (const nodes::Row& row : referred.rows) candidates.push_back(row.name);
     suggest_nearest(diagnostics, report, reference, candidates);
     return nullptr;
   }
@@ -170,7 +171,31 @@ std::shared_ptr<const TypedGraph> Library::load(const Location& location, const 
                            std::string(graph::kind_name(graph->kind)));
     return nullptr;
   }
-  return check_in(std::move(*graph), scope, *this, diagnostics);
+  const bool generic = graph->is_generic();
+  std::shared_ptr<const TypedGraph> typed = check_in(std::move(*graph), scope, *this, diagnostics);
+  scope.user = nullptr;  // it lives no longer than this call
+  if (typed != nullptr && generic) generics_[typed.get()] = {scope, {{Type::floating, typed}}};
+  return typed;
+}
+
+std::shared_ptr<const TypedGraph> Library::instance(const std::shared_ptr<const TypedGraph>& function,
+                                                    Type type, const Span& where, Diagnostics& diagnostics) {
+  Generic& generic = generics_.at(function.get());
+  if (const auto found = generic.instances.find(type); found != generic.instances.end()) {
+    if (found->second == nullptr && !diagnostics.has_errors())
+      diagnostics.report(Id::broken_function, where, quote(function->document) + " has errors");
+    return found->second;
+  }
+  graph::Graph graph = function->graph;
+  const std::string type_name(graph::type_name(type));
+  graph.name += "_" + type_name;
+  for (graph::Input& input : graph.inputs)
+    if (input.any) input.type = type;
+  const size_t reports_before = diagnostics.all().size();
+  auto typed = check_in(std::move(graph), generic.scope, *this, diagnostics);
+  if (typed == nullptr && diagnostics.all().size() > reports_before)
+    diagnostics.all()[reports_before].note(where, "in the function as it is used here, with " + type_name);
+  return generic.instances[type] = std::move(typed);
 }
 
 std::vector<std::string> Library::names() const {

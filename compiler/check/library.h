@@ -23,6 +23,12 @@ struct Scope {
   int depth = 0;
 };
 
+/// What a node's type says: a library name, or a path relative to the document that ends in ".json".
+struct Reference {
+  std::string_view name;
+  const std::vector<nodes::Row>& rows;  ///< among which the name was looked for before
+};
+
 class Library {
  public:
   /// `root`: the folder of the shipped functions; "brdf/ggx_d" is brdf/ggx_d.json in it. Empty: there are
@@ -36,9 +42,13 @@ class Library {
   /// make a new one after files changed.
   Scope scope_of(const std::string& path) const;
 
-  /// The function that a node's type refers to: a library name, or a path relative to the document that
-  /// ends in ".json". Reports why there is none.
-  std::shared_ptr<const TypedGraph> function(std::string_view reference, const Scope& from,
+  /// The function that is referred to; where its inputs are of any type, with floats. Reports why there is
+  /// none.
+  std::shared_ptr<const TypedGraph> function(const Reference& reference, const Scope& from,
+                                             const support::Span& where, support::Diagnostics& diagnostics);
+
+  /// A function with inputs of any type, with these of type `type`. Reports what in it has no such type.
+  std::shared_ptr<const TypedGraph> instance(const std::shared_ptr<const TypedGraph>& function, Type type,
                                              const support::Span& where, support::Diagnostics& diagnostics);
 
   /// All library names, sorted.
@@ -49,6 +59,10 @@ class Library {
     std::string path;  ///< to read and to show
     std::string canonical;
     bool in_library = false;
+  };
+  struct Generic {
+    Scope scope;  ///< its own, without a user
+    std::map<Type, std::shared_ptr<const TypedGraph>> instances;
   };
   Location locate(std::string_view reference, const Scope& from) const;
   bool exists(const Location& location) const;
@@ -62,6 +76,8 @@ class Library {
   std::map<std::string, support::Source> memory_;  ///< by canonical path
   /// By canonical path and home, which decides what the document may refer to; null: it has errors.
   std::map<std::pair<std::string, std::string>, std::shared_ptr<const TypedGraph>> functions_;
+  /// Of functions with inputs of any type; these are float in what functions_ has.
+  std::map<const TypedGraph*, Generic> generics_;
 };
 
 }  // namespace isoshade::check

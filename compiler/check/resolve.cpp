@@ -21,6 +21,11 @@ std::string_view input_word(const graph::Graph& graph) {
 /// Fills in what the link names; its selectors wait for the types.
 bool resolve_link(Work& work, const Link& link, Operand& operand) {
   const graph::Graph& graph = work.graph();
+  if (link.node != Link::unresolved) {
+    operand.from = Operand::From::node;
+    operand.index = link.node;
+    return true;
+  }
   const auto found = graph.names.find(link.name);
   if (found != graph.names.end()) {
     operand.from = found->second.is_input ? Operand::From::input : Operand::From::node;
@@ -55,7 +60,7 @@ class NodeResolver {
       : work_(work), node_(work.typed.nodes[index]), source_(work.graph().nodes[index]), index_(index) {}
 
   void resolve() {
-    node_.row = nodes::find(source_.type);
+    node_.row = is_call() ? nodes::find_function(source_.type) : nodes::find(source_.type);
     if (node_.row == nullptr) {
       node_.callee = function();
       if (node_.callee == nullptr || !passes_few_numbers()) return fail();
@@ -64,7 +69,7 @@ class NodeResolver {
         work_.graph().kind == DocumentKind::function) {
       work_
           .report(Id::misplaced_node, source_.type_place,
-                  "a function document cannot have the node " + quote(source_.type))
+                  "a function document cannot have the node " + quote(source_.label()))
           .suggest("make it an input of the function");
       fail();
     }
@@ -77,6 +82,7 @@ class NodeResolver {
 
  private:
   void fail() { work_.broken[index_] = true; }
+  bool is_call() const { return source_.origin == graph::Node::Origin::call; }
   size_t port_count() const {
     return node_.row != nullptr ? node_.row->ports.size() : node_.callee->graph.inputs.size();
   }
@@ -89,8 +95,8 @@ class NodeResolver {
   std::shared_ptr<const TypedGraph> function() {
     std::shared_ptr<const TypedGraph>& found = work_.functions[source_.type];
     if (found == nullptr && !work_.diagnostics.full()) {
-      found = work_.library.function(source_.type, work_.scope, work_.span(source_.type_place),
-                                     work_.diagnostics);
+      found = work_.library.function({source_.type, is_call() ? nodes::function_table() : nodes::table()},
+                                     work_.scope, work_.span(source_.type_place), work_.diagnostics);
     }
     return found;
   }
@@ -117,6 +123,10 @@ class NodeResolver {
   }
 
   std::optional<uint32_t> find_port(const std::string& name) const {
+    if (is_call()) {
+      const auto position = static_cast<uint32_t>(std::stoul(name)) - 1;
+      return position < node_.operand_count ? std::optional(position) : std::nullopt;
+    }
     if (node_.row == nullptr) {
       const auto found = node_.callee->graph.names.find(name);
       if (found == node_.callee->graph.names.end() || !found->second.is_input) return std::nullopt;
@@ -137,7 +147,7 @@ class NodeResolver {
     if (node_.row != nullptr && node_.row->ports[*found].type.kind != PortType::Kind::value) {
       if (std::holds_alternative<Literal>(port.value)) return;  // infer looks at it
       work_.report(Id::not_literal, port.place,
-                   quote(port.name) + " of " + quote(source_.type) + " is written in place, not linked");
+                   quote(port.name) + " of " + quote(source_.label()) + " is written in place, not linked");
       return fail();
     }
     given.link = link_in(port);
@@ -160,8 +170,13 @@ class NodeResolver {
 
   void report_unknown(const graph::Port& port) {
     fail();
+    if (is_call()) {
+      work_.report(Id::unknown_port, port.place,
+                   quote(source_.label()) + " takes " + arguments() + ", not more");
+      return;
+    }
     support::Diagnostic& report = work_.report(Id::unknown_port, port.name_place,
-                                               quote(source_.type) + " has no port " + quote(port.name));
+                                               quote(source_.label()) + " has no port " + quote(port.name));
     if (work_.diagnostics.full()) return;
     std::vector<std::string_view> names;
     for (size_t i = 0; i < node_.operand_count; ++i) names.push_back(port_name(i));
@@ -174,11 +189,22 @@ class NodeResolver {
                                                : !node_.callee->graph.inputs[i].value.has_value();
     if (!required) return;
     fail();
+    if (is_call()) {
+      work_.report(
+          Id::missing_port, source_.id_place,
+          quote(source_.label()) + " takes " + arguments() + ": " + quote(port_name(i)) + " is missing");
+      return;
+    }
     support::Diagnostic& report = work_.report(
         Id::missing_port, source_.id_place,
         "node " + quote(source_.id) + " (" + quote(source_.type) + ") needs " + quote(port_name(i)));
     if (node_.row != nullptr)
       report.note(std::string(port_name(i)) + ": " + std::string(node_.row->ports[i].doc));
+  }
+
+  /// "3 arguments"
+  std::string arguments() const {
+    return std::to_string(port_count()) + (port_count() == 1 ? " argument" : " arguments");
   }
 
   Work& work_;

@@ -94,6 +94,9 @@ void check_size(Work& work) {
 void warn_unused(Work& work) {
   const TypedGraph& typed = work.typed;
   std::vector<bool> used(typed.nodes.size());
+  // Of an expression only the node that the author wrote is named.
+  for (const graph::Expression& expression : work.graph().expressions)
+    std::fill(used.begin() + expression.first, used.begin() + expression.end, true);
   const auto use = [&](const Operand& operand) {
     if (operand.from == From::node) used[operand.index] = true;
   };
@@ -113,7 +116,7 @@ void check_usage(Work& work) {
   mark_per_light(work.typed);
   check_lights(work);
   check_size(work);
-  warn_unused(work);
+  if (!work.is_instance()) warn_unused(work);
 }
 
 }  // namespace isoshade::check

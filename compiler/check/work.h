@@ -2,6 +2,7 @@
 // One document on its way through checking, and the steps in the order that check.cpp takes them.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <string>
 #include <string_view>
@@ -34,6 +35,11 @@ struct Work {
   std::vector<bool> broken = {};
 
   const graph::Graph& graph() const { return typed.graph; }
+  /// Whether a document with inputs of any type is checked again, with another type than float.
+  bool is_instance() const {
+    return std::ranges::any_of(
+        graph().inputs, [](const graph::Input& input) { return input.any && input.type != Type::floating; });
+  }
   support::Span span(graph::Place place) const { return graph().span(place); }
   support::Diagnostic& report(support::Id id, graph::Place place, std::string message) {
     return diagnostics.report(id, span(place), std::move(message));

@@ -2,6 +2,7 @@
 // The graph of one document as its author wrote it: shape and names are checked, links and types are not.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,6 +39,8 @@ enum class Type : uint8_t {
 };
 
 std::string_view type_name(Type type);
+/// How a document writes the type of inputs that each call settles.
+inline constexpr std::string_view any_type_name = "any";
 std::optional<Type> find_type(std::string_view name);
 std::vector<std::string_view> all_type_names();
 /// Floats in a value of the type: 1, 2, 3, 4, 9 or 16; 0 if it is not made of floats.
@@ -66,9 +69,12 @@ struct Literal {
 
 /// "node", "node.port", "node.xyz" or "node.port.xyz", taken apart at the dots but not resolved.
 struct Link {
+  static constexpr uint32_t unresolved = ~0u;
+
   std::string name;                    ///< of a node, input or parameter
   std::vector<std::string> selectors;  ///< at most two: an output port, a swizzle, or both in this order
   Place place;                         ///< of the string
+  uint32_t node = unresolved;          ///< or inside of an expression, the node itself
 };
 
 /// What stands in a port. A string is a Literal here: in a port of type string or filename it is the text
@@ -77,18 +83,38 @@ struct Port {
   std::string name;
   std::variant<Literal, Link> value;
   Place name_place, place;
+  std::string shown = {};  ///< inside of an expression: "the left side"
 };
 
 struct Node {
+  /// What an author wrote for it.
+  enum class Origin : uint8_t {
+    node,       ///< a node
+    operation,  ///< an operator, a constructor or a name in an expression
+    call        ///< name(...) in an expression: its ports are called by their position, from "1"
+  };
   std::string id, type, doc;  ///< type: of the node library, or a function document's name or path
   std::vector<Port> ports;    ///< in the order written
   Place id_place, type_place, place;
+  Origin origin = Origin::node;
+  std::string shown = {};  ///< inside of an expression: "*"; else its type tells
+
+  /// How messages name what it is.
+  const std::string& label() const { return origin == Origin::node ? type : shown; }
+};
+
+/// The nodes that the code of one node stands for: nodes[root] and those of [first, end).
+struct Expression {
+  uint32_t root = 0, first = 0, end = 0;
+  std::string code;
+  std::vector<Port> ports;
 };
 
 /// An input of a function, or a parameter of an effect or post.
 struct Input {
   std::string name, doc;
   Type type = Type::floating;
+  bool any = false;               ///< of a function: float, a vector or a colour, as the call has it
   std::optional<Literal> value;   ///< always there in a parameter; fits the type and the range
   std::optional<float> min, max;  ///< of each component
   Place name_place, place, value_place;
@@ -123,6 +149,8 @@ struct Graph {
   std::vector<Node> nodes;
   std::vector<Output> outputs;  ///< of a function or post, at least one
   std::vector<Pass> passes;     ///< of an effect, at least one
+  std::vector<Expression> expressions = {};
+  uint32_t expression_nodes = 0;  ///< that expressions stand for, beside the nodes that were written
 
   /// Inputs and nodes share their names.
   struct Name {
@@ -132,6 +160,8 @@ struct Graph {
   std::unordered_map<std::string, Name> names;
 
   support::Span span(Place place) const { return {source, place.begin, place.end}; }
+  /// Whether it has inputs of any type: these are all of one type, which each call settles.
+  bool is_generic() const { return std::ranges::any_of(inputs, &Input::any); }
 };
 
 /// Reports everything wrong with the shape of a function, effect or post document.

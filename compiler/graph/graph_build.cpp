@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compiler/graph/expression.h"
 #include "compiler/graph/graph.h"
 #include "compiler/graph/reader.h"
 #include "compiler/support/parse_number.h"
@@ -41,6 +42,7 @@ class GraphBuilder {
   void check_value(const Input& input, const Json& json);
   void read_nodes(const Json& nodes);
   void read_node(const Member& member);
+  void read_code(const Member& member, const Json* code);
   void read_outputs(const Json& outputs);
   void read_passes(const Json& passes);
   void read_pass(const Json& json);
@@ -164,7 +166,8 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
   } else if (type != nullptr) {
     const std::optional<Type> found = find_type(type->string);
     input.type = found.value_or(Type::floating);
-    if (!found) {
+    input.any = !is_parameter && type->string == any_type_name;
+    if (!found && !input.any) {
       diagnostics_.report_unknown(Id::unknown_type, document_.span(*type), "no type " + quote(type->string),
                                   type->string, all_type_names());
     }
@@ -209,6 +212,9 @@ void GraphBuilder::read_node(const Member& member) {
   }
   // Not by ObjectReader: all other keys are ports, and which there are depends on the node's type.
   const Json* type = nullptr;
+  const Json* code = nullptr;
+  const Json* written_type = json.find("type");
+  const bool is_expression = written_type != nullptr && written_type->string == expression_type;
   node.ports.reserve(json.members.size());
   for (const Member& entry : json.members) {
     const Json& value = entry.value;
@@ -221,6 +227,10 @@ void GraphBuilder::read_node(const Member& member) {
       }
       (entry.key == "type" ? node.type : node.doc) = value.string;
       if (entry.key == "type") type = &value;
+      continue;
+    }
+    if (is_expression && entry.key == "code") {
+      code = &value;
       continue;
     }
     check_id(entry.key, key_place(entry), "a port");
@@ -239,6 +249,23 @@ void GraphBuilder::read_node(const Member& member) {
     node.type_place = place_of(*type);
   }
   graph_.nodes.push_back(std::move(node));
+  if (is_expression) read_code(member, code);
+}
+
+void GraphBuilder::read_code(const Member& member, const Json* code) {
+  if (code == nullptr) {
+    diagnostics_
+        .report(Id::missing_key, {document_.source, member.value.begin, member.value.begin + 1},
+                "expression " + quote(member.key) + " needs the key \"code\"")
+        .suggest("write \"code\": \"a * b\" and what a and b are as keys beside it");
+  } else if (code->kind != Json::Kind::string) {
+    diagnostics_.report(
+        Id::wrong_type, document_.span(*code),
+        "\"code\" of node " + quote(member.key) + " is a string, not " + std::string(kind_name(code->kind)));
+  } else {
+    const auto root = static_cast<uint32_t>(graph_.nodes.size() - 1);
+    expand_expression(graph_, root, document_, *code, diagnostics_);
+  }
 }
 
 void GraphBuilder::read_nodes(const Json& nodes) {

@@ -12,6 +12,11 @@ const std::vector<Row>& table();
 /// The row of a name, or null.
 const Row* find(std::string_view name);
 
+/// What stands in expressions: operators by their text, the rows of functions.def, abs, floor and sqrt; sorted
+/// by name.
+const std::vector<Row>& function_table();
+const Row* find_function(std::string_view name);
+
 // The groups, one file each.
 std::vector<Row> structure_rows();
 std::vector<Row> math_rows();
