@@ -191,7 +191,7 @@ class NodeResolver {
     fail();
     if (is_call()) {
       work_.report(
-          Id::missing_port, source_.id_place,
+          Id::missing_port, source_.type_place,
           quote(source_.label()) + " takes " + arguments() + ": " + quote(port_name(i)) + " is missing");
       return;
     }
