@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/function_printer.h"
 
+#include <algorithm>
+
 #include "compiler/ir/uniformity.h"
 #include "compiler/support/check.h"
 
@@ -195,17 +197,19 @@ class FunctionPrinter {
       begin_definition(instruction);
     }
     for (size_t i = statement ? 1 : 0; i < pattern.size(); ++i) {
-      if (pattern[i] != '$') {
-        out_ += pattern[i];
-      } else if (pattern[++i] == '=') {
+      const size_t hole = std::min(pattern.find('$', i), pattern.size());
+      out_ += pattern.substr(i, hole - i);
+      i = hole + 1;
+      if (i >= pattern.size()) break;
+      if (pattern[i] == '=') {
         out_ += values_[result];
-      } else {
-        const ir::ValueId value = operands[static_cast<size_t>(pattern[i] - '0')];
-        if (instruction.op == ir::Opcode::select && pattern[i] == '0')
-          out_ += text(value);
-        else
-          language_.argument(out_, operand(value), uniform_[result], pattern);
+        continue;
       }
+      const ir::ValueId value = operands[static_cast<size_t>(pattern[i] - '0')];
+      if (instruction.op == ir::Opcode::select && pattern[i] == '0')
+        out_ += text(value);
+      else
+        language_.argument(out_, operand(value), uniform_[result], pattern);
     }
     statement ? end_line(result) : end_statement(result);
   }

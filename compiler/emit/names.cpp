@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/emit/names.h"
-
 #include <unordered_set>
+
+#include "compiler/emit/names.h"
 
 namespace isoshade::emit {
 
@@ -91,20 +91,19 @@ std::string Names::take_function(std::string_view wanted) { return take(wanted, 
 
 std::string Names::take(std::string_view wanted, bool function) {
   std::string name = clean(wanted);
-  const auto [entry, is_new] = used_.try_emplace(name, 0);
+  const auto [index, is_new] = used_.add(name);
   if (is_new) {
     const bool forbidden = reserved.contains(name) || (function && glsl_functions.contains(name));
     if (!forbidden && (outer_ == nullptr || !outer_->taken(name))) return name;
     if (forbidden && !taken(name + "_")) {
-      used_.emplace(name + "_", 0);
+      used_.add(name + "_");
       return name + "_";
     }
   }
-  // References into a map stay good while it grows.
-  int& number = entry->second;
   std::string numbered;
-  do { numbered = name + "_" + std::to_string(++number); } while (taken(numbered));
-  used_.emplace(numbered, 0);
+  do {
+    numbered = name + "_" + std::to_string(++used_.number(index));
+  } while ((outer_ != nullptr && outer_->taken(numbered)) || !used_.add(numbered).is_new);
   return numbered;
 }
 

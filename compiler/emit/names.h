@@ -5,7 +5,8 @@
 
 #include <string>
 #include <string_view>
-#include <unordered_map>
+
+#include "compiler/emit/name_table.h"
 
 namespace isoshade::emit {
 
@@ -14,7 +15,7 @@ class Names {
  public:
   Names() = default;
   /// A scope inside another: names of the outer one are not taken again.
-  explicit Names(const Names* outer, size_t expected = 0) : outer_(outer) { used_.reserve(expected); }
+  explicit Names(const Names* outer, size_t expected = 0) : outer_(outer), used_(expected) {}
 
   /// `wanted`, or the nearest name that is free: letters, digits and single underscores, no keyword or name
   /// of either language or of the code around it, not beginning with a digit, "gl_" or (unless ours) "iso_".
@@ -22,14 +23,14 @@ class Names {
   /// The same for a function, which must not redefine one of GLSL's own.
   std::string take_function(std::string_view wanted);
   /// Keeps a name of our own from being taken.
-  void hold(std::string name) { used_.emplace(std::move(name), 0); }
+  void hold(std::string_view name) { used_.add(name); }
 
  private:
   std::string take(std::string_view wanted, bool function);
   bool taken(const std::string& name) const;
 
   const Names* outer_ = nullptr;
-  std::unordered_map<std::string, int> used_;  ///< name -> the last number tried behind it
+  NameTable used_;  ///< with the last number tried behind each
 };
 
 /// Text made harmless for the rest of a line behind `//`: printable ASCII, no backslash, `??` or `*/`; at
