@@ -46,12 +46,16 @@ Result call(std::string_view row, const T&... arguments) {
 #define CALLS_f_v(name) template <int N> CALL_1(Float, name, V<N>)
 #define CALLS_f_vv(name) template <int N> CALL_2(Float, name, V<N>, V<N>)
 #define CALLS_f_v3(name) inline CALL_1(Float, name, V<3>)
+#define CALLS_v2_v2f(name) inline CALL_2(V<2>, name, V<2>, Float)
+#define CALLS_v2_v2v2v2fv2(name) inline CALL_5(V<2>, name, V<2>, V<2>, V<2>, Float, V<2>)
+#define CALLS_v3_v3(name) inline CALL_1(V<3>, name, V<3>)
 #define CALLS_v3_v3v3(name) inline CALL_2(V<3>, name, V<3>, V<3>)
 #define CALLS_v_mv(name) template <int N> CALL_2(V<N>, name, M<N>, V<N>)
 #define CALLS_m_mm(name) template <int N> CALL_2(M<N>, name, M<N>, M<N>)
 #define CALLS_m_m(name) template <int N> CALL_1(M<N>, name, M<N>)
 #define CALLS_f_m(name) template <int N> CALL_1(Float, name, M<N>)
 #define CALLS_m3_m(name) template <int N> CALL_1(M<3>, name, M<N>)
+#define CALLS_v3_m4v3(name) inline CALL_2(V<3>, name, M<4>, V<3>)
 // clang-format on
 
 #define FUNCTION(name, signature, ulp, domain, reference, unit) CALLS_##signature(name)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "compiler/functions/comparison.h"
+#include "compiler/functions/rounding.h"
 
 namespace isoshade::functions {
 
@@ -62,6 +63,44 @@ F srgb_decode(F x) {
 template <class F>
 F luminance(vec<F, 3> color) {
   return (color[0] * 0.2126f + color[1] * 0.7152f) + color[2] * 0.0722f;
+}
+
+/// Hue (a whole turn is 1), saturation and value to red, green and blue.
+/// Domain: all floats. The hue wraps; saturation and value are not clamped. An infinite or NaN hue is no colour's:
+/// it gives value * (1 - saturation) in all three.
+/// Error: 5 ULP of |value|, for a saturation in [0, 1].
+/// Source: Smith, "Color gamut transform pairs", 1978, written as three ramps of the hue.
+template <class F>
+vec<F, 3> hsv_to_rgb(vec<F, 3> hsv) {
+  const F sixths = fract(hsv[0]) * 6.0f;
+  const F red = saturate(abs(sixths - 3.0f) - 1.0f);
+  const F green = saturate(2.0f - abs(sixths - 2.0f));
+  const F blue = saturate(2.0f - abs(sixths - 4.0f));
+  const auto mixed = [&](F hue) { return (1.0f - hsv[1] * (1.0f - hue)) * hsv[2]; };
+  return {mixed(red), mixed(green), mixed(blue)};
+}
+
+/// Red, green and blue to hue (in [0, 1]; a whole turn is 1), saturation and value.
+/// Domain: all floats whose differences do not overflow. Greys have hue and saturation 0, and so have colours
+/// without a positive component.
+/// Error: 3 ULP.
+/// Source: Smith, "Color gamut transform pairs", 1978.
+template <class F>
+vec<F, 3> rgb_to_hsv(vec<F, 3> rgb) {
+  const F red = rgb[0];
+  const F green = rgb[1];
+  const F blue = rgb[2];
+  const F value = max(max(red, green), blue);
+  const F chroma = value - min(min(red, green), blue);
+  const auto colourful = (chroma > 0.0f) & (value > 0.0f);
+  const auto reddest = red >= value;
+  const auto greenest = green >= value;
+  const F difference = select(reddest, green - blue, select(greenest, blue - red, red - green));
+  const F start = select(reddest, F(0.0f), select(greenest, F(2.0f), F(4.0f)));
+  const F sixths = start + difference / select(colourful, chroma, F(1.0f));
+  const F hue = select(sixths < 0.0f, sixths + 6.0f, sixths) * 0.166666672f;
+  const F saturation = chroma / select(colourful, value, F(1.0f));
+  return {select(colourful, hue, F(0.0f)), select(colourful, saturation, F(0.0f)), value};
 }
 
 }  // namespace isoshade::functions

@@ -50,20 +50,103 @@ mat<F, N> transpose(mat<F, N> m) {
   return make_columns<N>([&](int c) { return make_elements<N>([&](int r) { return m[r][c]; }); });
 }
 
+/// The first three rows of a column.
+template <class F, int N>
+vec<F, 3> upper_three(vec<F, N> column) {
+  return {column[0], column[1], column[2]};
+}
+
+/// m * (v, 0) without its last component: a direction or a difference of points.
+/// Domain: all floats; sums of products that overflow give infinities or NaN. The matrix's last row is not looked at.
+/// Error: 2 ULP of the sum of the products' magnitudes, in each component.
+template <class F>
+vec<F, 3> transform_vector(mat<F, 4> m, vec<F, 3> v) {
+  return transform(mat<F, 3>{{upper_three(m[0]), upper_three(m[1]), upper_three(m[2])}}, v);
+}
+
+/// m * (p, 1) without its last component: a point moved by an affine matrix.
+/// Domain: all floats; sums of products that overflow give infinities or NaN. The matrix's last row is not looked at.
+/// Error: 2.5 ULP of the sum of the terms' magnitudes, in each component.
+template <class F>
+vec<F, 3> transform_point(mat<F, 4> m, vec<F, 3> p) {
+  return transform_vector(m, p) + upper_three(m[3]);
+}
+
 /// The matrix that takes normals where `m` takes points: a positive multiple of the inverse transpose of its
 /// upper left 3 x 3, by cofactors and without a division. Normalise what it gives.
 /// Domain: all floats; products that overflow give infinities or NaN. A singular matrix gives its cofactors.
 /// Error: 1.5 ULP of the sum of the two products' magnitudes, in each element.
 template <class F, int N>
 mat<F, 3> normal_matrix(mat<F, N> m) {
-  const auto upper = [&](int c) { return vec<F, 3>{m[c][0], m[c][1], m[c][2]}; };
-  const vec<F, 3> x = upper(0);
-  const vec<F, 3> y = upper(1);
-  const vec<F, 3> z = upper(2);
+  const vec<F, 3> x = upper_three(m[0]);
+  const vec<F, 3> y = upper_three(m[1]);
+  const vec<F, 3> z = upper_three(m[2]);
   const vec<F, 3> first = cross(y, z);
   const auto mirrors = dot(x, first) < 0.0f;
   const auto outward = [&](vec<F, 3> cofactors) { return select(mirrors, negate(cofactors), cofactors); };
   return {{outward(first), outward(cross(z, x)), outward(cross(x, y))}};
+}
+
+/// normal_matrix(m) * n: a normal of what `m` moves. Normalise what it gives.
+/// Domain: all floats; products that overflow give infinities or NaN.
+/// Error: 3 ULP of the sum of the terms' magnitudes, in each component.
+template <class F>
+vec<F, 3> transform_normal(mat<F, 4> m, vec<F, 3> n) {
+  return transform(normal_matrix(m), n);
+}
+
+/// The rows of the adjugate, which is the inverse times the determinant.
+template <class F>
+mat<F, 3> adjugate_rows(mat<F, 3> m) {
+  return {{cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])}};
+}
+
+/// The six 2 x 2 determinants of two columns of four; xy is that of their first two rows.
+template <class F>
+struct Minors {
+  F xy, xz, xw, yz, yw, zw;
+
+  Minors(vec<F, 4> a, vec<F, 4> b)
+      : xy(a[0] * b[1] - a[1] * b[0]),
+        xz(a[0] * b[2] - a[2] * b[0]),
+        xw(a[0] * b[3] - a[3] * b[0]),
+        yz(a[1] * b[2] - a[2] * b[1]),
+        yw(a[1] * b[3] - a[3] * b[1]),
+        zw(a[2] * b[3] - a[3] * b[2]) {}
+
+  /// The vector whose product with any x is the determinant of x, v and the two columns.
+  vec<F, 4> with(vec<F, 4> v) const {
+    return {(v[1] * zw - v[2] * yw) + v[3] * yz, (v[2] * xw - v[0] * zw) - v[3] * xz,
+            (v[0] * yw - v[1] * xw) + v[3] * xy, (v[1] * xz - v[0] * yz) - v[2] * xy};
+  }
+};
+
+template <class F>
+mat<F, 4> adjugate_rows(mat<F, 4> m) {
+  const Minors<F> first(m[0], m[1]);
+  const Minors<F> last(m[2], m[3]);
+  return {{last.with(m[1]), negate(last.with(m[0])), first.with(m[3]), negate(first.with(m[2]))}};
+}
+
+/// The determinant.
+/// Domain: all floats; products of N elements that overflow give infinities or NaN.
+/// Error: 4 ULP of the sum of the terms' magnitudes.
+template <class F, int N>
+F determinant(mat<F, N> m) {
+  return dot(adjugate_rows(m)[0], m[0]);  // of the rows only this one becomes code
+}
+
+/// The inverse.
+/// Domain: all floats; products of N elements that overflow or underflow lose it. A singular matrix gives
+/// infinities and NaN.
+/// Error: 4 ULP of (the sum of the terms' magnitudes of the element's cofactor + |element| times that of the
+/// determinant) / |determinant|.
+/// Source: Cramer's rule.
+template <class F, int N>
+mat<F, N> inverse(mat<F, N> m) {
+  const mat<F, N> rows = adjugate_rows(m);
+  const F scale = 1.0f / dot(rows[0], m[0]);
+  return transpose(make_columns<N>([&](int r) { return rows[r] * splat<N>(scale); }));
 }
 
 }  // namespace isoshade::functions

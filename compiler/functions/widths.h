@@ -39,12 +39,16 @@ namespace isoshade::functions {
 #define WIDEN_v_vv(name)
 #define WIDEN_v_vvf(name)
 #define WIDEN_f_v3(name)
+#define WIDEN_v2_v2f(name)
+#define WIDEN_v2_v2v2v2fv2(name)
+#define WIDEN_v3_v3(name)
 #define WIDEN_v3_v3v3(name)
 #define WIDEN_v_mv(name)
 #define WIDEN_m_mm(name)
 #define WIDEN_m_m(name)
 #define WIDEN_f_m(name)
 #define WIDEN_m3_m(name)
+#define WIDEN_v3_m4v3(name)
 
 #define FUNCTION(name, signature, ulp, domain, reference, unit) WIDEN_##signature(name)
 #include "compiler/functions/functions.def"

@@ -109,6 +109,110 @@ TEST(Luminance, OfWhiteIsOne) {
   EXPECT_EQ(luminance(hidden(Vec3{0, 0, 0})), 0.0f);
 }
 
+std::vector<uint32_t> rgb(const Vec3& hsv) {
+  const lanes::FpGuard guard;
+  return words(hsv_to_rgb(hidden(hsv)));
+}
+
+std::vector<uint32_t> hsv(const Vec3& rgb) {
+  const lanes::FpGuard guard;
+  return words(rgb_to_hsv(hidden(rgb)));
+}
+
+TEST(HsvToRgb, GivesPureColoursExactly) {
+  const float third = 0.333333343f;
+  for (float turns : {0.0f, 1.0f, -2.0f}) {
+    EXPECT_EQ(rgb({turns, 1, 1}), words(Vec3{1, 0, 0})) << turns;
+    EXPECT_EQ(rgb({turns + 0.5f, 1, 0.75f}), words(Vec3{0, 0.75f, 0.75f})) << turns;
+  }
+  EXPECT_EQ(rgb({third, 1, 1}), words(Vec3{0, 1, 0}));
+  EXPECT_EQ(rgb({2 * third, 1, 1}), words(Vec3{0, 0, 1}));
+  EXPECT_EQ(rgb({0.3f, 0, 0.7f}), words(Vec3{0.7f, 0.7f, 0.7f}));
+  EXPECT_EQ(rgb({nan, 0.5f, 0.5f}), words(Vec3{0.25f, 0.25f, 0.25f}));
+}
+
+TEST(RgbToHsv, HasNoHueForGreysAndNegatives) {
+  EXPECT_EQ(hsv({0.3f, 0.3f, 0.3f}), words(Vec3{0, 0, 0.3f}));
+  EXPECT_EQ(hsv({0, 0, 0}), words(Vec3{0, 0, 0}));
+  EXPECT_EQ(hsv({-1, -2, -3}), words(Vec3{0, 0, -1}));
+}
+
+TEST(RgbToHsv, IsUndoneByHsvToRgb) {
+  const lanes::FpGuard guard;
+  std::mt19937 random(1);
+  const auto part = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 color = hidden(Vec3{part(), part(), part()});
+    const Vec3 back = hsv_to_rgb(rgb_to_hsv(color));
+    for (int k = 0; k < 3; ++k) ASSERT_NEAR(back[k], color[k], 1e-6);
+  }
+}
+
+TEST(Rotate2d, TurnsByQuartersExactly) {
+  const lanes::FpGuard guard;
+  const auto turned = [](float degrees) {
+    const float x = functions::hidden(0.1f), y = functions::hidden(0.7f);
+    return words(rotate2d(vec<float, 2>{x, y}, functions::hidden(degrees)));
+  };
+  using Vec2 = vec<float, 2>;
+  for (float turns : {0.0f, 360.0f, -720.0f, 360000.0f, inf, nan})
+    EXPECT_EQ(turned(turns), words(Vec2{0.1f, 0.7f}));
+  EXPECT_EQ(turned(90), words(Vec2{0.7f, -0.1f}));
+  EXPECT_EQ(turned(-90), words(Vec2{-0.7f, 0.1f}));
+  EXPECT_EQ(turned(180), words(Vec2{-0.1f, -0.7f}));
+}
+
+TEST(Place2d, KeepsThePivotButForTheOffset) {
+  const lanes::FpGuard guard;
+  using Vec2 = vec<float, 2>;
+  const Vec2 pivot{functions::hidden(0.5f), functions::hidden(0.25f)};
+  const Vec2 scale{functions::hidden(3), functions::hidden(0.1f)};
+  const Vec2 offset{functions::hidden(0.125f), functions::hidden(-1)};
+  EXPECT_EQ(words(place2d(pivot, pivot, scale, functions::hidden(33), offset)), words(Vec2{0.375f, 1.25f}));
+}
+
+TEST(Inverse, UndoesItsMatrix) {
+  const lanes::FpGuard guard;
+  std::mt19937 random(1);
+  const auto part = [&] { return functions::hidden(static_cast<float>(random() >> 8) * 0x1p-23f - 1); };
+  for (int i = 0; i < 1000; ++i) {
+    const auto column = [&](float x, float y, float z, float w) {
+      return vec<float, 4>{x + part(), y + part(), z + part(), w + part()};
+    };
+    const mat<float, 4> m{{column(5, 0, 0, 0), column(0, -5, 0, 0), column(0, 0, 5, 0), column(0, 0, 0, 5)}};
+    const mat<float, 4> one = matmul(inverse(m), m);
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 4; ++r) ASSERT_NEAR(one[c][r], c == r ? 1 : 0, 1e-6);
+  }
+}
+
+TEST(Determinant, OfATriangularMatrixIsTheProductOfItsDiagonal) {
+  const lanes::FpGuard guard;
+  const mat<float, 3> m{{hidden(Vec3{2, 7, 11}), hidden(Vec3{0, -3, 13}), hidden(Vec3{0, 0, 5})}};
+  EXPECT_EQ(determinant(m), -30.0f);
+  EXPECT_EQ(determinant(transpose(m)), -30.0f);
+}
+
+TEST(Inverse, OfASingularMatrixIsNotFinite) {
+  const lanes::FpGuard guard;
+  const Vec3 x = hidden(Vec3{1, 2, 3});
+  const mat<float, 3> flat = inverse(mat<float, 3>{{x, x, hidden(Vec3{0, 0, 1})}});
+  EXPECT_FALSE(std::isfinite(flat[0][0]));
+}
+
+TEST(TransformPoint, AddsTheTranslationThatVectorsLack) {
+  const lanes::FpGuard guard;
+  const auto column = [](float x, float y, float z, float w) {
+    const Vec3 upper = hidden(Vec3{x, y, z});
+    return vec<float, 4>{upper[0], upper[1], upper[2], functions::hidden(w)};
+  };
+  const mat<float, 4> m{{column(0, 2, 0, 9), column(-2, 0, 0, 9), column(0, 0, 2, 9), column(10, 20, 30, 9)}};
+  const Vec3 v = hidden(Vec3{1, 2, 3});
+  EXPECT_EQ(words(transform_vector(m, v)), words(Vec3{-4, 2, 6}));
+  EXPECT_EQ(words(transform_point(m, v)), words(Vec3{6, 22, 36}));
+  EXPECT_EQ(words(transform_normal(m, v)), words(Vec3{-8, 4, 12}));
+}
+
 TEST(Matmul, ActsAsItsFactorsInTurn) {
   const lanes::FpGuard guard;
   const mat<float, 3> turn{{hidden(Vec3{0, 1, 0}), hidden(Vec3{-1, 0, 0}), hidden(Vec3{0, 0, 1})}};
