@@ -44,10 +44,8 @@ class Merger {
 
   void block(BlockId id) {
     const size_t outer = scope_.size();
-    std::vector<InstructionId> kept;
-    for (InstructionId instruction : f_.blocks[id].instructions)
-      if (!replaced(instruction)) kept.push_back(instruction);
-    f_.blocks[id].instructions = std::move(kept);
+    std::erase_if(f_.blocks[id].instructions,
+                  [this](InstructionId instruction) { return replaced(instruction); });
     for (ValueId& yield : f_.blocks[id].yields) yield = same_as_[yield];
     // What this block computes is not there outside it. Chains lose their newest element first.
     for (; scope_.size() > outer; scope_.pop_back()) heads_[bucket(scope_.back())] = next_[scope_.back()];

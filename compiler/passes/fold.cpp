@@ -282,6 +282,12 @@ void fold(ir::Module& module, Expand expand, size_t first) {
   for (size_t i = first; i < module.functions.size(); ++i) {
     Function& function = module.functions[i];
     if (function.is_declaration()) continue;
+    const bool has_calls = std::any_of(function.instructions.begin(), function.instructions.end(),
+                                       [](const Instruction& i) { return i.op == Opcode::call; });
+    if (!has_calls) {
+      Folder(function, calls).run();
+      continue;
+    }
     Function folded = function;  // the evaluator may copy the module meanwhile, and needs it whole
     Folder(folded, calls).run();
     function = std::move(folded);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/passes/renumber.h"
 
-#include <map>
+#include <bit>
+#include <functional>
 #include <string_view>
 #include <utility>
 
@@ -96,7 +97,8 @@ class Renumberer {
     use_lists_.clear();
     uses_.assign(f.instructions.size(), none);
     new_origins_.assign(f.origins.size(), none);
-    origins_.clear();
+    origin_heads_.assign(std::bit_ceil(f.origins.size()), none);
+    next_origins_.assign(1, none);
     if (order_.size() < f.blocks.size()) order_.resize(f.blocks.size());
     for (std::vector<InstructionId>& block : order_) block.clear();
     seen_in_.assign(f.values.size(), none);
@@ -106,7 +108,7 @@ class Renumberer {
     out_.values.reserve(f.values.size());
     out_.instructions.reserve(f.instructions.size());
     out_.operands.reserve(f.operands.size());
-    out_.origins.reserve(f.origins.size());  // origins_ points into it
+    out_.origins.reserve(f.origins.size());
     out_.blocks.reserve(f.blocks.size());
     out_.blocks.emplace_back();
     for (ValueId parameter : f.blocks[0].parameters)
@@ -123,8 +125,12 @@ class Renumberer {
   // What of a branch's or loop's yields remains; every other list remains whole.
   template <class Use>
   void for_live(InstructionId owner, std::span<const ValueId> list, uint32_t skip, Use use) const {
+    if (owner == none) {
+      for (ValueId value : list) use(value);
+      return;
+    }
     for (uint32_t i = 0; i < list.size(); ++i)
-      if (owner == none || i < skip || live_.keeps(f_->instructions[owner], i - skip)) use(list[i]);
+      if (i < skip || live_.keeps(f_->instructions[owner], i - skip)) use(list[i]);
   }
 
   // Puts the needed instructions of a block in order; returns what it uses from outside, in order of first
@@ -190,12 +196,13 @@ class Renumberer {
     if (old == 0) return 0;
     if (new_origins_[old] != none) return new_origins_[old];
     Origin& from = f_->origins[old];
-    const auto known = origins_.find({from.line, from.node});
-    if (known != origins_.end()) return new_origins_[old] = known->second;
+    const size_t hash = std::hash<std::string_view>{}(from.node) + from.line;
+    uint32_t& head = origin_heads_[hash & (origin_heads_.size() - 1)];
+    for (uint32_t known = head; known != none; known = next_origins_[known])
+      if (out_.origins[known] == from) return new_origins_[old] = known;
     new_origins_[old] = static_cast<uint32_t>(out_.origins.size());
+    next_origins_.push_back(std::exchange(head, new_origins_[old]));
     out_.origins.push_back(std::move(from));
-    origins_.emplace(std::pair(out_.origins.back().line, std::string_view(out_.origins.back().node)),
-                     new_origins_[old]);
     return new_origins_[old];
   }
   void rename(ValueId value) { out_.values[value].names = origin(out_.values[value].names); }
@@ -204,37 +211,36 @@ class Renumberer {
     out_.blocks[to].instructions.reserve(order_[from].size());
     for (InstructionId id : order_[from]) {
       const Instruction& made = f_->instructions[id];
-      const bool is_loop = made.op == Opcode::loop;
-      Instruction copy = made;
+      const auto copied = static_cast<InstructionId>(out_.instructions.size());
+      out_.blocks[to].instructions.push_back(copied);
+      Instruction& copy = out_.instructions.emplace_back(made);
       copy.origin = origin(made.origin);
       copy.first_operand = static_cast<uint32_t>(out_.operands.size());
-      for_live(is_loop ? id : none, f_->operands_of(made), 1,
+      for_live(made.op == Opcode::loop ? id : none, f_->operands_of(made), 1,
                [&](ValueId v) { out_.operands.push_back(values_[v]); });
       copy.operand_count = static_cast<uint32_t>(out_.operands.size()) - copy.first_operand;
       copy.first_result = static_cast<ValueId>(out_.values.size());
-      copy.result_count = 0;
-      for (uint32_t k = 0; k < made.result_count; ++k) {
-        if (made.blocks[0] != none && !live_.keeps(made, k)) continue;
-        rename(add_value(made.first_result + k));
-        ++copy.result_count;
-      }
-      copy.blocks = {none, none};
-      const auto copied = static_cast<InstructionId>(out_.instructions.size());
-      out_.instructions.push_back(copy);
-      out_.blocks[to].instructions.push_back(copied);
-      for (size_t side = 0; side < made.blocks.size() && made.blocks[side] != none; ++side) {
-        const auto inner = static_cast<BlockId>(out_.blocks.size());
-        out_.blocks.emplace_back();
-        out_.instructions[copied].blocks[side] = inner;
-        for_live(id, f_->blocks[made.blocks[side]].parameters, 1, [&](ValueId parameter) {
-          out_.blocks[inner].parameters.push_back(add_value(parameter));
-          rename(values_[parameter]);
-        });
-        emit(made.blocks[side], inner, id);
-      }
+      for (uint32_t k = 0; k < made.result_count; ++k)
+        if (made.blocks[0] == none || live_.keeps(made, k)) rename(add_value(made.first_result + k));
+      copy.result_count = static_cast<uint32_t>(out_.values.size()) - copy.first_result;
+      if (made.blocks[0] != none) emit_blocks(id, copied);
     }
     for_live(owner, f_->blocks[from].yields, 0,
              [&](ValueId v) { out_.blocks[to].yields.push_back(values_[v]); });
+  }
+
+  void emit_blocks(InstructionId id, InstructionId copied) {
+    const Instruction& made = f_->instructions[id];
+    for (size_t side = 0; side < made.blocks.size() && made.blocks[side] != none; ++side) {
+      const auto inner = static_cast<BlockId>(out_.blocks.size());
+      out_.blocks.emplace_back();
+      out_.instructions[copied].blocks[side] = inner;
+      for_live(id, f_->blocks[made.blocks[side]].parameters, 1, [&](ValueId parameter) {
+        out_.blocks[inner].parameters.push_back(add_value(parameter));
+        rename(values_[parameter]);
+      });
+      emit(made.blocks[side], inner, id);
+    }
   }
 
   struct Visit {
@@ -252,7 +258,8 @@ class Renumberer {
   std::vector<std::vector<InstructionId>> order_;  ///< by block
   std::vector<BlockId> seen_in_;                   ///< by value: the last block found to use it from outside
   std::vector<ValueId> values_;                    ///< by old value: the new one
-  std::map<std::pair<uint32_t, std::string_view>, uint32_t> origins_;  ///< by line and node: the new one
+  std::vector<uint32_t> origin_heads_;  ///< by hash: the newest new origin, then along next_origins_
+  std::vector<uint32_t> next_origins_;  ///< by new origin
   Function out_;
 };
 

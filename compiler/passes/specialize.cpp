@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/passes/specialize.h"
 
-#include <array>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <unordered_set>
@@ -28,14 +28,13 @@ class Specializer {
     for (const ir::Function& function : module.functions) names_.insert(function.name);
   }
 
-  /// One level of calls; whether there was any to specialize.
-  bool step() {
-    find_arithmetic();
-    bool changed = false;
+  /// One level of calls, in the functions from index `first` on; whether there was any to specialize.
+  bool step(size_t first) {
+    arithmetic_.assign(module_.functions.size(), std::nullopt);
     // Clones go to the end of the list; their own calls are the next step's.
     const size_t count = module_.functions.size();
-    for (size_t f = 0; f < count; ++f) changed |= specialize_calls(f);
-    return changed;
+    for (size_t f = first; f < count; ++f) specialize_calls(f);
+    return module_.functions.size() > count;
   }
 
  private:
@@ -44,23 +43,20 @@ class Specializer {
            op != ir::Opcode::fabs && op != ir::Opcode::floor;
   }
 
-  void find_arithmetic() {
-    arithmetic_.assign(module_.functions.size(), std::nullopt);
-    for (size_t f = 0; f < module_.functions.size(); ++f) has_arithmetic(f);
+  bool has_arithmetic(size_t f) {
+    if (!arithmetic_[f]) arithmetic_[f] = finds_arithmetic(module_.functions[f]);
+    return *arithmetic_[f];
   }
 
-  bool has_arithmetic(size_t f) {
-    if (arithmetic_[f]) return *arithmetic_[f];
-    bool found = false;
+  bool finds_arithmetic(const ir::Function& function) {
     // Only what is in a block: the rest has been replaced.
-    for (const ir::Block& block : module_.functions[f].blocks)
+    for (const ir::Block& block : function.blocks)
       for (ir::InstructionId id : block.instructions) {
-        const ir::Instruction& instruction = module_.functions[f].instructions[id];
-        found = found || is_arithmetic(instruction.op) ||
-                (instruction.op == ir::Opcode::call && has_arithmetic(instruction.imm));
+        const ir::Instruction& instruction = function.instructions[id];
+        if (is_arithmetic(instruction.op)) return true;
+        if (instruction.op == ir::Opcode::call && has_arithmetic(instruction.imm)) return true;
       }
-    arithmetic_[f] = found;
-    return found;
+    return false;
   }
 
   /// The instruction that makes each value; none for parameters.
@@ -73,18 +69,23 @@ class Specializer {
     return made;
   }
 
+  static bool is_constant(const ir::Function& function, const std::vector<ir::InstructionId>& made,
+                          ir::ValueId value) {
+    if (made[value] == ir::none) return false;
+    const ir::Instruction& instruction = function.instructions[made[value]];
+    if (instruction.op != ir::Opcode::construct) return instruction.op == ir::Opcode::constant;
+    return std::ranges::all_of(function.operands_of(instruction),
+                               [&](ir::ValueId component) { return is_constant(function, made, component); });
+  }
+
   static Words constant_words(const ir::Function& function, const std::vector<ir::InstructionId>& made,
                               ir::ValueId value) {
-    if (made[value] == ir::none) return std::nullopt;
+    if (!is_constant(function, made, value)) return std::nullopt;
     const ir::Instruction& instruction = function.instructions[made[value]];
     if (instruction.op == ir::Opcode::constant) return std::vector{instruction.imm};
-    if (instruction.op != ir::Opcode::construct) return std::nullopt;
     std::vector<uint32_t> words;
-    for (ir::ValueId component : function.operands_of(instruction)) {
-      const Words word = constant_words(function, made, component);
-      if (!word) return std::nullopt;
-      words.push_back(word->front());
-    }
+    for (ir::ValueId component : function.operands_of(instruction))
+      words.push_back(function.instructions[made[component]].imm);
     return words;
   }
 
@@ -96,21 +97,19 @@ class Specializer {
     return calls;
   }
 
-  bool specialize_calls(size_t f) {
-    bool changed = false;
+  void specialize_calls(size_t f) {
     std::vector<ir::InstructionId> made;
     // Instructions that fold replaced are in no block any more.
     for (const ir::InstructionId i : calls_in_blocks(module_.functions[f])) {
       const ir::Instruction call = module_.functions[f].instructions[i];
-      if (!has_arithmetic(call.imm)) continue;
+      if (!has_arithmetic(call.imm) || cloned_instructions_ > max_cloned_instructions) continue;
       if (made.empty()) made = definitions(module_.functions[f]);
+      const auto operands = module_.functions[f].operands_of(call);
+      const auto is_constant_here = [&](ir::ValueId v) { return is_constant(module_.functions[f], made, v); };
+      if (std::ranges::none_of(operands, is_constant_here)) continue;
       std::vector<Words> arguments;
-      bool any = false;
-      for (ir::ValueId operand : module_.functions[f].operands_of(call)) {
+      for (ir::ValueId operand : operands)
         arguments.push_back(constant_words(module_.functions[f], made, operand));
-        any = any || arguments.back().has_value();
-      }
-      if (!any || cloned_instructions_ > max_cloned_instructions) continue;
       const uint32_t callee = clone_for(call.imm, arguments);
       // The remaining arguments move to the front of the call's operands.
       ir::Function& caller = module_.functions[f];
@@ -121,9 +120,7 @@ class Specializer {
         if (!arguments[a])
           caller.operands[call.first_operand + kept++] = caller.operands[call.first_operand + a];
       instruction.operand_count = kept;
-      changed = true;
     }
-    return changed;
   }
 
   uint32_t clone_for(uint32_t callee, const std::vector<Words>& arguments) {
@@ -135,7 +132,7 @@ class Specializer {
     bind(clone, arguments);
     cloned_instructions_ += clone.instructions.size();
     module_.functions.push_back(std::move(clone));
-    arithmetic_.push_back(arithmetic_[callee]);
+    arithmetic_.push_back(arithmetic_[callee]);  // until it is folded
     return entry->second = static_cast<uint32_t>(module_.functions.size() - 1);
   }
 
@@ -207,10 +204,9 @@ class Specializer {
 void specialize(ir::Module& module) {
   Specializer specializer(module);
   // Folding a clone makes further arguments constant, one level of calls deeper each time.
-  size_t first = module.functions.size();
-  while (specializer.step()) {
-    fold(module, nullptr, first);
-    first = module.functions.size();
+  for (size_t first = 0, count = module.functions.size(); specializer.step(first);) {
+    fold(module, nullptr, count);
+    first = std::exchange(count, module.functions.size());
   }
 }
 
