@@ -147,7 +147,9 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
       body = eval_main(module.functions[entry]);
       break;
   }
-  return text + buffers_of(module, used) + interface + "\n" + glsl_functions(module, entry) + "\n" + body;
+  text.append(buffers_of(module, used)).append(interface).append("\n");
+  text.append(glsl_functions(module, entry)).append("\n").append(body);
+  return text;
 }
 
 }  // namespace isoshade::emit

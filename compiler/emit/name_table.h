@@ -11,7 +11,10 @@ namespace isoshade::emit {
 /// A set of names, each with a number. A text has a name on every line: no allocation for each.
 class NameTable {
  public:
-  explicit NameTable(size_t expected = 0) { slots_.resize(slots_for(expected)); }
+  explicit NameTable(size_t expected = 0) : slots_(slots_for(expected)) {
+    names_.reserve(expected);
+    text_.reserve(8 * expected);
+  }
 
   bool contains(std::string_view name) const { return slots_[find(name, hash(name))] != 0; }
 

@@ -1,82 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/ir/uniformity.h"
 
-#include <numeric>
-#include <span>
+#include <algorithm>
+#include <utility>
 
 namespace isoshade::ir {
 
 namespace {
 
-// `to` varies if `from` does.
-struct Edge {
-  ValueId from, to;
-};
-
-void collect_edges(const Function& f, BlockId block, std::vector<Edge>& edges) {
-  for (InstructionId id : f.blocks[block].instructions) {
-    const Instruction& instruction = f.instructions[id];
-    const auto operands = f.operands_of(instruction);
-    const ValueId first = instruction.first_result;
-    for (uint32_t k = 0; k < instruction.result_count; ++k) {
-      if (instruction.op == Opcode::loop) {
-        const Block& body = f.blocks[instruction.blocks[0]];
-        edges.push_back({operands[k + 1], body.parameters[k + 1]});
-        edges.push_back({body.yields[k], body.parameters[k + 1]});
-        edges.push_back({body.parameters[k + 1], first + k});
-        edges.push_back({operands[0], first + k});
-        continue;
-      }
-      for (ValueId operand : operands) edges.push_back({operand, first + k});
-      if (instruction.op == Opcode::branch)
-        for (BlockId side : instruction.blocks) edges.push_back({f.blocks[side].yields[k], first + k});
-    }
-    for (BlockId inner : instruction.blocks)
-      if (inner != none) collect_edges(f, inner, edges);
-  }
-}
-
-// By value: what varies with it.
-class Dependents {
+class Uniformity {
  public:
-  explicit Dependents(const Function& f) : begin_(f.values.size() + 1) {
-    std::vector<Edge> edges;
-    edges.reserve(f.operands.size() + f.values.size());
-    collect_edges(f, 0, edges);
-    for (const Edge& edge : edges) ++begin_[edge.from];
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    list_.resize(edges.size());
-    for (const Edge& edge : edges) list_[--begin_[edge.from]] = edge.to;  // from ends to begins
+  explicit Uniformity(const Function& f) : f_(f), uniform_(f.values.size(), true) {
+    if (f.is_declaration()) return;
+    for (size_t i = 0; i < f.parameters.size(); ++i)
+      uniform_[f.blocks[0].parameters[i]] = f.parameters[i].uniform;
+    visit(0);
   }
-  std::span<const ValueId> of(ValueId value) const {
-    return std::span(list_).subspan(begin_[value], begin_[value + 1] - begin_[value]);
-  }
+  std::vector<bool> take() { return std::move(uniform_); }
 
  private:
-  std::vector<uint32_t> begin_;
-  std::vector<ValueId> list_;
+  void visit(BlockId block) {
+    for (InstructionId id : f_.blocks[block].instructions) {
+      const Instruction& made = f_.instructions[id];
+      switch (made.op) {
+        case Opcode::branch: visit_branch(made); break;
+        case Opcode::loop: visit_loop(made); break;
+        default: {
+          const auto operands = f_.operands_of(made);
+          const bool uniform =
+              std::all_of(operands.begin(), operands.end(), [&](ValueId v) { return uniform_[v]; });
+          for (uint32_t k = 0; k < made.result_count; ++k) uniform_[made.first_result + k] = uniform;
+        }
+      }
+    }
+  }
+
+  void visit_branch(const Instruction& made) {
+    for (BlockId side : made.blocks) visit(side);
+    const bool condition = uniform_[f_.operands_of(made)[0]];
+    for (uint32_t k = 0; k < made.result_count; ++k)
+      uniform_[made.first_result + k] = condition && uniform_[f_.blocks[made.blocks[0]].yields[k]] &&
+                                        uniform_[f_.blocks[made.blocks[1]].yields[k]];
+  }
+
+  // Once more wherever a carried value turned out to vary; it is never uniform again, so that ends.
+  void visit_loop(const Instruction& made) {
+    const auto operands = f_.operands_of(made);
+    const Block& body = f_.blocks[made.blocks[0]];
+    for (uint32_t k = 0; k < made.result_count; ++k) merge(body.parameters[k + 1], operands[k + 1]);
+    bool changed = true;
+    while (std::exchange(changed, false)) {
+      visit(made.blocks[0]);
+      for (uint32_t k = 0; k < made.result_count; ++k)
+        changed |= merge(body.parameters[k + 1], body.yields[k]);
+    }
+    for (uint32_t k = 0; k < made.result_count; ++k)
+      uniform_[made.first_result + k] = uniform_[operands[0]] && uniform_[body.parameters[k + 1]];
+  }
+
+  // Makes `value` varying if `with` is; whether that is new.
+  bool merge(ValueId value, ValueId with) {
+    if (uniform_[with] || !uniform_[value]) return false;
+    uniform_[value] = false;
+    return true;
+  }
+
+  const Function& f_;
+  std::vector<bool> uniform_;
 };
 
 }  // namespace
 
-std::vector<bool> uniform_values(const Function& function) {
-  std::vector<bool> uniform(function.values.size(), true);
-  if (function.is_declaration()) return uniform;
-  const Dependents dependents(function);
-  std::vector<ValueId> varying;
-  const auto vary = [&](ValueId value) {
-    if (!uniform[value]) return;
-    uniform[value] = false;
-    varying.push_back(value);
-  };
-  for (size_t i = 0; i < function.parameters.size(); ++i)
-    if (!function.parameters[i].uniform) vary(function.blocks[0].parameters[i]);
-  while (!varying.empty()) {
-    const ValueId value = varying.back();
-    varying.pop_back();
-    for (ValueId dependent : dependents.of(value)) vary(dependent);
-  }
-  return uniform;
-}
+std::vector<bool> uniform_values(const Function& function) { return Uniformity(function).take(); }
 
 }  // namespace isoshade::ir
