@@ -28,6 +28,7 @@ void Editor::run(Visit visit) {
 
 void Editor::visit_block(BlockId block) {
   std::vector<InstructionId> outer = std::exchange(list_, {});
+  list_.reserve(f_.blocks[block].instructions.size());
   visit_all(std::exchange(f_.blocks[block].instructions, {}));
   for (ValueId& yield : f_.blocks[block].yields) yield = current(yield);
   f_.blocks[block].instructions = std::exchange(list_, std::move(outer));
@@ -41,8 +42,6 @@ void Editor::visit_all(const std::vector<InstructionId>& instructions) {
     visit_(id);
   }
 }
-
-void Editor::keep(InstructionId instruction) { list_.push_back(instruction); }
 
 void Editor::descend(InstructionId instruction) {
   const std::array blocks = f_.instructions[instruction].blocks;
@@ -59,19 +58,6 @@ void Editor::replace(ValueId value, ValueId with) {
   replaced_by_[value] = with;
   const bool both_results = defined_by_[value] != none && defined_by_[with] != none;
   if (both_results && f_.values[with].names == 0) f_.values[with].names = f_.values[value].names;
-}
-
-const Instruction* Editor::definition(ValueId value) const {
-  return defined_by_[value] == none ? nullptr : &f_.instructions[defined_by_[value]];
-}
-
-const Instruction* Editor::definition(ValueId value, Opcode op) const {
-  const Instruction* made = definition(value);
-  return made != nullptr && made->op == op ? made : nullptr;
-}
-
-ValueId Editor::operand(const Instruction& instruction, uint32_t index) const {
-  return f_.operands[instruction.first_operand + index];
 }
 
 std::optional<uint32_t> Editor::known(ValueId value, uint32_t component) const {

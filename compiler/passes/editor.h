@@ -21,7 +21,7 @@ class Editor {
   using Visit = std::function<void(ir::InstructionId)>;
   void run(Visit visit);
 
-  void keep(ir::InstructionId instruction);
+  void keep(ir::InstructionId instruction) { list_.push_back(instruction); }
   /// Visits the blocks of a kept instruction.
   void descend(ir::InstructionId instruction);
   /// Visits a block's instructions as if they stood here; its parameters must be replaced before.
@@ -33,10 +33,17 @@ class Editor {
 
   /// What a value is the result of; null for a parameter. Its operands are current. Valid until the next
   /// change.
-  const ir::Instruction* definition(ir::ValueId value) const;
+  const ir::Instruction* definition(ir::ValueId value) const {
+    return defined_by_[value] == ir::none ? nullptr : &f_.instructions[defined_by_[value]];
+  }
   /// The definition if it is of this op, else null.
-  const ir::Instruction* definition(ir::ValueId value, ir::Opcode op) const;
-  ir::ValueId operand(const ir::Instruction& instruction, uint32_t index) const;
+  const ir::Instruction* definition(ir::ValueId value, ir::Opcode op) const {
+    const ir::Instruction* made = definition(value);
+    return made != nullptr && made->op == op ? made : nullptr;
+  }
+  ir::ValueId operand(const ir::Instruction& instruction, uint32_t index) const {
+    return f_.operands[instruction.first_operand + index];
+  }
   /// The bits of a value's component where they are known.
   std::optional<uint32_t> known(ir::ValueId value, uint32_t component) const;
   /// The bits of all components where they are known and alike.

@@ -93,9 +93,8 @@ class Renumberer {
   void run(Function& f) {
     f_ = &f;
     find_places(f, places_);
-    live_.find(f, places_);
-    use_lists_.clear();
-    uses_.assign(f.instructions.size(), none);
+    if (f.blocks.size() > 1) live_.find(f, places_);  // only branches and loops ask
+    reached_.assign(f.instructions.size(), false);
     new_origins_.assign(f.origins.size(), none);
     origin_heads_.assign(std::bit_ceil(f.origins.size()), none);
     next_origins_.assign(1, none);
@@ -122,6 +121,11 @@ class Renumberer {
   }
 
  private:
+  struct Visit {
+    InstructionId instruction;
+    uint32_t next, end;  ///< what it uses, in Function::operands
+  };
+
   // What of a branch's or loop's yields remains; every other list remains whole.
   template <class Use>
   void for_live(InstructionId owner, std::span<const ValueId> list, uint32_t skip, Use use) const {
@@ -138,46 +142,47 @@ class Renumberer {
   std::vector<ValueId> arrange(BlockId block, InstructionId owner) {
     std::vector<ValueId> outer;
     const size_t bottom = path_.size();
-    const auto reach = [&](ValueId value) {
-      const Place& place = places_[value];
-      if (place.block != block) {
-        outer.push_back(value);
-      } else if (!place.is_parameter && uses_[place.instruction] == none) {
-        open(place.instruction);
-        path_.push_back({place.instruction, uses_[place.instruction]});
-      }
-    };
     for_live(owner, f_->blocks[block].yields, 0, [&](ValueId yield) {
-      reach(yield);
+      reach(yield, block, outer);
       while (path_.size() > bottom) {
         Visit& visit = path_.back();
-        if (const ValueId use = use_lists_[visit.next]; use != none) {
-          ++visit.next;
-          reach(use);
+        if (visit.next != visit.end) {
+          reach(f_->operands[visit.next++], block, outer);
         } else {
           order_[block].push_back(visit.instruction);
           path_.pop_back();
         }
       }
     });
-    return unique(outer, block);
+    return outer.empty() ? outer : unique(outer, block);
   }
 
-  // Lists what an instruction uses: its operands, then what its blocks use from outside; ends with `none`.
-  void open(InstructionId id) {
+  void reach(ValueId value, BlockId block, std::vector<ValueId>& outer) {
+    const Place& place = places_[value];
+    if (place.block != block) return outer.push_back(value);
+    if (place.is_parameter || reached_[place.instruction]) return;
+    reached_[place.instruction] = true;
+    const Instruction& made = f_->instructions[place.instruction];
+    path_.push_back(made.blocks[0] == none ? Visit{place.instruction, made.first_operand,
+                                                   made.first_operand + made.operand_count}
+                                           : visit_blocks(place.instruction));
+  }
+
+  // Lists what a branch or loop uses: its operands, then what its blocks use from outside.
+  Visit visit_blocks(InstructionId id) {
     const Instruction& made = f_->instructions[id];
-    const bool is_loop = made.op == Opcode::loop;
-    std::vector<ValueId> outer;
+    std::vector<ValueId> uses;
+    for_live(made.op == Opcode::loop ? id : none, f_->operands_of(made), 1,
+             [&](ValueId value) { uses.push_back(value); });
     for (BlockId inner : made.blocks) {
       if (inner == none) continue;
-      const std::vector<ValueId> more = arrange(inner, id);
-      outer.insert(outer.end(), more.begin(), more.end());
+      const std::vector<ValueId> outer = arrange(inner, id);
+      uses.insert(uses.end(), outer.begin(), outer.end());
     }
-    uses_[id] = static_cast<uint32_t>(use_lists_.size());
-    for_live(is_loop ? id : none, f_->operands_of(made), 1,
-             [&](ValueId value) { use_lists_.push_back(value); });
-    use_lists_.insert(use_lists_.end(), outer.begin(), outer.end());
-    use_lists_.push_back(none);
+    // Behind the operands, which are made anew anyway.
+    const auto first = static_cast<uint32_t>(f_->operands.size());
+    f_->operands.insert(f_->operands.end(), uses.begin(), uses.end());
+    return {id, first, static_cast<uint32_t>(f_->operands.size())};
   }
 
   std::vector<ValueId> unique(const std::vector<ValueId>& list, BlockId block) {
@@ -243,18 +248,12 @@ class Renumberer {
     }
   }
 
-  struct Visit {
-    InstructionId instruction;
-    uint32_t next;  ///< in use_lists_
-  };
-
   Function* f_ = nullptr;
   std::vector<Place> places_;  ///< by value
   Liveness live_;
   std::vector<Visit> path_;
-  std::vector<ValueId> use_lists_;     ///< what instructions use, one after another; each list ends with none
-  std::vector<uint32_t> uses_;         ///< by instruction: where its list begins; none until it is reached
-  std::vector<uint32_t> new_origins_;  ///< by old origin
+  std::vector<char> reached_;                      ///< by instruction
+  std::vector<uint32_t> new_origins_;              ///< by old origin
   std::vector<std::vector<InstructionId>> order_;  ///< by block
   std::vector<BlockId> seen_in_;                   ///< by value: the last block found to use it from outside
   std::vector<ValueId> values_;                    ///< by old value: the new one
