@@ -10,18 +10,19 @@ namespace {
 
 class Cpp final : public Language {
  public:
-  std::string_view type(ir::Type type, bool uniform) const override {
-    constexpr std::string_view one[] = {"float", "vec2<float>", "vec3<float>", "vec4<float>"};
-    constexpr std::string_view lanes[] = {"F", "vec2<F>", "vec3<F>", "vec4<F>"};
+  std::string_view declared_type(ir::Type type, bool uniform) const override {
+    constexpr std::string_view one[] = {"const float", "const vec2<float>", "const vec3<float>",
+                                        "const vec4<float>"};
+    constexpr std::string_view lanes[] = {"const F", "const vec2<F>", "const vec3<F>", "const vec4<F>"};
     switch (type.scalar) {
-      case ir::Scalar::boolean: return uniform ? "bool" : "bool_of<F>";
-      case ir::Scalar::integer: return uniform ? "int" : "int_of<F>";
+      case ir::Scalar::boolean: return uniform ? "const bool" : "const bool_of<F>";
+      case ir::Scalar::integer: return uniform ? "const int" : "const int_of<F>";
       case ir::Scalar::floating: break;
     }
     return uniform ? one[type.width - 1] : lanes[type.width - 1];
   }
-  void declared_type(std::string& out, ir::Type type, bool uniform) const override {
-    out.append("const ").append(this->type(type, uniform));
+  std::string_view type(ir::Type type, bool uniform) const override {
+    return declared_type(type, uniform).substr(std::string_view("const ").size());
   }
   std::string literal(ir::Type type, uint32_t bits) const override {
     switch (type.scalar) {

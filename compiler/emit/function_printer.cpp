@@ -142,8 +142,8 @@ class FunctionPrinter {
   void begin_definition(const ir::Instruction& instruction) {
     const ir::ValueId value = instruction.first_result;
     values_[value] = name_value(value, instruction.origin);
-    language_.declared_type(indent(), function_.type(value), uniform_[value]);
-    out_.append(" ").append(values_[value]).append(" = ");
+    indent().append(language_.declared_type(function_.type(value), uniform_[value])).append(" ");
+    out_.append(values_[value]).append(" = ");
   }
 
   void print(const ir::Instruction& instruction) {
@@ -312,8 +312,8 @@ class FunctionPrinter {
       language_.exactly(next[i], operand(body.yields[i]), uniform_[value]);
       if (instruction.result_count == 1) continue;
       const std::string name = names_.take(values_[value] + "_next");
-      language_.declared_type(indent(), function_.type(value), uniform_[value]);
-      out_.append(" ").append(name).append(" = ").append(next[i]).append(";\n");
+      indent().append(language_.declared_type(function_.type(value), uniform_[value])).append(" ");
+      out_.append(name).append(" = ").append(next[i]).append(";\n");
       next[i] = name;
     }
     for (uint32_t i = 0; i < instruction.result_count; ++i)

@@ -20,8 +20,9 @@ class Glsl final : public Language {
   std::string_view type(ir::Type type, bool) const override { return ir::name(type); }
   // `precise` stands at every float, in every function: glslang drops it from locals that do not have their
   // own.
-  void declared_type(std::string& out, ir::Type type, bool) const override {
-    out.append(type.is_float() ? "precise " : "").append(ir::name(type));
+  std::string_view declared_type(ir::Type type, bool) const override {
+    constexpr std::string_view floats[] = {"precise float", "precise vec2", "precise vec3", "precise vec4"};
+    return type.is_float() ? floats[type.width - 1] : ir::name(type);
   }
   std::string literal(ir::Type type, uint32_t bits) const override {
     switch (type.scalar) {
@@ -49,8 +50,7 @@ class Glsl final : public Language {
     out.append(ir::name(type)).append(" ").append(name);
   }
   void variable(std::string& out, ir::Type type, bool uniform, std::string_view name) const override {
-    declared_type(out, type, uniform);
-    out.append(" ").append(name);
+    out.append(declared_type(type, uniform)).append(" ").append(name);
   }
   std::string_view no_value() const override { return ""; }
   void branch_head(std::string& out, std::string_view condition, bool other) const override {

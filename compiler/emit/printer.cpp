@@ -71,7 +71,8 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
     text.loads = loads_directly(function);
     for (const ir::Instruction& instruction : function.instructions)
       if (instruction.op == ir::Opcode::call) text.loads |= texts[instruction.imm].loads;
-    if (function.results.size() > 1) text.result_type = globals.take(record_name(text.name) + "Result");
+    if (function.results.size() <= 1) continue;
+    text.result_type = globals.take(record_name(text.name) + "Result");
     Names fields;
     for (const ir::Result& result : function.results) text.result_fields.push_back(fields.take(result.name));
   }

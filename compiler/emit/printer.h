@@ -35,7 +35,7 @@ class Language {
   /// A type as it stands in a parameter list, a field or a construction: "float", "F", "vec3<F>".
   virtual std::string_view type(ir::Type type, bool uniform) const = 0;
   /// "precise float" or "const F".
-  virtual void declared_type(std::string& out, ir::Type type, bool uniform) const = 0;
+  virtual std::string_view declared_type(ir::Type type, bool uniform) const = 0;
   virtual std::string literal(ir::Type type, uint32_t bits) const = 0;
   virtual std::string_view op_text(const ir::OpInfo& row) const = 0;
   /// An operand where its type must be exactly this: an arm of a select, a value that is assigned.
