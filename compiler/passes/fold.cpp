@@ -24,7 +24,8 @@ using namespace ir;
 constexpr uint64_t step_budget = 20'000'000;
 constexpr uint64_t steps_per_call = 1'000'000;
 
-// Evaluates calls on constants. The copy of the module with all bodies is made for the first one.
+// Evaluates calls on constants: in the module itself, since no callee calls the function that is being folded, or,
+// where bodies must be made first, in a copy that has them all.
 class CallEvaluator {
  public:
   CallEvaluator(const Module& module, Expand expand) : module_(module), expand_(expand) {}
@@ -33,9 +34,11 @@ class CallEvaluator {
   bool evaluate(uint32_t callee, std::span<const uint32_t> arguments, std::span<uint32_t> results) {
     if (budget_ == 0 || (module_.functions[callee].is_declaration() && expand_ == nullptr)) return false;
     if (!interpreter_) {
-      executable_ = module_;
-      if (expand_ != nullptr) expand_(executable_);
-      interpreter_.emplace(executable_, Preconditions::report);
+      if (expand_ != nullptr) {
+        expanded_ = module_;
+        expand_(expanded_);
+      }
+      interpreter_.emplace(executable(), Preconditions::report);
     }
     if (!runnable(callee)) return false;
     const uint64_t limit = std::min(budget_, steps_per_call);
@@ -47,16 +50,18 @@ class CallEvaluator {
   }
 
  private:
+  const Module& executable() const { return expand_ != nullptr ? expanded_ : module_; }
+
   // Whether a function reaches no declaration and no buffer.
   bool runnable(uint32_t function) {
-    if (runnable_.empty()) runnable_.resize(executable_.functions.size());
+    if (runnable_.empty()) runnable_.resize(executable().functions.size());
     std::optional<bool>& known = runnable_[function];
     if (!known) {
       const std::array entries{function};
-      const auto reached = callees_first(executable_, entries);
+      const auto reached = callees_first(executable(), entries);
       known = std::all_of(reached->begin(), reached->end(), [&](uint32_t f) {
-        const auto& made = executable_.functions[f].instructions;
-        return !executable_.functions[f].is_declaration() &&
+        const auto& made = executable().functions[f].instructions;
+        return !executable().functions[f].is_declaration() &&
                std::none_of(made.begin(), made.end(),
                             [](const Instruction& i) { return i.op == Opcode::load; });
       });
@@ -66,7 +71,7 @@ class CallEvaluator {
 
   const Module& module_;
   Expand expand_;
-  Module executable_;
+  Module expanded_;
   std::optional<Interpreter> interpreter_;
   std::vector<std::optional<bool>> runnable_;  ///< by function
   uint64_t budget_ = step_budget;
@@ -278,13 +283,14 @@ class Folder {
 
 void fold(ir::Module& module, Expand expand, size_t first) {
   const lanes::FpGuard guard;
+  const auto& functions = module.functions;
+  if (std::none_of(functions.begin(), functions.end(), [](const Function& f) { return f.is_declaration(); }))
+    expand = nullptr;
   CallEvaluator calls(module, expand);
   for (size_t i = first; i < module.functions.size(); ++i) {
     Function& function = module.functions[i];
     if (function.is_declaration()) continue;
-    const bool has_calls = std::any_of(function.instructions.begin(), function.instructions.end(),
-                                       [](const Instruction& i) { return i.op == Opcode::call; });
-    if (!has_calls) {
+    if (expand == nullptr) {
       Folder(function, calls).run();
       continue;
     }
