@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/function_printer.h"
 
-#include <algorithm>
-
 #include "compiler/ir/uniformity.h"
 #include "compiler/support/check.h"
 
@@ -185,8 +183,21 @@ class FunctionPrinter {
     }
   }
 
+  /// What stands in an op's text for `$=`, the result, or `$0`, an operand.
+  void fill(char hole, const ir::Instruction& instruction, std::string_view pattern) {
+    const ir::ValueId result = instruction.first_result;
+    if (hole == '=') {
+      out_ += values_[result];
+      return;
+    }
+    const ir::ValueId value = function_.operands_of(instruction)[static_cast<size_t>(hole - '0')];
+    if (instruction.op == ir::Opcode::select && hole == '0')
+      out_ += text(value);
+    else
+      language_.argument(out_, operand(value), uniform_[result], pattern);
+  }
+
   void print_primitive(const ir::Instruction& instruction) {
-    const auto operands = function_.operands_of(instruction);
     const ir::ValueId result = instruction.first_result;
     const std::string_view pattern = language_.op_text(ir::info(instruction.op));
     const bool statement = pattern.starts_with(';');
@@ -196,21 +207,12 @@ class FunctionPrinter {
     } else {
       begin_definition(instruction);
     }
-    for (size_t i = statement ? 1 : 0; i < pattern.size(); ++i) {
-      const size_t hole = std::min(pattern.find('$', i), pattern.size());
-      out_ += pattern.substr(i, hole - i);
-      i = hole + 1;
-      if (i >= pattern.size()) break;
-      if (pattern[i] == '=') {
-        out_ += values_[result];
-        continue;
-      }
-      const ir::ValueId value = operands[static_cast<size_t>(pattern[i] - '0')];
-      if (instruction.op == ir::Opcode::select && pattern[i] == '0')
-        out_ += text(value);
-      else
-        language_.argument(out_, operand(value), uniform_[result], pattern);
+    std::string_view rest = pattern.substr(statement ? 1 : 0);
+    for (size_t hole; (hole = rest.find('$')) != std::string_view::npos; rest.remove_prefix(hole + 2)) {
+      out_ += rest.substr(0, hole);
+      fill(rest[hole + 1], instruction, pattern);
     }
+    out_ += rest;
     statement ? end_line(result) : end_statement(result);
   }
 
