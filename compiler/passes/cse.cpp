@@ -40,6 +40,7 @@ class Merger {
   explicit Merger(Function& f) : f_(f), same_as_(f.values.size()), next_(f.instructions.size(), none) {
     std::iota(same_as_.begin(), same_as_.end(), 0);
     heads_.assign(std::bit_ceil(f.instructions.size() + 1), none);
+    scope_.reserve(f.instructions.size());
   }
 
   void block(BlockId id) {
