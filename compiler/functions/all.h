@@ -3,13 +3,16 @@
 #pragma once
 
 #include "compiler/functions/blending.h"
+#include "compiler/functions/cell.h"
 #include "compiler/functions/color.h"
 #include "compiler/functions/comparison.h"
 #include "compiler/functions/exact.h"
 #include "compiler/functions/exponential.h"
+#include "compiler/functions/feature_points.h"
 #include "compiler/functions/inverse_trigonometric.h"
 #include "compiler/functions/logarithm.h"
 #include "compiler/functions/matrix.h"
+#include "compiler/functions/noise.h"
 #include "compiler/functions/power.h"
 #include "compiler/functions/root.h"
 #include "compiler/functions/rounding.h"

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 
 #include "compiler/functions/matrix_type.h"
 #include "runtime/lanes/lanes.h"
@@ -45,6 +46,15 @@ F polynomial(F x, const float (&c)[n]) {
   F p = c[0] * x + c[1];
   for (size_t i = 2; i < n; ++i) p = p * x + c[i];
   return p;
+}
+
+/// The states that body(index, state...) makes of each other for index 0 .. count-1, from these on.
+template <class Body, class... State>
+std::tuple<State...> loop(int count, Body body, State... initial) {
+  std::tuple<State...> states(initial...);
+  for (int i = 0; i < count; ++i)
+    states = std::apply([&](State... state) { return body(i, state...); }, states);
+  return states;
 }
 
 }  // namespace isoshade::functions

@@ -26,6 +26,8 @@ Result call(std::string_view row, const T&... arguments) {
 #define CALL_1(result, name, A) result name(A a) { return call<result>(#name, a); }
 #define CALL_2(result, name, A, B) result name(A a, B b) { return call<result>(#name, a, b); }
 #define CALL_3(result, name, A, B, C) result name(A a, B b, C c) { return call<result>(#name, a, b, c); }
+#define CALL_4(result, name, A, B, C, D) \
+  result name(A a, B b, C c, D d) { return call<result>(#name, a, b, c, d); }
 #define CALL_5(result, name, A, B, C, D, E) \
   result name(A a, B b, C c, D d, E e) { return call<result>(#name, a, b, c, d, e); }
 
@@ -45,9 +47,15 @@ Result call(std::string_view row, const T&... arguments) {
   template <int N> CALL_5(V<N>, name, V<N>, V<N>, V<N>, V<N>, V<N>)
 #define CALLS_f_v(name) template <int N> CALL_1(Float, name, V<N>)
 #define CALLS_f_vv(name) template <int N> CALL_2(Float, name, V<N>, V<N>)
+#define CALLS_f_v2(name) inline CALL_1(Float, name, V<2>)
+#define CALLS_f_v2f(name) inline CALL_2(Float, name, V<2>, Float)
+#define CALLS_f_v3fff(name) inline CALL_4(Float, name, V<3>, Float, Float, Float)
 #define CALLS_f_v3(name) inline CALL_1(Float, name, V<3>)
 #define CALLS_v2_v2f(name) inline CALL_2(V<2>, name, V<2>, Float)
 #define CALLS_v2_v2v2v2fv2(name) inline CALL_5(V<2>, name, V<2>, V<2>, V<2>, Float, V<2>)
+#define CALLS_v3_v2(name) inline CALL_1(V<3>, name, V<2>)
+#define CALLS_v3_v2f(name) inline CALL_2(V<3>, name, V<2>, Float)
+#define CALLS_v3_v3fff(name) inline CALL_4(V<3>, name, V<3>, Float, Float, Float)
 #define CALLS_v3_v3(name) inline CALL_1(V<3>, name, V<3>)
 #define CALLS_v3_v3v3(name) inline CALL_2(V<3>, name, V<3>, V<3>)
 #define CALLS_v_mv(name) template <int N> CALL_2(V<N>, name, M<N>, V<N>)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,16 @@ struct Flat<M<N>> {
   }
 };
 
+template <class... T>
+struct Flat<std::tuple<T...>> {
+  static void values(ir::Builder& b, const std::tuple<T...>& from, std::vector<ir::ValueId>& out) {
+    std::apply([&](const T&... part) { (Flat<T>::values(b, part, out), ...); }, from);
+  }
+  static std::tuple<T...> take(ir::Builder& b, std::span<const ir::ValueId>& from) {
+    return {Flat<T>::take(b, from)...};
+  }
+};
+
 /// then() where the condition holds, else other(): the IR's `branch`, as lanes::branch is of values.
 template <class Then, class Other>
 auto branch(Bool condition, const Then& then, const Other& other) {
@@ -80,6 +91,26 @@ auto branch(Bool condition, const Then& then, const Other& other) {
   const std::vector<ir::ValueId> results = b.branch(condition.value, side(then), side(other));
   std::span<const ir::ValueId> rest(results);
   return Flat<Result>::take(b, rest);
+}
+
+/// body(index, state...) for index 0 .. count-1: the IR's `loop`, as functions::loop is of values. One of the
+/// initial states at least is no literal.
+template <class Body, class... State>
+std::tuple<State...> loop(Int count, const Body& body, const State&... initial) {
+  using States = std::tuple<State...>;
+  ir::Builder& b = builder_of(initial...);
+  const auto flat = [&b](const States& states) {
+    std::vector<ir::ValueId> values;
+    Flat<States>::values(b, states, values);
+    return values;
+  };
+  const std::vector<ir::ValueId> results =
+      b.loop(count.id(b), flat({initial...}), [&](ir::ValueId i, std::span<const ir::ValueId> carried) {
+        const auto step = [&](const State&... state) { return body(Int(b, i), state...); };
+        return flat(std::apply(step, Flat<States>::take(b, carried)));
+      });
+  std::span<const ir::ValueId> rest(results);
+  return Flat<States>::take(b, rest);
 }
 
 }  // namespace isoshade::functions::traced

@@ -35,9 +35,15 @@ struct Signatures {
   using v_vv = f_vv;
   using v_vvf = Types<Types<V<2>, V<2>, F>, Types<V<3>, V<3>, F>, Types<V<4>, V<4>, F>>;
   using f_v3 = Types<Types<V<3>>>;
+  using f_v2 = Types<Types<V<2>>>;
+  using f_v2f = Types<Types<V<2>, F>>;
+  using f_v3fff = Types<Types<V<3>, F, F, F>>;
   using v2_v2f = Types<Types<V<2>, F>>;
   using v2_v2v2v2fv2 = Types<Types<V<2>, V<2>, V<2>, F, V<2>>>;
+  using v3_v2 = f_v2;
+  using v3_v2f = f_v2f;
   using v3_v3 = f_v3;
+  using v3_v3fff = f_v3fff;
   using v3_v3v3 = Types<Types<V<3>, V<3>>>;
   using v_mv = Types<Types<M<3>, V<3>>, Types<M<4>, V<4>>>;
   using m_mm = Types<Types<M<3>, M<3>>, Types<M<4>, M<4>>>;

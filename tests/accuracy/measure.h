@@ -12,6 +12,7 @@
 #include "compiler/functions/signatures.h"
 #include "runtime/lanes/lanes.h"
 #include "tests/accuracy/reference.h"
+#include "tests/accuracy/reference_noise.h"
 #include "tests/accuracy/samples.h"
 
 namespace isoshade::accuracy {
