@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unordered_set>
-
 #include "compiler/emit/names.h"
+
+#include <unordered_set>
 
 namespace isoshade::emit {
 
@@ -37,28 +37,64 @@ const std::unordered_set<std::string_view> reserved = {
     "frame", "inputs", "lights", "objects", "triangles", "vertices", "clip", "ids", "id", "isoshade",
     "int_of", "bool_of", "float_of", "lane_count", "pixel", "vertex", "depth", "eval", "shade", "light_at",
     "edges_at", "attribute2", "attribute3", "Buffers", "NULL", "INFINITY", "NAN", "assert", "errno", "linux",
-    "unix", "near", "far"};
+    "unix", "near", "far", "VULKAN", "Lanes", "batch",
+    // rarer words of GLSL that glslang takes as keywords
+    "active", "devicecoherent", "dmat2x2", "dmat2x3", "dmat2x4", "dmat3x2", "dmat3x3", "dmat3x4", "dmat4x2",
+    "dmat4x3", "dmat4x4", "mat2x2", "mat2x3", "mat2x4", "mat3x2", "mat3x3", "mat3x4", "mat4x2", "mat4x3",
+    "mat4x4", "nonprivate", "queuefamilycoherent", "shadercallcoherent", "subgroupcoherent",
+    "workgroupcoherent"};
 
 // Functions of GLSL: a local may hide them, a function of ours would redefine them.
 const std::unordered_set<std::string_view> glsl_functions = {
-    "acos",         "acosh",    "asin",       "asinh",   "atan",       "atanh",    "barrier",     "bitCount",
-    "ceil",         "clamp",    "cos",        "cosh",    "cross",      "degrees",  "determinant", "dFdx",
-    "dFdy",         "distance", "dot",        "equal",   "exp",        "exp2",     "faceforward", "findLSB",
-    "findMSB",      "fma",      "fract",      "frexp",   "ftransform", "fwidth",   "greaterThan", "inverse",
-    "inversesqrt",  "isinf",    "isnan",      "ldexp",   "length",     "lessThan", "log",         "log2",
-    "max",          "min",      "mix",        "mod",     "modf",       "noise1",   "normalize",   "notEqual",
-    "outerProduct", "pow",      "radians",    "reflect", "refract",    "round",    "roundEven",   "sign",
-    "sin",          "sinh",     "smoothstep", "step",    "tan",        "tanh",     "texelFetch",  "transpose",
-    "trunc"};
+    // of every stage
+    "acos", "acosh", "asin", "asinh", "atan", "atanh", "barrier", "bitCount", "ceil", "clamp", "cos", "cosh",
+    "cross", "degrees", "determinant", "dFdx", "dFdy", "distance", "dot", "equal", "exp", "exp2",
+    "faceforward", "findLSB", "findMSB", "fma", "fract", "frexp", "ftransform", "fwidth", "greaterThan",
+    "inverse", "inversesqrt", "isinf", "isnan", "ldexp", "length", "lessThan", "log", "log2", "max", "min",
+    "mix", "mod", "modf", "noise1", "normalize", "notEqual", "outerProduct", "pow", "radians", "reflect",
+    "refract", "round", "roundEven", "sign", "sin", "sinh", "smoothstep", "step", "tan", "tanh", "texelFetch",
+    "transpose", "trunc",
+    // of pixels, but for one
+    "dFdxCoarse", "dFdxFine", "dFdyCoarse", "dFdyFine", "floatBitsToUint", "fwidthCoarse", "fwidthFine",
+    "interpolateAtCentroid", "interpolateAtOffset", "interpolateAtSample"};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Built-in variables, macros in capitals, and what GL_EXT_spirv_intrinsics adds.
+bool has_taken_prefix(std::string_view name) {
+  for (const std::string_view prefix : {"gl_", "GL_", "ISOSHADE_", "spirv_"})
+    if (name.starts_with(prefix)) return true;
+  return false;
+}
+
+/// Whether the name ends as those of GLSL's extensions do: "pervertexNV", "minInvocationsAMD".
+bool is_extension(std::string_view name) {
+  for (const std::string_view suffix : {"AMD", "ARB", "EXT", "KHR", "NV"})
+    if (name.ends_with(suffix)) return true;
+  return false;
+}
+
+/// Whether the stages name a buffer or an output so: "inputs_block", "result_0".
+bool is_interface(std::string_view name) { return name.ends_with("_block") || name.starts_with("result_"); }
+
+/// Whether the name has the form of an opaque type's: "sampler2DArrayShadow", "uimageBuffer".
+bool is_opaque_type(std::string_view name) {
+  if (name.starts_with('i') || name.starts_with('u'))
+    if (is_opaque_type(name.substr(1))) return true;
+  for (const std::string_view stem : {"image", "sampler", "texture", "subpassInput"}) {
+    if (!name.starts_with(stem)) continue;
+    const char next = name.size() > stem.size() ? name[stem.size()] : 'A';
+    return is_digit(next) || (next >= 'A' && next <= 'Z');
+  }
+  return false;
+}
 
 bool is_clean(std::string_view name) {
   if (name.empty() || name.size() > 100 || !is_letter(name.front()) || name.back() == '_') return false;
   for (size_t i = 0; i < name.size(); ++i)
     if (!is_letter(name[i]) && !is_digit(name[i]) && (name[i] != '_' || name[i - 1] == '_')) return false;
-  return !name.starts_with("gl_");
+  return !has_taken_prefix(name);
 }
 
 std::string clean(std::string_view wanted) {
@@ -72,7 +108,7 @@ std::string clean(std::string_view wanted) {
   if (name.size() > 100) name.resize(100);
   while (!name.empty() && name.front() == '_') name.erase(0, 1);  // C++ reserves "_A" and, globally, "_a"
   while (!name.empty() && name.back() == '_') name.pop_back();
-  if (name.empty() || is_digit(name.front()) || name.starts_with("gl_")) name = "n_" + name;
+  if (name.empty() || is_digit(name.front()) || has_taken_prefix(name)) name = "n_" + name;
   if (name.back() == '_') name.pop_back();
   return name;
 }
@@ -93,7 +129,8 @@ std::string Names::take(std::string_view wanted, bool function) {
   std::string name = clean(wanted);
   const auto [index, is_new] = used_.add(name);
   if (is_new) {
-    const bool forbidden = reserved.contains(name) || (function && glsl_functions.contains(name));
+    const bool forbidden = reserved.contains(name) || is_opaque_type(name) || is_extension(name) ||
+                           (function && (glsl_functions.contains(name) || is_interface(name)));
     if (!forbidden && (outer_ == nullptr || !outer_->taken(name))) return name;
     if (forbidden && !taken(name + "_")) {
       used_.add(name + "_");

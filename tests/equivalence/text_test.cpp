@@ -124,6 +124,71 @@ TEST(Text, CppCompilesWithoutWarningsByBothCompilers) {
   }
 }
 
+TEST(Text, CompilesWhateverItsPartsAreCalled) {
+  // Keywords and macros of both languages, and what the texts around functions say, some with forms of their own.
+  const std::vector<std::string> names = {"main",
+                                          "template",
+                                          "precise",
+                                          "gl_Position",
+                                          "GL_EXT_ray_query",
+                                          "VULKAN",
+                                          "active",
+                                          "mat2x3",
+                                          "dmat4x4",
+                                          "image2DArray",
+                                          "usampler2DRect",
+                                          "itextureCube",
+                                          "subpassInputMS",
+                                          "spirv_type",
+                                          "pervertexEXT",
+                                          "workgroupcoherent",
+                                          "minInvocationsAMD",
+                                          "dFdxFine",
+                                          "floatBitsToUint",
+                                          "ISOSHADE_LANES",
+                                          "Lanes",
+                                          "batch",
+                                          "inputs_block",
+                                          "result_0",
+                                          "__LINE__",
+                                          "a__b",
+                                          "a_b",
+                                          "_a_b",
+                                          "linux",
+                                          "and",
+                                          "isoshade_eval",
+                                          "EOF"};
+  support::Diagnostics diagnostics;
+  check::Library library("");
+  std::string nodes, previous = "x";
+  for (const std::string& name : names) {
+    // A function, its input, its node and an output of this name; and in the caller a node.
+    library.add("odd/" + name + ".json",
+                R"({"isoshade": 1, "function": ")" + name + R"(", "inputs": {")" + name +
+                    R"(": {"type": "float"}}, "nodes": {"n": {"type": "sin", "in": ")" + name +
+                    R"("}}, "outputs": {"out": "n", ")" + name + R"(": "n"}})");
+    nodes += (nodes.empty() ? "\"" : ", \"") + name + R"(": {"type": ")" + name + R"(.json", ")" + name +
+             "\": \"" + previous + "\"}";
+    previous = name + ".out";
+  }
+  const std::string text =
+      R"({"isoshade": 1, "function": "odd", "inputs": {"x": {"type": "float"}}, "nodes": {)" + nodes +
+      R"(}, "outputs": {"out": ")" + previous + "\"}}";
+  driver::Options options;
+  options.library = &library;
+  const auto program = driver::compile_function(std::make_shared<support::SourceFile>("odd/odd.json", text),
+                                                options, diagnostics);
+  ASSERT_TRUE(program) << diagnostics.text();
+  const Folder folder;
+  const std::string glsl =
+      folder.write("odd.frag", driver::glsl(*program, driver::Division::native)).string();
+  expect_success("glslangValidator -V " + glsl + " -o " + glsl + ".spv");
+  const std::string cpp = folder.write("odd.cpp", driver::cpp(*program)).string();
+  for (const char* compiler : {"g++", "clang++"})
+    expect_success(std::string(compiler) +
+                   " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + cpp);
+}
+
 TEST(Text, ReadsAlikeInBothLanguages) {
   for (const Texts& texts : shipped()) {
     SCOPED_TRACE(texts.name);
