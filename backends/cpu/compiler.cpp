@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/cpu/compiler.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 #include <sys/stat.h>
@@ -15,6 +16,11 @@ namespace {
 using support::Diagnostics;
 using support::Id;
 using support::quote;
+
+constexpr const char* way_out =
+    "isoshade needs g++ 12 or clang++ 14, or newer, with the standard library's headers: install one, or "
+    "name it "
+    "with --cxx or in ISOSHADE_CXX";
 
 bool is_program(const std::string& path) {
   struct stat facts;
@@ -48,6 +54,21 @@ std::string file_facts(const std::string& path) {
          std::to_string(facts.st_mtim.tv_nsec);
 }
 
+/// The first lines of what a compiler said, each as a note.
+void note_lines(std::string_view text, support::Diagnostic& report) {
+  constexpr size_t most = 12;
+  size_t count = 0;
+  while (!text.empty() && count < most) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    if (end > 0) {
+      report.note(std::string(text.substr(0, end)));
+      ++count;
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  if (count == 0) report.note("it said nothing");
+}
+
 }  // namespace
 
 std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& diagnostics) {
@@ -57,22 +78,22 @@ std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& d
   if (!name.empty()) {
     compiler.path_ = locate(name);
     if (compiler.path_.empty()) {
-      diagnostics.report(Id::no_compiler, "there is no C++ compiler " + quote(name));
+      diagnostics.report(Id::no_compiler, "there is no C++ compiler " + quote(name)).suggest(way_out);
       return std::nullopt;
     }
   } else {
     for (const char* usual : {"c++", "g++", "clang++"})
       if (compiler.path_.empty()) compiler.path_ = locate(usual);
     if (compiler.path_.empty()) {
-      diagnostics.report(Id::no_compiler, "there is no C++ compiler on PATH")
-          .suggest("install g++ or clang++, or name a compiler in ISOSHADE_CXX");
+      diagnostics.report(Id::no_compiler, "there is no C++ compiler on PATH").suggest(way_out);
       return std::nullopt;
     }
   }
   const std::optional<ProcessEnd> answer = run_process({compiler.path_, "--version"}, {{"LC_ALL", "C"}});
   if (!answer || answer->status != 0 || answer->output.empty()) {
-    diagnostics.report(Id::no_compiler,
-                       quote(compiler.path_) + " is no compiler: it does not answer --version");
+    diagnostics
+        .report(Id::no_compiler, quote(compiler.path_) + " is no compiler: it does not answer --version")
+        .suggest(way_out);
     return std::nullopt;
   }
   compiler.version_ = answer->output;
@@ -104,11 +125,14 @@ bool Compiler::compile(const std::string& folder, const LaneCount& lanes, Diagno
   for (std::string& flag : flags(lanes)) arguments.push_back(std::move(flag));
   arguments.insert(arguments.end(), {"-I" + folder, "-o", folder + "/program.so", folder + "/program.cpp"});
   const std::optional<ProcessEnd> end = run_process(arguments, {{"LC_ALL", "C"}, {"TMPDIR", folder}});
-  if (end && end->status == 0) return true;
-  diagnostics
-      .report(Id::compiler_failed, quote(path_) + (end ? " failed with status " + std::to_string(end->status)
-                                                       : " could not be started"))
-      .note(end && !end->output.empty() ? end->output : "it said nothing");
+  const bool wrote = access((folder + "/program.so").c_str(), R_OK) == 0;
+  if (end && end->status == 0 && wrote) return true;
+  const std::string what = !end                ? " could not be started"
+                           : end->status > 128 ? " was ended by signal " + std::to_string(end->status - 128)
+                           : end->status > 0   ? " failed with status " + std::to_string(end->status)
+                                               : " ended well but wrote no program";
+  support::Diagnostic& report = diagnostics.report(Id::compiler_failed, quote(path_) + what).suggest(way_out);
+  note_lines(end ? end->output : "", report);
   return false;
 }
 

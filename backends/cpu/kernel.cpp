@@ -44,7 +44,12 @@ std::string file_name(const driver::Program& program) {
 std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stage, Diagnostics& diagnostics) {
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) {
-    diagnostics.report(Id::unloadable_code, "cannot load " + quote(path)).note(support::visible(dlerror()));
+    diagnostics.report(Id::unloadable_code, "cannot load " + quote(path))
+        .note(dlerror())
+        .suggest(
+            "code must be loadable from the cache: set XDG_CACHE_HOME to a folder on a disk that is not "
+            "mounted "
+            "noexec, or delete the file if it is damaged");
     return nullptr;
   }
   std::unique_ptr<Kernel> kernel(new Kernel(library));

@@ -104,6 +104,25 @@ TEST(Compiler, TellsWhatItCouldNotCompile) {
   EXPECT_NE(diagnostics.text().find("program.cpp:1:1"), std::string::npos) << diagnostics.text();
 }
 
+TEST(Compiler, ThatFailsIsReportedWithItsWordsAndTheWayOut) {
+  const TestFolder folder;
+  const std::pair<const char*, const char*> endings[] = {{"echo first; echo second; exit 1", "second"},
+                                                         {"kill -9 $$", "signal 9"},
+                                                         {"exit 0", "wrote no program"}};
+  for (const auto& [commands, words] : endings) {
+    write_script(folder / "c++",
+                 std::string("[ \"$1\" = --version ] && echo compiler 1.0 && exit\n") + commands);
+    Diagnostics diagnostics;
+    const auto compiler = Compiler::find(folder / "c++", diagnostics);
+    ASSERT_TRUE(compiler) << diagnostics.text();
+    EXPECT_FALSE(compiler->compile(folder.path(), *lane_count("4"), diagnostics));
+    const std::string text = diagnostics.text();
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+    EXPECT_NE(text.find("ISOSHADE_CXX"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\\x0a"), std::string::npos) << "lines stand on lines of their own: " << text;
+  }
+}
+
 TEST(LaneCount, HasTheWidestOfTheMachine) {
   EXPECT_TRUE(widest_lane_count().available());
   for (const LaneCount& lanes : lane_counts()) {
