@@ -6,7 +6,9 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
@@ -50,13 +52,19 @@ int64_t Document::to_integer(const Json& number) const {
 }
 
 Source read_source(const std::string& path, Diagnostics& diagnostics, const Span& where) {
-  const bool standard_input = path == "-";
+  const bool named_by_document = where.file != nullptr;
+  const bool standard_input = path == "-" && !named_by_document;
   const auto fail = [&](Id id, const std::string& reason) {
     diagnostics.report(id, where, "cannot read " + support::quote(path) + ": " + reason);
     return nullptr;
   };
   // The system would open what stands before the NUL.
   if (path.find('\0') != std::string::npos) return fail(Id::missing_file, "the name has a NUL byte");
+  // A user may name a pipe. Opening one that a document names would wait for a writer.
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (named_by_document && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    return fail(Id::unreadable_file, "it is no regular file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
       standard_input ? nullptr : std::fopen(path.c_str(), "rb"),
       [](std::FILE* file) { return std::fclose(file); });

@@ -67,7 +67,8 @@ struct Document {
 std::optional<Document> parse_document(support::Source source, support::Diagnostics& diagnostics);
 
 /// Reads a file ("-" is standard input); reports a file that is missing, unreadable or too large, and then
-/// returns nothing. `where` is the place that names the file, if a document does.
+/// returns nothing. `where` is the place that names the file, if a document does, which can name regular files
+/// only.
 support::Source read_source(const std::string& path, support::Diagnostics& diagnostics,
                             const support::Span& where = {});
 

@@ -107,7 +107,7 @@ const std::vector<std::string>& Editor::parameters_of_effect(const std::string& 
   if (!is_new) return found->second;
   // What is wrong with the effect is reported when it is compiled.
   Diagnostics unheard;
-  const support::Source source = graph::read_source(path, unheard);
+  const support::Source source = graph::read_source(path, unheard, {document_.source, 0, 0});
   const auto effect = source ? graph::parse_document(source, unheard) : std::nullopt;
   if (!effect) return found->second;
   if (const Json* parameters = find_object(effect->root, "parameters"))

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "compiler/graph/document.h"
 
@@ -311,6 +312,17 @@ TEST_F(ReadSource, PointsAtTheDocumentThatNamesTheFile) {
   EXPECT_EQ(diagnostics_.text(),
             "a.json:1:1: error[missing-file]: cannot read \"no/such\": No such file or directory\n"
             "  1 | \"no/such\"\n    | ^^^^^^^^^\n");
+}
+
+TEST_F(ReadSource, WaitsForNothingThatADocumentNames) {
+  const std::string pipe = folder_ + "/pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const support::Source document = source("{}");
+  for (const std::string& name : {pipe, std::string("-"), std::string("/dev/zero")}) {
+    Diagnostics diagnostics;
+    EXPECT_EQ(read_source(name, diagnostics, {document, 0, 1}), nullptr) << name;
+    EXPECT_EQ(diagnostics.error_count(), 1u) << name;
+  }
 }
 
 TEST_F(ReadSource, DoesNotCutNamesAtNulBytes) {
