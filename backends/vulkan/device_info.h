@@ -21,6 +21,9 @@ struct DeviceInfo {
 /// The devices of this machine in the order of their index; empty, with a diagnostic, where there is no Vulkan.
 std::vector<DeviceInfo> list_devices(support::Diagnostics& diagnostics);
 
+/// Whether `--device` names this device: by its number, or by a part of its name in any case.
+bool matches(const DeviceInfo& info, std::string_view selector);
+
 /// Reports no-device, with what to install.
 support::Diagnostic& report_unusable(std::string_view why, support::Diagnostics& diagnostics);
 

@@ -126,6 +126,11 @@ std::vector<DeviceInfo> list_devices(support::Diagnostics& diagnostics) {
   return infos;
 }
 
+bool matches(const DeviceInfo& info, std::string_view selector) {
+  if (is_number(selector)) return info.index == std::stoi(std::string(selector));
+  return lower_case(info.name).find(lower_case(selector)) != std::string::npos;
+}
+
 int choose(const Instance& instance, std::string_view selector, support::Diagnostics& diagnostics) {
   std::vector<DeviceInfo> infos;
   for (const auto& device : instance.devices)
@@ -139,13 +144,8 @@ int choose(const Instance& instance, std::string_view selector, support::Diagnos
   if (selector.empty()) {
     chosen = index_of([](const DeviceInfo& info) { return info.cpu; });
     if (chosen < 0 && !infos.empty()) chosen = 0;
-  } else if (is_number(selector)) {
-    const int number = std::stoi(std::string(selector));
-    chosen = index_of([&](const DeviceInfo& info) { return info.index == number; });
   } else {
-    chosen = index_of([&](const DeviceInfo& info) {
-      return lower_case(info.name).find(lower_case(selector)) != std::string::npos;
-    });
+    chosen = index_of([&](const DeviceInfo& info) { return matches(info, selector); });
   }
   if (chosen < 0 && infos.empty()) {
     report_unusable("there is no device", diagnostics);

@@ -39,9 +39,7 @@ int devices([[maybe_unused]] const DevicesArguments& arguments, [[maybe_unused]]
   bool any = false;
   for (const vulkan::DeviceInfo& device : vulkan::list_devices(diagnostics)) {
     const std::string& wanted = arguments.choice.device;
-    if (!wanted.empty() && wanted != std::to_string(device.index) &&
-        device.name.find(wanted) == std::string::npos)
-      continue;
+    if (!wanted.empty() && !vulkan::matches(device, wanted)) continue;
     any = true;
     if (!print_device(device, diagnostics)) break;
   }

@@ -68,6 +68,16 @@ TEST_F(Devices, AreChosenByIndexAndByPartOfTheNameInAnyCase) {
   }
 }
 
+TEST_F(Devices, MatchTheirNumberOrAPartOfTheirNameInAnyCase) {
+  DeviceInfo info;
+  info.index = 3;
+  info.name = "NVIDIA H200";
+  for (const char* selector : {"3", "03", "nvidia", "H200", "h2"})
+    EXPECT_TRUE(matches(info, selector)) << selector;
+  for (const char* selector : {"2", "33", "llvmpipe", "-3"})
+    EXPECT_FALSE(matches(info, selector)) << selector;
+}
+
 TEST_F(Devices, UnknownOnesAreReportedWithThoseThereAre) {
   for (const std::string selector : {"no such device", "99", "-1", "12345678901234567890"}) {
     support::Diagnostics report;
