@@ -2,6 +2,7 @@
 #include "runtime/cli/arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 
 #include "runtime/cli/places.h"
 
@@ -57,6 +58,13 @@ void add_settings(CLI::App& app, std::vector<std::string>& settings) {
       ->take_all();
 }
 
+std::string subcommand_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* subcommand : app.get_subcommands(nullptr))
+    names += (names.empty() ? "" : ", ") + subcommand->get_name();
+  return names;
+}
+
 }  // namespace
 
 std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
@@ -65,12 +73,13 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       "isoshade");
   app.footer(footer);
   app.set_version_flag("--version", std::string(version));
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // so that a wrong word is named; none at all is refused below
   app.fallthrough();
 
   Arguments parsed;
   app.add_flag("-q,--quiet", parsed.common.quiet, "Print results and errors only");
   app.add_option("--library", parsed.common.library, "Folder of the library's function documents")
+      ->envname("ISOSHADE_LIBRARY")
       ->check(CLI::ExistingDirectory);
 
   CompileArguments compile;
@@ -153,6 +162,14 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   } catch (const CLI::ParseError& error) {
     // CLI11's own codes are for its own kinds of error; ours are documented.
     exit = app.exit(error) == 0 ? Exit::success : Exit::failure;
+    if (exit == Exit::failure && app.get_subcommands().empty())
+      std::cerr << "The subcommands are: " << subcommand_names(app) << "\n";
+    return std::nullopt;
+  }
+  if (app.get_subcommands().empty()) {
+    std::cerr << "one of the subcommands is needed: " << subcommand_names(app) << "\n"
+              << "Run with --help for more information.\n";
+    exit = Exit::failure;
     return std::nullopt;
   }
   if (!render_size.empty()) {

@@ -8,6 +8,7 @@
 #include "backends/cpu/lanes_headers.h"
 #include "compiler/driver/driver.h"
 #include "compiler/emit/spirv.h"
+#include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -48,6 +49,13 @@ class Writer {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(),
                                         error);  // write_file reports what cannot be written
+    if (is_document(path)) {
+      diagnostics_
+          .report(support::Id::unwritable_file,
+                  support::quote(path.string()) + " is a document, which the reflection would replace")
+          .suggest("choose another folder with -o");
+      return false;
+    }
     if (!scene::write_file(path.string(), bytes, diagnostics_)) return false;
     written_.push_back(path.string());
     return true;
@@ -56,6 +64,16 @@ class Writer {
   const std::vector<std::string>& written() const { return written_; }
 
  private:
+  /// Reflection is JSON beside JSON: written to the folder of its graph, it has the graph's name.
+  static bool is_document(const std::filesystem::path& path) {
+    std::error_code error;
+    if (path.extension() != ".json" || !std::filesystem::is_regular_file(path, error)) return false;
+    support::Diagnostics unheard;
+    const support::Source source = graph::read_source(path.string(), unheard);
+    const auto document = source ? graph::parse_document(source, unheard) : std::nullopt;
+    return document && document->root.find("isoshade") != nullptr;
+  }
+
   bool wants(std::string_view target) const {
     return std::ranges::find(arguments_.targets, target) != arguments_.targets.end();
   }
@@ -84,25 +102,28 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
   return list;
 }
 
+// Reflection comes first: where it would replace a document, nothing else is written either.
 bool write_effect(const driver::Effect& effect, Writer& writer) {
   ordered_json reflection{{"effect", effect.name}, {"document", effect.document}};
   reflection["parameters"] = reflect(effect.parameters);
   for (const driver::Pass& pass : effect.passes) {
     const std::string stem = effect.name + "." + pass.name;
-    if (!writer.program(stem + ".vertex", pass.vertex) || !writer.program(stem + ".pixel", pass.pixel))
-      return false;
     reflection["passes"].push_back(
         {{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}});
   }
-  return writer.write(effect.name + ".json", reflection.dump(2) + "\n");
+  if (!writer.write(effect.name + ".json", reflection.dump(2) + "\n")) return false;
+  return std::ranges::all_of(effect.passes, [&](const driver::Pass& pass) {
+    const std::string stem = effect.name + "." + pass.name;
+    return writer.program(stem + ".vertex", pass.vertex) && writer.program(stem + ".pixel", pass.pixel);
+  });
 }
 
 bool write_function(const driver::Program& program, Writer& writer) {
   ordered_json reflection{{"function", program.name}, {"document", program.document}};
   reflection["inputs"] = reflect(program.inputs);
   reflection["outputs"] = reflect(program.results);
-  return writer.program(program.name, program) &&
-         writer.write(program.name + ".json", reflection.dump(2) + "\n");
+  return writer.write(program.name + ".json", reflection.dump(2) + "\n") &&
+         writer.program(program.name, program);
 }
 
 }  // namespace

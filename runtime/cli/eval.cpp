@@ -10,6 +10,9 @@ namespace isoshade::cli {
 namespace {
 
 bool evaluate(const EvalArguments& arguments, const Common& common, support::Diagnostics& diagnostics) {
+  const std::vector<std::string> read = {arguments.function, arguments.inputs};
+  if (!read_standard_input_once(read, diagnostics) || !may_write(arguments.output, read, diagnostics))
+    return false;
   check::Library library(library_root(common));
   driver::Options options;
   options.library = &library;

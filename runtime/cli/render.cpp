@@ -25,7 +25,9 @@ namespace {
 
 bool render_to_file(const RenderArguments& arguments, const Common& common,
                     support::Diagnostics& diagnostics) {
-  if (!scene::check_image_path(arguments.output, diagnostics)) return false;
+  if (!scene::check_image_path(arguments.output, diagnostics) ||
+      !may_write(arguments.output, {arguments.scene}, diagnostics))
+    return false;
   const auto scene = load_scene(arguments.scene, arguments.settings, diagnostics);
   if (!scene) return false;
   check::Library library(library_root(common));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cli/session.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -8,6 +9,7 @@
 
 #include "backends/cpu/backend.h"
 #include "backends/interpreter/backend.h"
+#include "compiler/support/visible.h"
 #include "runtime/cli/places.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
@@ -19,7 +21,6 @@ namespace fs = std::filesystem;
 
 std::string library_root(const Common& common) {
   if (!common.library.empty()) return common.library;
-  if (const char* set = std::getenv("ISOSHADE_LIBRARY"); set != nullptr && *set != '\0') return set;
   std::error_code error;
   const fs::path command = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
@@ -37,13 +38,35 @@ bool flush(support::Diagnostics& diagnostics) {
   return errors;
 }
 
+bool may_write(const std::string& path, const std::vector<std::string>& inputs,
+               support::Diagnostics& diagnostics) {
+  std::error_code error;
+  for (const std::string& input : inputs) {
+    if (!fs::equivalent(path, input, error) || !fs::is_regular_file(path, error)) continue;
+    diagnostics
+        .report(support::Id::unwritable_file, "writing " + support::quote(path) + " would destroy an input")
+        .suggest("give the output another name");
+    return false;
+  }
+  return true;
+}
+
+bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics) {
+  if (std::count(inputs.begin(), inputs.end(), "-") <= 1) return true;
+  diagnostics
+      .report(support::Id::unreadable_file, "standard input is asked for twice, and can be read only once")
+      .suggest("give all but one as files");
+  return false;
+}
+
 void progress(const Common& common, const std::string& line) {
   if (common.quiet || isatty(STDERR_FILENO) != 1) return;
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 std::unique_ptr<backends::Backend> make_backend(const std::string& name, const BackendChoice& choice,
-                                                const Common& common, support::Diagnostics& diagnostics) {
+                                                const Common& common, support::Diagnostics& diagnostics,
+                                                StandIn stand_in) {
   if (name == "interpreter") return interpreter::create();
   if (name == "vulkan") {
 #ifdef ISOSHADE_VULKAN
@@ -65,7 +88,9 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
   support::Diagnostics reported;
   if (auto backend = cpu::create(options, reported)) return backend;
   const bool no_compiler = reported.all().size() == 1 && reported.all()[0].id == support::Id::no_compiler;
-  if (no_compiler && choice.compiler.empty()) {
+  const char* named = std::getenv("ISOSHADE_CXX");
+  const bool asked_for = !choice.compiler.empty() || (named != nullptr && *named != '\0');
+  if (no_compiler && !asked_for && stand_in == StandIn::allowed) {
     if (!common.quiet)
       std::fputs(
           "note: there is no C++ compiler on this machine; the interpreter serves, with the same bits but "

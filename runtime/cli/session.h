@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "backends/backend.h"
 #include "compiler/check/library.h"
@@ -11,7 +12,7 @@
 
 namespace isoshade::cli {
 
-/// The folder of library documents: as given, $ISOSHADE_LIBRARY, the installed one beside the command, or that of
+/// The folder of library documents: as given, the installed one beside the command, or that of
 /// the source tree the command was built from.
 std::string library_root(const Common& common);
 
@@ -21,9 +22,21 @@ bool flush(support::Diagnostics& diagnostics);
 /// Progress for a person: to stderr, if that is a terminal and nobody asked for quiet.
 void progress(const Common& common, const std::string& line);
 
-/// Makes a backend by its name. Where there is no compiler, the interpreter stands in for the cpu and says so.
+/// Whether it is safe to write the file: it is none of those that are read. Reports if it is one.
+bool may_write(const std::string& path, const std::vector<std::string>& inputs,
+               support::Diagnostics& diagnostics);
+
+/// Whether "-" stands at most once among the files to be read. Reports if not.
+bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics);
+
+/// Whether the interpreter may serve for the cpu: not where the cpu is to be proven.
+enum class StandIn { allowed, refused };
+
+/// Makes a backend by its name. Where there is no compiler and none was named, the interpreter stands in for the
+/// cpu and says so.
 std::unique_ptr<backends::Backend> make_backend(const std::string& name, const BackendChoice& choice,
-                                                const Common& common, support::Diagnostics& diagnostics);
+                                                const Common& common, support::Diagnostics& diagnostics,
+                                                StandIn stand_in = StandIn::allowed);
 
 int compile(const CompileArguments& arguments, const Common& common);
 int render(const RenderArguments& arguments, const Common& common);

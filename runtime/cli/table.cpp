@@ -40,7 +40,9 @@ std::string_view trimmed(std::string_view text) {
 class Reader {
  public:
   Reader(const support::Source& source, support::Diagnostics& diagnostics)
-      : source_(source), text_(source->text()), diagnostics_(diagnostics) {}
+      : source_(source), text_(source->text()), diagnostics_(diagnostics) {
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // spreadsheets put a byte order mark there
+  }
 
   bool next_line() {
     while (at_ < text_.size()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade verify: scenes on several backends, every bit compared, hashes held against recorded ones.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -31,8 +32,10 @@ class Verifier {
     int result = prepare() ? success : failure;
     if (result == success) {
       for (const std::string& path : arguments_.scenes) result = std::max(result, verify_scene(path));
-      if (result != failure && arguments_.update &&
-          !compare::write_goldens(arguments_.golden, goldens_, diagnostics_))
+      if (arguments_.update && result == different)
+        std::printf("nothing is recorded: the images differ\n");
+      else if (arguments_.update && result == success &&
+               !compare::write_goldens(arguments_.golden, goldens_, diagnostics_))
         result = failure;
     }
     return flush(diagnostics_) ? failure : result;
@@ -45,6 +48,15 @@ class Verifier {
           .report(support::Id::missing_argument,
                   "--update records hashes in a golden file, and none is named")
           .suggest("add --golden FILE");
+      return false;
+    }
+    std::vector<std::string> read = arguments_.scenes;
+    read.push_back(arguments_.golden);
+    if (!read_standard_input_once(read, diagnostics_)) return false;
+    if (!arguments_.golden.empty() && std::ranges::count(arguments_.scenes, "-") != 0) {
+      diagnostics_
+          .report(support::Id::missing_argument, "a scene on standard input has no name to record a hash by")
+          .suggest("give the scene as a file");
       return false;
     }
     if (!arguments_.golden.empty()) {
@@ -61,7 +73,7 @@ class Verifier {
       for (const std::string& count : lanes) {
         BackendChoice choice = arguments_.choice;
         choice.lanes = count;
-        auto backend = make_backend(name, choice, common_, diagnostics_);
+        auto backend = make_backend(name, choice, common_, diagnostics_, StandIn::refused);
         if (backend == nullptr) return false;
         if (!common_.quiet)
           std::printf("%-12s %s\n", label(name, count).c_str(), backend->description().c_str());
@@ -136,7 +148,7 @@ class Verifier {
         image.width, image.height, hash,
         compare::encoded_hash(image.width, image.height,
                               scene::encode(image.rgba, scene.output.encoding, scene.output.exposure))};
-    const std::string key = compare::golden_key(path);
+    const std::string key = compare::golden_key(path, arguments_.golden);
     if (arguments_.update) {
       goldens_[key][std::string(tier)] = found;
       return success;

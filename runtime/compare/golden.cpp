@@ -68,8 +68,16 @@ std::string size_text(const Golden& golden) {
 
 }  // namespace
 
-std::string golden_key(const std::string& scene_path) {
-  return std::filesystem::path(scene_path).lexically_normal().generic_string();
+std::string golden_key(const std::string& scene_path, const std::string& golden_path) {
+  namespace fs = std::filesystem;
+  const auto folder_of = [](const std::string& path) {
+    std::error_code error;
+    const fs::path folder = fs::path(path).parent_path();
+    const fs::path canonical = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+    return error ? fs::absolute(folder, error).lexically_normal() : canonical;
+  };
+  const fs::path folder = folder_of(scene_path).lexically_relative(folder_of(golden_path));
+  return (folder / fs::path(scene_path).filename()).lexically_normal().generic_string();
 }
 
 std::optional<Goldens> read_goldens(const std::string& path, Diagnostics& diagnostics) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Golden images: the recorded hashes of scenes, by the scene's path and the precision tier.
+// Golden images: the recorded hashes of scenes, by the scene's path from the file and the precision tier.
 //
 //   {
-//     "graphs/scenes/material_balls.json": {
+//     "../../graphs/scenes/material_balls.json": {
 //       "default": {"size": [1280, 720], "image": "...", "encoded": "..."}
 //     }
 //   }
@@ -28,8 +28,9 @@ struct Golden {
 /// By scene, then by tier.
 using Goldens = std::map<std::string, std::map<std::string, Golden>>;
 
-/// How a scene is named in the file: its path, without "./" and the like.
-std::string golden_key(const std::string& scene_path);
+/// How a scene is named in the file: by its path from the folder of that file, so that it does not matter where
+/// the command is run.
+std::string golden_key(const std::string& scene_path, const std::string& golden_path);
 
 /// Reports a file that is missing or is no file of goldens.
 std::optional<Goldens> read_goldens(const std::string& path, support::Diagnostics& diagnostics);

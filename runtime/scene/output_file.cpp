@@ -69,9 +69,10 @@ bool write_file(const std::string& path, std::string_view bytes, support::Diagno
   } else {
     std::error_code error;
     fs::path target(path);
-    // A link is kept, and the file that it names replaced.
-    if (fs::is_symlink(target, error)) target = fs::weakly_canonical(target, error);
     struct stat status {};
+    // A link is kept, and the file that it names replaced; but /dev/stdout may name a pipe, which has no path.
+    const bool special = ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+    if (!special && fs::is_symlink(target, error)) target = fs::weakly_canonical(target, error);
     const bool exists = ::stat(target.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) {
       failure = EISDIR;

@@ -18,13 +18,17 @@ struct Outcome {
   std::string text;  ///< standard output and standard error
 };
 
-Outcome run(const std::string& arguments) {
+Outcome run_command(const std::string& command) {
   Outcome outcome;
-  FILE* pipe = popen((std::string(ISOSHADE_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = popen(("{ " + command + "; } 2>&1").c_str(), "r");
   char buffer[4096];
   for (size_t got; (got = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.text.append(buffer, got);
   outcome.exit = WEXITSTATUS(pclose(pipe));
   return outcome;
+}
+
+Outcome run(const std::string& arguments) {
+  return run_command(std::string(ISOSHADE_COMMAND) + " " + arguments);
 }
 
 class Cli : public testing::Test {
@@ -109,6 +113,12 @@ TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
   const Outcome changed = run(command + " --set background=0.5,0,0,1");
   EXPECT_EQ(changed.exit, 1) << changed.text;
   EXPECT_EQ(run("verify " + scene + " --backends cpu --update").exit, 2) << "--update needs --golden";
+  const std::string elsewhere = fs::relative(scene, folder_).string();
+  EXPECT_EQ(run_command("cd " + folder_.string() + " && " ISOSHADE_COMMAND " verify " + elsewhere +
+                        " --backends cpu --golden hashes.json")
+                .exit,
+            0)
+      << "the file is the same from wherever it is used";
 }
 
 TEST_F(Cli, EvaluatesATable) {
@@ -126,7 +136,10 @@ TEST_F(Cli, SaysWhereATableIsWrong) {
   };
   EXPECT_NE(error("alpha,n_dot_l\n1,1\n").find("did you mean \"n_dot_h\"?"), std::string::npos);
   EXPECT_NE(error("alpha\n1\n").find("there is no column \"n_dot_h\""), std::string::npos);
-  EXPECT_NE(error("alpha,n_dot_h\n1\n").find("this row has 1 cells"), std::string::npos);
+  EXPECT_NE(error("\xef\xbb\xbf"
+                  "alpha,n_dot_h\n1\n")
+                .find("this row has 1 cells"),
+            std::string::npos);
   EXPECT_NE(error("alpha,n_dot_h\n1,one\n").find("in.csv:2:3: error[bad-table]: \"one\" is not a float"),
             std::string::npos);
 }
@@ -141,6 +154,63 @@ TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   const std::string compiler = "c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " + file("out") + " ";
   EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
+}
+
+TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
+  const Outcome outcome = run("paint");
+  EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("compile, render, verify, eval, devices"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Cli, NeverWritesOverWhatItReads) {
+  const std::string text =
+      R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
+          "nodes": {"n": {"type": "sin", "in": "x"}}, "outputs": {"out": "n"}})";
+  const std::string function = file("f.json", text), table = file("in.csv", "x\n1\n");
+  EXPECT_EQ(run("compile " + function + " -o " + folder_.string()).exit, 2)
+      << "f.json is its reflection's name";
+  EXPECT_FALSE(fs::exists(folder_ / "f.cpp")) << "all or nothing";
+  EXPECT_EQ(run("eval " + function + " --inputs " + table + " -o " + function).exit, 2);
+  EXPECT_EQ(run("eval " + function + " --inputs " + table + " -o " + table).exit, 2);
+  EXPECT_EQ(read(function), text);
+  EXPECT_EQ(read(table), "x\n1\n");
+  // Reflection itself may be replaced, by that of the next run.
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(run("compile " + function + " -o " + file("out")).exit, 0);
+}
+
+TEST_F(Cli, WritesToAPipeByItsPath) {
+  const std::string table = file("in.csv", "n_dot_h,alpha\n1,0.5\n");
+  EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " -o /dev/stdout | cat").text, "out\n0x1.45f306p+0\n");
+}
+
+TEST_F(Cli, ReadsStandardInputForOneThingOnly) {
+  EXPECT_NE(run("eval - --inputs - < " + ggx).text.find("only once"), std::string::npos);
+  EXPECT_NE(run("verify - - < " + scene).text.find("only once"), std::string::npos);
+  EXPECT_EQ(run("verify - --golden " + file("g.json") + " --update < " + scene).exit, 2) << "it has no name";
+}
+
+TEST_F(Cli, FailsWhereNobodyCanReadWhatItSays) {
+  const std::string verify = "verify " + scene + " --backends interpreter --size 8x8";
+  EXPECT_EQ(run(verify + " 2>&1 >/dev/full").exit, 2);
+  EXPECT_EQ(run(verify + " 2>&1 >&-").exit, 2);
+  EXPECT_EQ(
+      run("render " + scene + " --backend interpreter --size 8x8 -o " + file("a.png") + " >&- 2>&- <&-").exit,
+      0);
+  EXPECT_EQ(read(folder_ / "a.png").substr(1, 3), "PNG") << "and nothing else is written to the file";
+}
+
+TEST_F(Cli, TakesTheInterpreterForTheCpuOnlyWhereNothingIsProven) {
+  const std::string bare = "env -u ISOSHADE_CXX PATH=/nonexistent ";
+  const std::string render = "render " + scene + " --size 8x8 -o " + file("a.png");
+  const auto with = [](const std::string& environment, const std::string& arguments) {
+    return run_command(environment + ISOSHADE_COMMAND + " " + arguments);
+  };
+  EXPECT_EQ(with("/usr/bin/" + bare, render).exit, 0);
+  const Outcome proof =
+      with("/usr/bin/" + bare, "verify " + scene + " --backends cpu,interpreter --size 8x8");
+  EXPECT_EQ(proof.exit, 2) << "it would compare the interpreter with itself";
+  EXPECT_NE(proof.text.find("g++ 12"), std::string::npos) << proof.text;
+  EXPECT_EQ(with("ISOSHADE_CXX=/nonexistent ", render).exit, 2) << "a compiler was named, and is not there";
 }
 
 TEST_F(Cli, DumpsEveryStage) {

@@ -82,8 +82,13 @@ TEST_F(GoldenFile, RefusesWhatIsNoGolden) {
   EXPECT_EQ(diagnostics.all()[0].id, support::Id::missing_file);
 }
 
-TEST(GoldenKey, IsOnePathForOneScene) {
-  EXPECT_EQ(compare::golden_key("./graphs/scenes/../scenes/a.json"), "graphs/scenes/a.json");
+TEST(GoldenKey, IsTheSameFromWhereverItIsAskedFor) {
+  const std::string key = "../../graphs/scenes/a.json";
+  EXPECT_EQ(compare::golden_key("./graphs/scenes/../scenes/a.json", "tests/golden/hashes.json"), key);
+  const fs::path here = fs::current_path();
+  EXPECT_EQ(compare::golden_key((here / "graphs/scenes/a.json").string(), "tests/golden/hashes.json"), key);
+  EXPECT_EQ(compare::golden_key("graphs/scenes/a.json", (here / "tests/golden/hashes.json").string()), key);
+  EXPECT_EQ(compare::golden_key("../a.json", "../hashes.json"), "a.json");
 }
 
 }  // namespace
