@@ -252,6 +252,7 @@ Operand ExpressionParser::unary() {
 
 Operand ExpressionParser::postfix() {
   Operand operand = primary();
+  const int depth = depth_;
   while (is(".")) {
     advance();
     if (token_.kind != CodeText::Kind::name)
@@ -260,12 +261,16 @@ Operand ExpressionParser::postfix() {
     auto* link = std::get_if<Link>(&operand.value);
     if (link == nullptr || link->selectors.size() == 2 ||
         (link->selectors.size() == 1 && is_swizzle(link->selectors[0]))) {
-      operand = handed_on(std::move(operand.value), code_.text(), operand.place);
+      ++depth_;
+      if (too_deep()) break;
+      // Messages show no more of it, and each of very many nodes keeps a copy.
+      operand = handed_on(std::move(operand.value), code_.text().substr(0, 100), operand.place);
       link = &std::get<Link>(operand.value);
     }
     link->selectors.push_back(selector);
     link->place = operand.place = since(operand.place);
   }
+  depth_ = depth;
   return operand;
 }
 

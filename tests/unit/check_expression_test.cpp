@@ -180,6 +180,9 @@ TEST(Expression, HostileCodeEndsInAnError) {
   const std::string deep(100'000, '(');
   EXPECT_NE(error_of(deep).find("nested at most 100 deep"), std::string::npos);
   EXPECT_NE(error_of(std::string(100'000, '-') + "x").find("nested at most 100 deep"), std::string::npos);
+  std::string selectors = "x";
+  for (int i = 0; i < 100'000; ++i) selectors += ".x";
+  EXPECT_NE(error_of(selectors).find("nested at most 100 deep"), std::string::npos);
   std::string chain = "x";
   for (int i = 0; i < 300'000; ++i) chain += "+x";
   EXPECT_NE(error_of(chain, R"("x": "x")").find("too-large"), std::string::npos);
