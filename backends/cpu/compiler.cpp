@@ -5,9 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include "backends/cpu/process.h"
+#include "compiler/support/process.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::cpu {
@@ -21,29 +20,6 @@ constexpr const char* way_out =
     "isoshade needs g++ 12 or clang++ 14, or newer, with the standard library's headers: install one, or "
     "name it "
     "with --cxx or in ISOSHADE_CXX";
-
-bool is_program(const std::string& path) {
-  struct stat facts;
-  return stat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode) && access(path.c_str(), X_OK) == 0;
-}
-
-/// The program's path; empty if there is none. The working folder is not searched, whatever PATH says.
-std::string search_path(const std::string& name) {
-  const char* variable = std::getenv("PATH");
-  std::string_view folders = variable ? variable : "/usr/bin:/bin";
-  while (!folders.empty()) {
-    const size_t end = std::min(folders.find(':'), folders.size());
-    const std::string folder(folders.substr(0, end));
-    folders.remove_prefix(std::min(end + 1, folders.size()));
-    if (folder.starts_with('/') && is_program(folder + "/" + name)) return folder + "/" + name;
-  }
-  return "";
-}
-
-std::string locate(const std::string& wanted) {
-  if (wanted.find('/') != std::string::npos) return is_program(wanted) ? wanted : "";
-  return search_path(wanted);
-}
 
 /// What tells one file from another that replaced it.
 std::string file_facts(const std::string& path) {
@@ -76,20 +52,21 @@ std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& d
   std::string name = !wanted.empty() ? wanted : variable ? variable : "";
   Compiler compiler;
   if (!name.empty()) {
-    compiler.path_ = locate(name);
+    compiler.path_ = support::find_program(name);
     if (compiler.path_.empty()) {
       diagnostics.report(Id::no_compiler, "there is no C++ compiler " + quote(name)).suggest(way_out);
       return std::nullopt;
     }
   } else {
     for (const char* usual : {"c++", "g++", "clang++"})
-      if (compiler.path_.empty()) compiler.path_ = locate(usual);
+      if (compiler.path_.empty()) compiler.path_ = support::find_program(usual);
     if (compiler.path_.empty()) {
       diagnostics.report(Id::no_compiler, "there is no C++ compiler on PATH").suggest(way_out);
       return std::nullopt;
     }
   }
-  const std::optional<ProcessEnd> answer = run_process({compiler.path_, "--version"}, {{"LC_ALL", "C"}});
+  const std::optional<support::ProcessEnd> answer =
+      support::run_process({compiler.path_, "--version"}, {{"LC_ALL", "C"}});
   if (!answer || answer->status != 0 || answer->output.empty()) {
     diagnostics
         .report(Id::no_compiler, quote(compiler.path_) + " is no compiler: it does not answer --version")
@@ -124,7 +101,8 @@ bool Compiler::compile(const std::string& folder, const LaneCount& lanes, Diagno
   std::vector<std::string> arguments = {path_};
   for (std::string& flag : flags(lanes)) arguments.push_back(std::move(flag));
   arguments.insert(arguments.end(), {"-I" + folder, "-o", folder + "/program.so", folder + "/program.cpp"});
-  const std::optional<ProcessEnd> end = run_process(arguments, {{"LC_ALL", "C"}, {"TMPDIR", folder}});
+  const std::optional<support::ProcessEnd> end =
+      support::run_process(arguments, {{"LC_ALL", "C"}, {"TMPDIR", folder}});
   const bool wrote = access((folder + "/program.so").c_str(), R_OK) == 0;
   if (end && end->status == 0 && wrote) return true;
   const std::string what = !end                ? " could not be started"

@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "backends/cpu/compiler.h"
-#include "backends/cpu/process.h"
+#include "compiler/support/process.h"
 #include "tests/unit/cpu_folders.h"
 
 namespace isoshade::cpu {
@@ -18,22 +18,22 @@ void write_script(const std::string& path, const std::string& commands) {
 }
 
 TEST(Process, PassesArgumentsAsTheyAre) {
-  const auto end = run_process({"/bin/echo", "a b", "$(exit)", ";", "*", "'\"", ""});
+  const auto end = support::run_process({"/bin/echo", "a b", "$(exit)", ";", "*", "'\"", ""});
   ASSERT_TRUE(end);
   EXPECT_EQ(end->status, 0);
   EXPECT_EQ(end->output, "a b $(exit) ; * '\" \n");
 }
 
 TEST(Process, TellsHowItEnded) {
-  EXPECT_EQ(run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->status, 3);
-  EXPECT_EQ(run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->output, "words\n");
-  EXPECT_EQ(run_process({"/bin/sh", "-c", "kill -9 $$"})->status, 128 + 9);
-  EXPECT_EQ(run_process({"/bin/sh", "-c", "echo $NAME"}, {{"NAME", "value"}})->output, "value\n");
-  EXPECT_FALSE(run_process({"/no/such/program"}));
+  EXPECT_EQ(support::run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->status, 3);
+  EXPECT_EQ(support::run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->output, "words\n");
+  EXPECT_EQ(support::run_process({"/bin/sh", "-c", "kill -9 $$"})->status, 128 + 9);
+  EXPECT_EQ(support::run_process({"/bin/sh", "-c", "echo $NAME"}, {{"NAME", "value"}})->output, "value\n");
+  EXPECT_FALSE(support::run_process({"/no/such/program"}));
 }
 
 TEST(Process, IsNotHeldUpByWhatItWritesOrReads) {
-  const auto end = run_process({"/bin/sh", "-c", "cat; head -c 1000000 /dev/zero; echo end >&2"});
+  const auto end = support::run_process({"/bin/sh", "-c", "cat; head -c 1000000 /dev/zero; echo end >&2"});
   ASSERT_TRUE(end);
   EXPECT_EQ(end->status, 0);
   EXPECT_EQ(end->output.size(), 64u * 1024);

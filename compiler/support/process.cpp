@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "backends/cpu/process.h"
+#include "compiler/support/process.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <fcntl.h>
 #include <spawn.h>
 #include <string_view>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace isoshade::cpu {
+namespace isoshade::support {
 namespace {
 
 constexpr size_t most_output = 64 * 1024;
@@ -73,7 +75,30 @@ std::string read_all(int file) {
   }
 }
 
+bool is_program(const std::string& path) {
+  struct stat facts;
+  return stat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode) && access(path.c_str(), X_OK) == 0;
+}
+
+/// The program's path; empty if there is none. The working folder is not searched, whatever PATH says.
+std::string search_path(const std::string& name) {
+  const char* variable = std::getenv("PATH");
+  std::string_view folders = variable ? variable : "/usr/bin:/bin";
+  while (!folders.empty()) {
+    const size_t end = std::min(folders.find(':'), folders.size());
+    const std::string folder(folders.substr(0, end));
+    folders.remove_prefix(std::min(end + 1, folders.size()));
+    if (folder.starts_with('/') && is_program(folder + "/" + name)) return folder + "/" + name;
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos) return is_program(name) ? name : "";
+  return search_path(name);
+}
 
 std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments, const Variables& variables) {
   int ends[2];
@@ -95,4 +120,4 @@ std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
   return result;
 }
 
-}  // namespace isoshade::cpu
+}  // namespace isoshade::support

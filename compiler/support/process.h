@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace isoshade::cpu {
+namespace isoshade::support {
 
 struct ProcessEnd {
   int status;          ///< its exit status; 128 and the signal's number if one ended it
@@ -16,9 +16,13 @@ struct ProcessEnd {
 
 using Variables = std::vector<std::pair<std::string, std::string>>;
 
+/// The path of a program: `name` itself if it has a slash, else where PATH has it; empty if there is none. The
+/// working folder is not searched, whatever PATH says.
+std::string find_program(const std::string& name);
+
 /// Runs the program at the path arguments[0] to its end, with nothing to read and `variables` set in its
 /// environment. Nothing if it cannot be started.
 std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
                                       const Variables& variables = {});
 
-}  // namespace isoshade::cpu
+}  // namespace isoshade::support
