@@ -6,11 +6,14 @@
 
 #include "compiler/check/work.h"
 #include "compiler/graph/document.h"
+#include "compiler/graph/files.h"
 #include "compiler/nodes/table.h"
 
 namespace isoshade::check {
 
 namespace fs = std::filesystem;
+using graph::canonical_path;
+using graph::is_within;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
@@ -20,19 +23,6 @@ namespace {
 
 constexpr std::string_view extension = ".json";
 constexpr size_t longest_path = 1024;
-
-/// Absolute, without links and dots, whether or not it exists.
-std::string canonical(const std::string& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path.empty() ? "." : path, error);
-  const fs::path found = fs::weakly_canonical(absolute, error);
-  return (error ? absolute.lexically_normal() : found).string();
-}
-
-bool is_within(const std::string& path, const std::string& folder) {
-  if (folder.empty() || !path.starts_with(folder)) return false;
-  return folder.back() == '/' || path.size() == folder.size() || path[folder.size()] == '/';
-}
 
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
 
@@ -65,18 +55,18 @@ std::string cycle_from(const Scope& last, const std::string& path) {
 }  // namespace
 
 Library::Library(std::string root) : root_(std::move(root)) {
-  if (!root_.empty()) canonical_root_ = canonical(root_);
+  if (!root_.empty()) files_.library = canonical_path(root_);
 }
 
 void Library::add(const std::string& path, std::string text) {
-  memory_[canonical(path)] = std::make_shared<support::SourceFile>(path, std::move(text));
+  memory_[canonical_path(path)] = std::make_shared<support::SourceFile>(path, std::move(text));
 }
 
 Scope Library::scope_of(const std::string& path) const {
   Scope scope;
-  scope.path = canonical(path);
+  scope.path = canonical_path(path);
   scope.folder = folder_of(path);
-  scope.home = is_within(scope.path, canonical_root_) ? canonical_root_ : folder_of(scope.path);
+  scope.home = is_within(scope.path, files_.library) ? files_.library : graph::home_of(path);
   scope.document = path;
   return scope;
 }
@@ -85,12 +75,12 @@ Library::Location Library::locate(std::string_view reference, const Scope& from)
   Location location;
   if (reference.ends_with(extension)) {
     location.path = joined(from.folder, reference);
-    location.canonical = canonical(location.path);
-    location.in_library = is_within(location.canonical, canonical_root_);
+    location.canonical = canonical_path(location.path);
+    location.in_library = is_within(location.canonical, files_.library);
   } else if (!root_.empty()) {
     const std::string file = std::string(reference) + std::string(extension);
     location.path = joined(root_, file);
-    location.canonical = canonical_root_ + "/" + file;
+    location.canonical = files_.library + "/" + file;
     location.in_library = true;
   }
   return location;
@@ -112,9 +102,9 @@ std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, c
   const bool is_path = reference.ends_with(extension) && reference.size() <= longest_path &&
                        reference.find('\0') == std::string_view::npos;
   const Location location = is_path || is_library_name(reference) ? locate(reference, from) : Location{};
-  if (is_path && !location.in_library && !is_within(location.canonical, from.home)) {
+  if (is_path && !files_.permits(location.canonical, from.home)) {
     diagnostics.report(Id::outside_reference, where, quote(reference) + " leads out of the folder tree")
-        .note("documents refer to files in the folder of the document that is compiled, and below");
+        .note(std::string(graph::way_inside));
     return nullptr;
   }
   if (!is_path && (location.path.empty() || !exists(location))) {
@@ -133,7 +123,7 @@ std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, c
                        "the function uses itself: " + cycle_from(from, location.canonical));
     return nullptr;
   }
-  const std::pair key(location.canonical, location.in_library ? canonical_root_ : from.home);
+  const std::pair key(location.canonical, location.in_library ? files_.library : from.home);
   const auto found = functions_.find(key);
   if (found == functions_.end()) return functions_[key] = load(location, from, where, diagnostics);
   // Its errors were reported when it was loaded, but maybe to somebody else.
@@ -147,10 +137,9 @@ std::shared_ptr<const TypedGraph> Library::load(const Location& location, const 
   Scope scope;
   scope.path = location.canonical;
   scope.folder = folder_of(location.path);
-  scope.home = location.in_library ? canonical_root_ : from.home;
+  scope.home = location.in_library ? files_.library : from.home;
   scope.document = location.path;
-  if (location.in_library)
-    scope.document = "library/" + location.canonical.substr(canonical_root_.size() + 1);
+  if (location.in_library) scope.document = "library/" + location.canonical.substr(files_.library.size() + 1);
   scope.user = &from;
   scope.depth = from.depth + 1;
   if (scope.depth > max_document_depth) {
@@ -201,13 +190,13 @@ std::shared_ptr<const TypedGraph> Library::instance(const std::shared_ptr<const 
 std::vector<std::string> Library::names() const {
   std::vector<std::string> names;
   const auto add = [&](const std::string& canonical_path) {
-    if (!is_within(canonical_path, canonical_root_) || !canonical_path.ends_with(extension)) return;
-    const size_t first = canonical_root_.size() + 1;
+    if (!is_within(canonical_path, files_.library) || !canonical_path.ends_with(extension)) return;
+    const size_t first = files_.library.size() + 1;
     names.push_back(canonical_path.substr(first, canonical_path.size() - first - extension.size()));
   };
   std::error_code error;
   if (!root_.empty()) {
-    fs::recursive_directory_iterator entry(canonical_root_, error);
+    fs::recursive_directory_iterator entry(files_.library, error);
     for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
       add(entry->path().string());
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
+#include "compiler/graph/files.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::check {
@@ -34,6 +35,10 @@ class Library {
   /// `root`: the folder of the shipped functions; "brdf/ggx_d" is brdf/ggx_d.json in it. Empty: there are
   /// none.
   explicit Library(std::string root = {});
+
+  /// Lets documents name files anywhere.
+  void allow_outside(bool on) { files_.allow_outside = on; }
+  const graph::FileRule& files() const { return files_; }
 
   /// A document that is not read from a file but found under `path` all the same.
   void add(const std::string& path, std::string text);
@@ -72,7 +77,7 @@ class Library {
                                          const support::Span& where, support::Diagnostics& diagnostics);
 
   std::string root_;
-  std::string canonical_root_;
+  graph::FileRule files_;
   std::map<std::string, support::Source> memory_;  ///< by canonical path
   /// By canonical path and home, which decides what the document may refer to; null: it has errors.
   std::map<std::pair<std::string, std::string>, std::shared_ptr<const TypedGraph>> functions_;

@@ -59,6 +59,7 @@ class Planner {
   };
 
   bool compile_effects();
+  support::Source read_effect(const scene::Object& object);
   uint32_t add_program(const driver::Program& program);
   bool resolve_parameters();
   bool check_limits();
@@ -88,7 +89,7 @@ bool Planner::compile_effects() {
     const auto [found, is_new] = known.try_emplace(object.effect, plan_.effects.size());
     effect_of_object_.push_back(found->second);
     if (!is_new) continue;
-    const support::Source source = graph::read_source(object.effect, diagnostics_, object.effect_where);
+    const support::Source source = read_effect(object);
     auto effect = source != nullptr ? driver::compile_effect(source, options, diagnostics_) : std::nullopt;
     if (!effect && !diagnostics_.full() && !diagnostics_.all().empty()) {
       diagnostics_.all().back().note(object.effect_where, "the effect of " + quote(object.name));
@@ -104,6 +105,20 @@ bool Planner::compile_effects() {
       programs.push_back({add_program(pass.vertex), add_program(pass.pixel)});
   }
   return true;
+}
+
+support::Source Planner::read_effect(const scene::Object& object) {
+  const check::Library* library = options_.compiler.library;
+  const support::Source& scene = object.effect_where.file;
+  if (library != nullptr && scene != nullptr &&
+      !library->files().permits(graph::canonical_path(object.effect), graph::home_of(scene->path()))) {
+    diagnostics_
+        .report(support::Id::outside_reference, object.effect_where,
+                quote(object.effect) + " leads out of the folder tree")
+        .note(std::string(graph::way_inside));
+    return nullptr;
+  }
+  return graph::read_source(object.effect, diagnostics_, object.effect_where);
 }
 
 /// Programs that do the same are run as one: the vertex programs of most effects are.

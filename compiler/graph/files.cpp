@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/graph/files.h"
+
+#include <filesystem>
+
+namespace isoshade::graph {
+
+namespace fs = std::filesystem;
+
+std::string canonical_path(const std::string& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path.empty() ? "." : path, error);
+  const fs::path found = fs::weakly_canonical(absolute, error);
+  return (error ? absolute.lexically_normal() : found).string();
+}
+
+bool is_within(const std::string& path, const std::string& folder) {
+  if (folder.empty() || !path.starts_with(folder)) return false;
+  return folder.back() == '/' || path.size() == folder.size() || path[folder.size()] == '/';
+}
+
+std::string home_of(const std::string& document_path) {
+  const fs::path own = fs::path(canonical_path(document_path)).parent_path();
+  for (fs::path folder = own;; folder = folder.parent_path()) {
+    std::error_code error;
+    if (fs::is_regular_file(folder / collection_marker, error)) return folder.string();
+    if (folder == folder.parent_path()) return own.string();
+  }
+}
+
+}  // namespace isoshade::graph
