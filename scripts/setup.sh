@@ -10,6 +10,8 @@ packages=(
   glslang-dev spirv-tools spirv-headers libvulkan-dev
   # running: Vulkan on the CPU, and the loader of whatever other devices there are
   mesa-vulkan-drivers libvulkan1
+  # drawing graphs
+  graphviz
   # testing
   libgtest-dev libbenchmark-dev glslang-tools clang vulkan-validationlayers
 )

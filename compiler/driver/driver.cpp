@@ -14,8 +14,9 @@ namespace {
 
 using support::Diagnostics;
 
-/// JSON text -> Document -> Graph -> TypedGraph.
-std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& source, graph::DocumentKind wanted,
+/// JSON text -> Document -> Graph -> TypedGraph; of the kind `wanted`, if there is one.
+std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& source,
+                                                    std::optional<graph::DocumentKind> wanted,
                                                     const Options& options, Diagnostics& diagnostics) {
   const auto document = graph::parse_document(source, diagnostics);
   if (!document) return nullptr;
@@ -23,10 +24,10 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
   auto graph = graph::build_graph(*document, diagnostics);
   if (!graph) return nullptr;
   if (options.dump) options.dump("graph", [&] { return dump_graph(*graph); });
-  if (graph->kind != wanted) {
+  if (wanted && graph->kind != *wanted) {
     diagnostics.report(support::Id::wrong_kind, document->span(document->root),
                        "this is a document of kind \"" + std::string(graph::kind_name(graph->kind)) +
-                           "\"; a \"" + std::string(graph::kind_name(wanted)) + "\" is needed here");
+                           "\"; a \"" + std::string(graph::kind_name(*wanted)) + "\" is needed here");
     return nullptr;
   }
   auto typed = check::check(std::move(*graph), *options.library, diagnostics);
@@ -115,6 +116,11 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const std::ve
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, Diagnostics& diagnostics) {
   const auto document = graph::parse_document(source, diagnostics);
   return document ? graph::document_kind(*document, diagnostics) : std::nullopt;
+}
+
+std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const Options& options,
+                                                        Diagnostics& diagnostics) {
+  return read_graph(source, std::nullopt, options, diagnostics);
 }
 
 std::optional<Effect> compile_effect(const support::Source& source, const Options& options,

@@ -43,6 +43,10 @@ struct Effect {
 /// Which kind of document a source holds.
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
+/// The graph of a function or effect document, checked: the front half of the pipeline.
+std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const Options& options,
+                                                        support::Diagnostics& diagnostics);
+
 /// `source` is an effect document.
 std::optional<Effect> compile_effect(const support::Source& source, const Options& options,
                                      support::Diagnostics& diagnostics);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "compiler/support/diagnostics.h"
 #include "runtime/cli/places.h"
 
 namespace isoshade::cli {
@@ -11,7 +12,7 @@ namespace isoshade::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 success (verify: identical), 1 different (verify), 2 error.\n"
+    "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check), 2 error.\n"
     "\"-\" is standard input or output. Errors go to standard error.";
 
 bool parse_size(const std::string& text, Size& size) {
@@ -33,6 +34,20 @@ const CLI::Validator size_text(
                                     : "\"" + text + "\" is no size: write WxH, 1x1 to 8192x8192";
     },
     "WxH");
+
+/// "error" or "no-" and the id of a warning.
+const CLI::Validator warning_text(
+    [](std::string& text) -> std::string {
+      if (text == "error") return "";
+      std::string ids;
+      for (const support::Id id : support::all_ids()) {
+        if (support::default_severity(id) != support::Severity::warning) continue;
+        if (text == "no-" + std::string(support::id_text(id))) return "";
+        ids += (ids.empty() ? "" : ", ") + std::string(support::id_text(id));
+      }
+      return "-W" + text + " is neither -Werror nor -Wno-ID; the warnings are " + ids;
+    },
+    "error|no-ID");
 
 const CLI::IsMember backend_names({"cpu", "vulkan", "interpreter"});
 const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
@@ -78,6 +93,17 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   Arguments parsed;
   app.add_flag("-q,--quiet", parsed.common.quiet, "Print results and errors only");
+  std::string diagnostics = "text";
+  app.add_option("--diagnostics", diagnostics, "How errors and warnings are told: text, or json for tools")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  std::vector<std::string> warnings;
+  app.add_option("-W", warnings, "-Werror: warnings are errors; -Wno-ID: without the warnings of this id")
+      ->check(warning_text)
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--allow-outside", parsed.common.allow_outside,
+               "Let documents name files outside of their folder tree and the library");
   app.add_option("--library", parsed.common.library, "Folder of the library's function documents")
       ->envname("ISOSHADE_LIBRARY")
       ->check(CLI::ExistingDirectory);
@@ -152,6 +178,20 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->capture_default_str();
   add_choice(*eval_app, eval.choice);
 
+  FormatArguments format;
+  CLI::App* format_app = app.add_subcommand("fmt", "Bring documents into canonical layout, in place");
+  format_app->add_option("DOCUMENT", format.documents, "Documents; - reads stdin and writes stdout")
+      ->required();
+  format_app->add_flag("--check", format.check, "Change nothing; list what is not canonical and end with 1");
+
+  DrawArguments draw;
+  CLI::App* draw_app = app.add_subcommand("draw", "Draw a graph as a picture, by Graphviz");
+  draw_app->add_option("GRAPH", draw.graph, "A function or effect document")->required();
+  draw_app->add_option("-o,--output", draw.output, "FILE.svg, FILE.png or FILE.dot")->required();
+  draw_app->add_option("--depth", draw.depth, "How deep called functions are drawn inside each other")
+      ->check(CLI::Range(0, 16))
+      ->capture_default_str();
+
   DevicesArguments devices;
   CLI::App* devices_app =
       app.add_subcommand("devices", "List Vulkan devices and what the probe finds on each");
@@ -172,6 +212,14 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     exit = Exit::failure;
     return std::nullopt;
   }
+  parsed.common.json = diagnostics == "json";
+  parsed.common.quiet |= parsed.common.json;
+  for (const std::string& warning : warnings) {
+    if (warning == "error")
+      parsed.common.warnings_as_errors = true;
+    else
+      parsed.common.disabled.push_back(warning.substr(3));
+  }
   if (!render_size.empty()) {
     render.size.emplace();
     parse_size(render_size, *render.size);
@@ -181,6 +229,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (render_app->parsed()) parsed.render = render;
   if (verify_app->parsed()) parsed.verify = verify;
   if (eval_app->parsed()) parsed.eval = eval;
+  if (format_app->parsed()) parsed.format = format;
+  if (draw_app->parsed()) parsed.draw = draw;
   if (devices_app->parsed()) parsed.devices = devices;
   return parsed;
 }

@@ -68,12 +68,27 @@ struct EvalArguments {
   BackendChoice choice;
 };
 
+struct FormatArguments {
+  std::vector<std::string> documents;
+  bool check = false;
+};
+
+struct DrawArguments {
+  std::string graph;
+  std::string output;
+  int depth = 1;  ///< of called functions that are drawn inside
+};
+
 struct DevicesArguments {
   BackendChoice choice;
 };
 
 struct Common {
   bool quiet = false;
+  bool json = false;  ///< diagnostics as a JSON array, and nothing else on stderr
+  bool warnings_as_errors = false;
+  std::vector<std::string> disabled;  ///< ids of warnings
+  bool allow_outside = false;         ///< documents may name files anywhere
   std::string library;  ///< the folder of library documents; empty: found beside the command or as installed
 };
 
@@ -83,6 +98,8 @@ struct Arguments {
   std::optional<RenderArguments> render;
   std::optional<VerifyArguments> verify;
   std::optional<EvalArguments> eval;
+  std::optional<FormatArguments> format;
+  std::optional<DrawArguments> draw;
   std::optional<DevicesArguments> devices;
 };
 

@@ -129,8 +129,8 @@ bool write_function(const driver::Program& program, Writer& writer) {
 }  // namespace
 
 int compile(const CompileArguments& arguments, const Common& common) {
-  support::Diagnostics diagnostics;
-  check::Library library(library_root(common));
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  check::Library library = make_library(common);
   driver::Options options;
   options.library = &library;
   int dumped = 0;
@@ -157,7 +157,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
   if (done && !arguments.dump_after.empty() && arguments.dump_after != "help" && dumped == 0)
     diagnostics.report(support::Id::unknown_stage, "no stage \"" + arguments.dump_after + "\"")
         .suggest("`--dump-after help` lists the stages of this graph");
-  if (flush(diagnostics) || !done) return failure;
+  if (flush(diagnostics, common) || !done) return failure;
   if (!common.quiet)
     for (const std::string& path : writer.written())
       if (path.find("runtime/lanes/") == std::string::npos) std::fprintf(stderr, "wrote %s\n", path.c_str());

@@ -34,7 +34,7 @@ bool print_device(const vulkan::DeviceInfo& device, support::Diagnostics& diagno
 #endif
 
 int devices([[maybe_unused]] const DevicesArguments& arguments, [[maybe_unused]] const Common& common) {
-  support::Diagnostics diagnostics;
+  support::Diagnostics diagnostics = make_diagnostics(common);
 #ifdef ISOSHADE_VULKAN
   bool any = false;
   for (const vulkan::DeviceInfo& device : vulkan::list_devices(diagnostics)) {
@@ -49,7 +49,7 @@ int devices([[maybe_unused]] const DevicesArguments& arguments, [[maybe_unused]]
 #else
   diagnostics.report(support::Id::no_device, "this isoshade was built without Vulkan");
 #endif
-  return flush(diagnostics) ? failure : success;
+  return flush(diagnostics, common) ? failure : success;
 }
 
 }  // namespace isoshade::cli

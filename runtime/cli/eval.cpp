@@ -13,7 +13,7 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   const std::vector<std::string> read = {arguments.function, arguments.inputs};
   if (!read_standard_input_once(read, diagnostics) || !may_write(arguments.output, read, diagnostics))
     return false;
-  check::Library library(library_root(common));
+  check::Library library = make_library(common);
   driver::Options options;
   options.library = &library;
   const support::Source function = graph::read_source(arguments.function, diagnostics);
@@ -36,9 +36,9 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
 }  // namespace
 
 int eval(const EvalArguments& arguments, const Common& common) {
-  support::Diagnostics diagnostics;
+  support::Diagnostics diagnostics = make_diagnostics(common);
   const bool done = evaluate(arguments, common, diagnostics);
-  return flush(diagnostics) || !done ? failure : success;
+  return flush(diagnostics, common) || !done ? failure : success;
 }
 
 }  // namespace isoshade::cli

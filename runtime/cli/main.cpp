@@ -25,6 +25,8 @@ int run(int argc, char** argv) {
   if (arguments->render) return render(*arguments->render, arguments->common);
   if (arguments->verify) return verify(*arguments->verify, arguments->common);
   if (arguments->eval) return eval(*arguments->eval, arguments->common);
+  if (arguments->format) return format(*arguments->format, arguments->common);
+  if (arguments->draw) return draw(*arguments->draw, arguments->common);
   return devices(*arguments->devices, arguments->common);
 }
 

@@ -30,7 +30,7 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
     return false;
   const auto scene = load_scene(arguments.scene, arguments.settings, diagnostics);
   if (!scene) return false;
-  check::Library library(library_root(common));
+  check::Library library = make_library(common);
   render::Options options;
   if (arguments.size) {
     options.width = arguments.size->width;
@@ -56,9 +56,9 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
 }  // namespace
 
 int render(const RenderArguments& arguments, const Common& common) {
-  support::Diagnostics diagnostics;
+  support::Diagnostics diagnostics = make_diagnostics(common);
   const bool done = render_to_file(arguments, common, diagnostics);
-  return flush(diagnostics) || !done ? failure : success;
+  return flush(diagnostics, common) || !done ? failure : success;
 }
 
 }  // namespace isoshade::cli

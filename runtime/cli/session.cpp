@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <unistd.h>
 
 #include "backends/cpu/backend.h"
@@ -30,12 +31,34 @@ std::string library_root(const Common& common) {
   return std::string(source_library);
 }
 
-bool flush(support::Diagnostics& diagnostics) {
-  const std::string text = diagnostics.text(isatty(STDERR_FILENO) == 1);
+check::Library make_library(const Common& common) {
+  check::Library library(library_root(common));
+  library.allow_outside(common.allow_outside);
+  return library;
+}
+
+support::Diagnostics make_diagnostics(const Common& common) {
+  support::Diagnostics diagnostics;
+  diagnostics.warnings_as_errors(common.warnings_as_errors);
+  for (const support::Id id : support::all_ids())
+    if (std::ranges::find(common.disabled, support::id_text(id)) != common.disabled.end())
+      diagnostics.disable(id);
+  return diagnostics;
+}
+
+bool flush(support::Diagnostics& diagnostics, const Common& common) {
+  if (common.json) {
+    std::set<support::Source> sources;
+    for (const support::Diagnostic& diagnostic : diagnostics.all()) sources.insert(diagnostic.where.file);
+    for (const support::Source& source : sources) {
+      support::Diagnostics unread;
+      const auto document = source != nullptr ? graph::parse_document(source, unread) : std::nullopt;
+      if (document) graph::add_pointers(*document, diagnostics);
+    }
+  }
+  const std::string text = common.json ? diagnostics.json() : diagnostics.text(isatty(STDERR_FILENO) == 1);
   std::fputs(text.c_str(), stderr);
-  const bool errors = diagnostics.has_errors();
-  diagnostics = support::Diagnostics();
-  return errors;
+  return diagnostics.has_errors();
 }
 
 bool may_write(const std::string& path, const std::vector<std::string>& inputs,

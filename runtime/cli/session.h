@@ -16,8 +16,15 @@ namespace isoshade::cli {
 /// the source tree the command was built from.
 std::string library_root(const Common& common);
 
-/// Prints what has been reported to stderr and forgets it; returns whether there was an error.
-bool flush(support::Diagnostics& diagnostics);
+/// The library as the command line has it.
+check::Library make_library(const Common& common);
+
+/// A sink that obeys -Werror and -Wno-ID.
+support::Diagnostics make_diagnostics(const Common& common);
+
+/// Prints what has been reported to stderr, as text or as --diagnostics says; returns whether there was an
+/// error.
+bool flush(support::Diagnostics& diagnostics, const Common& common);
 
 /// Progress for a person: to stderr, if that is a terminal and nobody asked for quiet.
 void progress(const Common& common, const std::string& line);
@@ -42,6 +49,8 @@ int compile(const CompileArguments& arguments, const Common& common);
 int render(const RenderArguments& arguments, const Common& common);
 int verify(const VerifyArguments& arguments, const Common& common);
 int eval(const EvalArguments& arguments, const Common& common);
+int format(const FormatArguments& arguments, const Common& common);
+int draw(const DrawArguments& arguments, const Common& common);
 int devices(const DevicesArguments& arguments, const Common& common);
 
 }  // namespace isoshade::cli

@@ -26,7 +26,7 @@ struct NamedBackend {
 class Verifier {
  public:
   Verifier(const VerifyArguments& arguments, const Common& common)
-      : arguments_(arguments), common_(common), library_(library_root(common)) {}
+      : arguments_(arguments), common_(common), library_(make_library(common)) {}
 
   int run() {
     int result = prepare() ? success : failure;
@@ -38,7 +38,7 @@ class Verifier {
                !compare::write_goldens(arguments_.golden, goldens_, diagnostics_))
         result = failure;
     }
-    return flush(diagnostics_) ? failure : result;
+    return flush(diagnostics_, common_) ? failure : result;
   }
 
  private:
@@ -162,7 +162,7 @@ class Verifier {
   const VerifyArguments& arguments_;
   const Common& common_;
   check::Library library_;
-  support::Diagnostics diagnostics_;
+  support::Diagnostics diagnostics_ = make_diagnostics(common_);
   std::vector<NamedBackend> backends_;
   compare::Goldens goldens_;
 };

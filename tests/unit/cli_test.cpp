@@ -159,7 +159,7 @@ TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
 TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("compile, render, verify, eval, devices"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("compile, render, verify, eval, fmt, draw, devices"), std::string::npos) << outcome.text;
 }
 
 TEST_F(Cli, NeverWritesOverWhatItReads) {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade draw: a graph as a picture.
+#include <filesystem>
+#include <unistd.h>
+
+#include "compiler/driver/drawing.h"
+#include "compiler/driver/driver.h"
+#include "compiler/support/process.h"
+#include "compiler/support/visible.h"
+#include "runtime/cli/session.h"
+#include "runtime/scene/output_file.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this process alone, gone with the object.
+class PrivateFolder {
+ public:
+  PrivateFolder() {
+    std::error_code error;
+    std::string pattern = (fs::temp_directory_path(error) / "isoshade-XXXXXX").string();
+    if (mkdtemp(pattern.data()) != nullptr) path = pattern;
+  }
+  ~PrivateFolder() {
+    std::error_code error;
+    if (!path.empty()) fs::remove_all(path, error);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  fs::path path;
+};
+
+/// The picture in `format` as Graphviz makes it of `dot`; through files, so that no shell is needed.
+std::optional<std::string> lay_out(const std::string& dot, const std::string& format,
+                                   support::Diagnostics& diagnostics) {
+  const auto fail = [&](const std::string& message) {
+    diagnostics.report(support::Id::no_graphviz, message)
+        .suggest("install the package graphviz, or write a .dot file and draw it elsewhere");
+    return std::nullopt;
+  };
+  const std::string program = support::find_program("dot");
+  if (program.empty()) return fail("there is no `dot` on PATH");
+  const PrivateFolder folder;
+  if (folder.path.empty()) return fail("no temporary folder can be made");
+  const std::string input = (folder.path / "graph.dot").string();
+  const std::string output = (folder.path / ("graph." + format)).string();
+  if (!scene::write_file(input, dot, diagnostics)) return std::nullopt;
+  const auto end = support::run_process({program, "-T" + format, "-o", output, input});
+  if (!end || end->status != 0)
+    return fail("`dot` failed: " + (end ? support::quote(end->output) : "it cannot be run"));
+  const support::Source picture = graph::read_source(output, diagnostics);
+  return picture != nullptr ? std::optional(picture->text()) : std::nullopt;
+}
+
+bool draw_to_file(const DrawArguments& arguments, const Common& common, support::Diagnostics& diagnostics) {
+  const std::string format = fs::path(arguments.output).extension().string();
+  if (format != ".svg" && format != ".png" && format != ".dot") {
+    diagnostics.report(support::Id::unwritable_file,
+                       support::quote(arguments.output) + " does not end in .svg, .png or .dot");
+    return false;
+  }
+  check::Library library = make_library(common);
+  driver::Options options;
+  options.library = &library;
+  const support::Source source = graph::read_source(arguments.graph, diagnostics);
+  if (source == nullptr) return false;
+  const auto graph = driver::check_document(source, options, diagnostics);
+  if (graph == nullptr) return false;
+  const std::string dot = driver::draw(*graph, arguments.depth);
+  if (format == ".dot") return scene::write_file(arguments.output, dot, diagnostics);
+  const auto picture = lay_out(dot, format.substr(1), diagnostics);
+  return picture && scene::write_file(arguments.output, *picture, diagnostics);
+}
+
+}  // namespace
+
+int draw(const DrawArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  const bool done = draw_to_file(arguments, common, diagnostics);
+  return flush(diagnostics, common) || !done ? failure : success;
+}
+
+}  // namespace isoshade::cli
