@@ -116,7 +116,8 @@ TEST_F(ImageFile, RefusesDamagedFilesWithAReason) {
       std::ofstream(path(name), std::ios::binary) << whole.substr(0, length);
       Diagnostics found;
       EXPECT_FALSE(scene::read_image(path(name), found)) << name << " cut to " << length;
-      EXPECT_EQ(found.error_count(), 1u);
+      ASSERT_EQ(found.error_count(), 1u);
+      EXPECT_EQ(found.all()[0].id, support::Id::bad_image);
     }
   }
   std::ofstream(path("text.png")) << "no image";

@@ -1,0 +1,1 @@
+"$ISOSHADE" render scene.json --set ball.roughness --backend interpreter -o "$OUT/a.png"

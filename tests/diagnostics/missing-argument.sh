@@ -1,0 +1,1 @@
+"$ISOSHADE" verify scene.json --update

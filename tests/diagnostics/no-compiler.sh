@@ -1,0 +1,1 @@
+"$ISOSHADE" render scene.json --cxx /nowhere/c++ -o "$OUT/a.png"

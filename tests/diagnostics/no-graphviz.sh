@@ -1,0 +1,1 @@
+PATH=/nowhere "$ISOSHADE" draw bad-table-function.json -o "$OUT/a.svg"

@@ -1,0 +1,1 @@
+"$ISOSHADE" compile unused-node.json -Wno-unused-node --dump-after foldd -o "$OUT"

@@ -1,0 +1,1 @@
+"$ISOSHADE" compile . -o "$OUT"

@@ -1,0 +1,1 @@
+"$ISOSHADE" render scene.json --backend interpreter -o /nowhere/a.png
