@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer's way into the compiler: cmake --preset fuzz && build/fuzz/tests/fuzz_documents graphs/
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/fuzz/feed.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  isoshade::feed({reinterpret_cast<const char*>(data), size});
+  return 0;
+}
