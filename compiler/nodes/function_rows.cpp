@@ -30,6 +30,7 @@ std::optional<PortType> type_of(std::string_view code) {
   if (code == "v4") return tuple_of(Type::vector4, Type::color4);
   if (code == "m") return matrix;
   if (code == "m3") return PortType{only(Type::matrix33)};
+  if (code == "m4") return PortType{only(Type::matrix44)};
   return std::nullopt;
 }
 
@@ -69,9 +70,13 @@ void add_row(std::vector<Row>& rows, std::string_view name, std::string_view sig
   std::vector<PortType> types;
   for (const std::string_view code : codes) {
     const std::optional<PortType> type = type_of(code);
-    if (!type) return;
+    support::check(type.has_value(), code);
     types.push_back(*type);
   }
+  // A result that no argument settles is no colour.
+  const bool settled = std::any_of(types.begin() + 1, types.end(),
+                                   [&](PortType type) { return type.variable == types[0].variable; });
+  if (!settled && types[0].variable != Variable::none) types[0] = Vector3;
   const bool transforms = signature == "v_mv";
   if (transforms) types[1].variable = Variable::u;
   Row row{name, "", {}, types[0], lowering};
