@@ -189,6 +189,48 @@ TEST(Text, CompilesWhateverItsPartsAreCalled) {
                    " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + cpp);
 }
 
+TEST(Text, NoWordOfADocumentBecomesCode) {
+  // What would be code, end a comment or join lines, wherever a document or its path has text.
+  const std::string evil =
+      R"(*/ \n#error evil\n#include <evil.h>\n// \\\n #pragma evil ??/\n \u2028 evil();)";
+  const std::string path = "odd/\n#error evil\n*/ ?\?/\n\\\n.json";
+  support::Diagnostics diagnostics;
+  check::Library library("");
+  library.add(path.substr(0, path.rfind('/')) + "/part.json",
+              R"({"isoshade": 1, "function": "part", "doc": ")" + evil +
+                  R"(", "inputs": {"x": {"type": "float", "doc": ")" + evil +
+                  R"("}}, "nodes": {"n": {"type": "sin", "in": "x", "doc": ")" + evil +
+                  R"("}}, "outputs": {"out": "n"}})");
+  const std::string text =
+      R"({"isoshade": 1, "function": "f", "doc": ")" + evil + R"(", "extras": {")" + evil + R"(": ")" + evil +
+      R"("}, "inputs": {"x": {"type": "float"}}, "nodes": {"a": {"type": "part.json", "x": "x"},
+      "n": {"type": "expression", "code": "a +\n\t1.0e0 \n", "a": "a", "doc": ")" +
+      evil + R"("}}, "outputs": {"out": "n"}})";
+  driver::Options options;
+  options.library = &library;
+  const auto program =
+      driver::compile_function(std::make_shared<support::SourceFile>(path, text), options, diagnostics);
+  ASSERT_TRUE(program) << diagnostics.text();
+  const Folder folder;
+  const std::string glsl = driver::glsl(*program, driver::Division::native), cpp = driver::cpp(*program);
+  const std::string shader = folder.write("evil.frag", glsl).string();
+  expect_success("glslangValidator -V " + shader + " -o " + shader + ".spv");
+  const std::string header = folder.write("evil.cpp", cpp).string();
+  for (const char* compiler : {"g++ -trigraphs", "clang++ -trigraphs"})
+    expect_success(std::string(compiler) +
+                   " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + header);
+  for (const std::string& written : {glsl, cpp}) {
+    std::istringstream lines(written);
+    for (std::string line; std::getline(lines, line);) {
+      const size_t comment = line.find("//");
+      EXPECT_EQ(line.substr(0, comment).find("evil"), std::string::npos) << line;
+      EXPECT_FALSE(line.ends_with("\\") || line.ends_with("?"
+                                                          "?/"))
+          << line;
+    }
+  }
+}
+
 TEST(Text, ReadsAlikeInBothLanguages) {
   for (const Texts& texts : shipped()) {
     SCOPED_TRACE(texts.name);
@@ -201,7 +243,8 @@ TEST(Text, ReadsAlikeInBothLanguages) {
     // The same names get values in the same order; but for the high word of a product, which is no expression in
     // GLSL but an out parameter.
     const std::string definition =
-        "\n +(?:const |precise )?(?:[A-Za-z_0-9]+(?:<[A-Za-z]+>)?) ([a-z_A-Z0-9]+) = (?!(?:unsigned_)?mul_hi)";
+        "\n +(?:const |precise )?(?:[A-Za-z_0-9]+(?:<[A-Za-z]+>)?) ([a-z_A-Z0-9]+) = "
+        "(?!(?:unsigned_)?mul_hi)";
     const auto body = [](const std::string& text, const std::string& end) {
       return text.substr(0, text.find(end));
     };
