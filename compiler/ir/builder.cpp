@@ -138,9 +138,19 @@ std::vector<ValueId> Builder::call(uint32_t callee, std::span<const ValueId> arg
   return results_of(function().instructions[append(Opcode::call, callee, arguments, results)]);
 }
 
+BlockId Builder::enter() {
+  check(++depth_ <= max_block_depth, "blocks nest too deep");
+  return block_;
+}
+
+void Builder::leave(BlockId outer) {
+  --depth_;
+  block_ = outer;
+}
+
 std::vector<ValueId> Builder::branch(ValueId condition, const Body& then, const Body& other) {
   check(type(condition) == bool_type, "a condition is a bool");
-  const BlockId outer = block_;
+  const BlockId outer = enter();
   const std::array<BlockId, 2> blocks{new_block(), new_block()};
   const std::array<const Body*, 2> bodies{&then, &other};
   for (int side = 0; side < 2; ++side) {
@@ -148,7 +158,7 @@ std::vector<ValueId> Builder::branch(ValueId condition, const Body& then, const 
     std::vector<ValueId> yields = (*bodies[side])();
     function().blocks[blocks[side]].yields = std::move(yields);
   }
-  block_ = outer;
+  leave(outer);
   const auto types_of = [&](BlockId block) {
     std::vector<Type> types;
     for (ValueId value : function().blocks[block].yields) types.push_back(type(value));
@@ -166,7 +176,7 @@ std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initi
   check(type(count) == int_type, "a count is an int");
   std::vector<Type> types;
   for (ValueId value : initial) types.push_back(type(value));
-  const BlockId outer = block_;
+  const BlockId outer = enter();
   const BlockId inner = new_block();
   const ValueId index = new_value(int_type);
   std::vector<ValueId> carried;
@@ -175,7 +185,7 @@ std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initi
   for (ValueId value : carried) function().blocks[inner].parameters.push_back(value);
   block_ = inner;
   std::vector<ValueId> yields = body(index, carried);
-  block_ = outer;
+  leave(outer);
   check(yields.size() == types.size(), "a loop yields what it carries");
   for (size_t i = 0; i < yields.size(); ++i)
     check(type(yields[i]) == types[i], "a loop yields what it carries");

@@ -60,10 +60,14 @@ class Builder {
   InstructionId append(Opcode op, uint32_t imm, std::span<const ValueId> operands,
                        std::span<const Type> results);
   BlockId new_block();
+  /// Begins and ends the blocks of a branch or loop; `enter` returns the block around them.
+  BlockId enter();
+  void leave(BlockId outer);
 
   Module& module_;
   uint32_t function_;
   BlockId block_ = 0;
+  int depth_ = 1;  ///< of the block
   uint32_t origin_ = 0;
 };
 

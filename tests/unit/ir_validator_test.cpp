@@ -2,6 +2,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+#include "compiler/ir/builder.h"
 #include "compiler/ir/validator.h"
 #include "tests/unit/ir_text.h"
 
@@ -169,6 +170,26 @@ TEST(Validator, RejectsBlocksThatNestTooDeep) {
   EXPECT_EQ(nested(max_block_depth - 1), "");
   EXPECT_NE(nested(max_block_depth).find("blocks nest too deep"), std::string::npos);
   EXPECT_NE(nested(100000).find("blocks nest too deep"), std::string::npos);
+}
+
+TEST(BuilderDeathTest, NestsNoDeeperThanIsValid) {
+  const auto nest = [](int branches) {
+    Module module;
+    module.functions.emplace_back();
+    module.functions[0].name = "f";
+    module.functions[0].parameters.push_back({"c", bool_type, "", false});
+    Builder b(module, 0);
+    const auto inner = [&](const auto& self, int rest) -> std::vector<ValueId> {
+      if (rest == 0) return {};
+      return b.branch(
+          b.parameter(0), [&] { return self(self, rest - 1); }, [] { return std::vector<ValueId>(); });
+    };
+    inner(inner, branches);
+    b.finish({});
+    return validate(module);
+  };
+  EXPECT_EQ(nest(max_block_depth - 1), "");
+  EXPECT_DEATH(nest(max_block_depth), "blocks nest too deep");
 }
 
 // Every word of a sound module replaced by others in turn: nothing may crash or be accepted and then crash.
