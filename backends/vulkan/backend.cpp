@@ -107,7 +107,10 @@ std::vector<std::vector<VertexChunk>> vertex_runs(const Frame& frame, size_t cap
 }  // namespace
 
 VulkanBackend::VulkanBackend(Options options, std::unique_ptr<Device> device)
-    : options_(std::move(options)), device_(std::move(device)) {}
+    : options_(std::move(options)), device_(std::move(device)) {
+  if (options_.glsl) return;
+  options_.glsl = options_.eval_stage == EvalStage::vertex ? driver::glsl_with_vertex_eval : driver::glsl;
+}
 
 VulkanBackend::~VulkanBackend() = default;
 

@@ -34,8 +34,8 @@ struct Options {
   /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
   /// one record after another, to `layout(std430, set = 0, binding = 6) writeonly buffer { int words[]; }`.
   EvalStage eval_stage = EvalStage::fragment;
-  /// The text of a program's stage; see emit/stages.h for the interface it must have.
-  std::function<std::string(const driver::Program&, driver::Division)> glsl = driver::glsl;
+  /// The text of a program's stage; see emit/stages.h for the interface it must have. Empty: the driver's.
+  std::function<std::string(const driver::Program&, driver::Division)> glsl;
 };
 
 class VulkanBackend : public backends::Backend {

@@ -32,7 +32,7 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, uint32_t 
 }
 
 vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device) {
-  std::array<vk::DescriptorSetLayoutBinding, storage_bindings + 1> bindings;
+  std::array<vk::DescriptorSetLayoutBinding, binding_count> bindings;
   for (uint32_t i = 0; i < bindings.size(); ++i)
     bindings[i] = vk::DescriptorSetLayoutBinding{
         .binding = i,
@@ -55,7 +55,7 @@ vk::raii::PipelineLayout make_layout(const vk::raii::Device& device,
 }
 
 vk::raii::DescriptorPool make_descriptor_pool(const vk::raii::Device& device) {
-  const std::array sizes = {vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, storage_bindings},
+  const std::array sizes = {vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, binding_count - 1},
                             vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, 1}};
   return {device, vk::DescriptorPoolCreateInfo{.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                                .maxSets = 1,
@@ -90,6 +90,8 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index)
   sampler = vk::raii::Sampler(
       device, vk::SamplerCreateInfo{.magFilter = vk::Filter::eNearest, .minFilter = vk::Filter::eNearest});
   for (Buffer& buffer : buffers) reserve(buffer, smallest_buffer, {});
+  reserve(zero, smallest_buffer, {});
+  std::memset(zero.data, 0, smallest_buffer);
   prepare_frame(1, 1);
   no_target = vk::raii::Framebuffer(
       device, {.renderPass = *render_pass(Target::buffer, 0), .width = 1, .height = 1, .layers = 1});
@@ -158,16 +160,18 @@ void Device::Impl::reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags
 }
 
 void Device::Impl::write_descriptors() {
-  std::array<vk::DescriptorBufferInfo, storage_bindings> buffer_infos;
-  std::array<vk::WriteDescriptorSet, storage_bindings + 1> writes;
-  for (uint32_t i = 0; i < storage_bindings; ++i) {
-    buffer_infos[i] = vk::DescriptorBufferInfo{.buffer = *buffers[i].buffer, .range = VK_WHOLE_SIZE};
+  std::array<vk::DescriptorBufferInfo, binding_count> buffer_infos;
+  std::array<vk::WriteDescriptorSet, binding_count> writes;
+  const auto write_buffer = [&](uint32_t i, const Buffer& buffer) {
+    buffer_infos[i] = vk::DescriptorBufferInfo{.buffer = *buffer.buffer, .range = VK_WHOLE_SIZE};
     writes[i] = vk::WriteDescriptorSet{.dstSet = *set,
                                        .dstBinding = i,
                                        .descriptorCount = 1,
                                        .descriptorType = vk::DescriptorType::eStorageBuffer,
                                        .pBufferInfo = &buffer_infos[i]};
-  }
+  };
+  for (uint32_t i = 0; i < storage_bindings; ++i) write_buffer(i, buffers[i]);
+  write_buffer(zero_binding, zero);
   const vk::DescriptorImageInfo ids{.sampler = *sampler,
                                     .imageView = *frame.ids.view,
                                     .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};

@@ -104,6 +104,7 @@ struct Device::Impl {
   vk::raii::Sampler sampler{nullptr};
 
   std::array<Buffer, storage_bindings> buffers;
+  Buffer zero;  ///< always 0
   Buffer readback;
   FrameTarget frame;
   vk::raii::Framebuffer no_target{nullptr};

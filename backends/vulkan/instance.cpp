@@ -186,7 +186,7 @@ std::vector<std::string> shortcomings(const vk::raii::PhysicalDevice& device) {
   need(graphics_family(device) >= 0, "it has no graphics queue");
 
   const vk::PhysicalDeviceLimits& limits = properties.limits;
-  need(limits.maxPerStageDescriptorStorageBuffers >= storage_bindings,
+  need(limits.maxPerStageDescriptorStorageBuffers >= binding_count - 1,
        "it has too few storage buffers a stage");
   need(limits.maxColorAttachments >= max_attachments, "it has fewer than 8 color attachments");
   const float edge = static_cast<float>(guard_band);

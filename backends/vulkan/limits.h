@@ -13,11 +13,14 @@ namespace isoshade::vulkan {
 /// twice this and centred on pixel 0, so that the map from clip space to 1/256 pixel is an exact power of two.
 inline constexpr int guard_band = 8192;
 
-/// Set 0: the buffers of frame_layout.h, then what vertex kernels write, then the ids of the visible triangles.
+/// Set 0: the buffers of frame_layout.h, then what vertex kernels write, then the ids of the visible triangles,
+/// then a word that is 0.
 inline constexpr uint32_t frame_bindings = std::size(lower::frame_buffers);
 inline constexpr uint32_t output_binding = frame_bindings;
 inline constexpr uint32_t storage_bindings = frame_bindings + 1;
 inline constexpr uint32_t ids_binding = storage_bindings;
+inline constexpr uint32_t zero_binding = ids_binding + 1;
+inline constexpr uint32_t binding_count = zero_binding + 1;
 
 /// A table program writes four words to each color attachment.
 inline constexpr uint32_t max_attachments = 8;

@@ -6,14 +6,26 @@
 
 namespace isoshade::driver {
 
-std::string glsl(const Program& program, Division division) {
+namespace {
+
+std::string glsl_of(const Program& program, Division division, emit::EvalIn eval_in) {
   const emit::Heading heading{program.document, program.name};
   if (division == Division::native)
-    return emit::glsl_stage(program.module, program.entry, program.stage, heading);
+    return emit::glsl_stage(program.module, program.entry, program.stage, heading, eval_in);
   ir::Module module = program.module;
   passes::Entries entries{program.entry};
   passes::run(passes::division_lowering(), module, entries);
-  return emit::glsl_stage(module, entries[0], program.stage, heading);
+  return emit::glsl_stage(module, entries[0], program.stage, heading, eval_in);
+}
+
+}  // namespace
+
+std::string glsl(const Program& program, Division division) {
+  return glsl_of(program, division, emit::EvalIn::fragment_shader);
+}
+
+std::string glsl_with_vertex_eval(const Program& program, Division division) {
+  return glsl_of(program, division, emit::EvalIn::vertex_shader);
 }
 
 std::string cpp(const Program& program) {

@@ -39,6 +39,8 @@ enum class Division : uint8_t { native, exact };
 
 /// The program as a Vulkan shader of its stage; emit/stages.h tells the interface.
 std::string glsl(const Program& program, Division division);
+/// The same, but an eval program becomes a vertex shader.
+std::string glsl_with_vertex_eval(const Program& program, Division division);
 /// The program as C++ that exports its entry point; emit/stages.h. Not for Stage::depth.
 std::string cpp(const Program& program);
 

@@ -103,19 +103,29 @@ class Cpp final : public Language {
       out.append(text.result_type).append("<F>");
     out.append(" ").append(text.name).append(text.loads ? "(const Buffers& buffers" : "(");
   }
+  void group_value(std::string& out, std::string_view record, bool uniform) const override {
+    out.append(record).append(uniform ? "" : "<F>");
+  }
   void group_type(std::string& out, std::string_view record, bool uniform) const override {
-    out.append("const ").append(record).append(uniform ? "&" : "<F>&");
+    out += "const ";
+    group_value(out, record, uniform);
+    out += "&";
   }
 
  private:
   static std::string_view lanes_of(bool uniform) { return uniform ? "<float>" : "<F>"; }
 };
 
+constexpr std::string_view zero_head =
+    "// The GLSL of this hides zeros from drivers, which would fold arithmetic with them.\n"
+    "constexpr float ISO_ZERO = 0.0f;\n\n";
+
 }  // namespace
 
 std::string cpp_functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
-  return print_functions(module, entry, Cpp(), texts);
+  return std::string(uses_hidden_zero(module, entry) ? zero_head : "") +
+         print_functions(module, entry, Cpp(), texts);
 }
 
 std::string cpp_buffers(const ir::Module& module) {

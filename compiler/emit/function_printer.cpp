@@ -107,7 +107,7 @@ class FunctionPrinter {
           fields = Names();
           group_ = names_.take(parameter.group);
           separate();
-          language_.group_type(out_, record_name(parameter.group), parameter.uniform);
+          language_.group_type(out_, text_.groups[i], parameter.uniform);
           out_.append(" ").append(group_);
         }
         name = group_ + "." + fields.take(parameter.name);
@@ -153,6 +153,7 @@ class FunctionPrinter {
         if (literals_.empty()) literals_.resize(values_.size());
         literals_[result] = true;
         return;
+      case ir::Opcode::hidden_zero: values_[result] = hidden_zero; return;
       case ir::Opcode::extract:
         values_[result].append(text(operands[0])).append(".").append(component_names[instruction.imm]);
         return;
@@ -216,24 +217,45 @@ class FunctionPrinter {
     statement ? end_line(result) : end_statement(result);
   }
 
+  /// `Surface surface; surface.a = x; surface.b = y;` for each group of a call; returns the names, at the first
+  /// operand of each. Not constructed: where the call returns a struct, glslang 12 takes the arguments' fields
+  /// for those of the result, and crashes on a constructor that has fewer.
+  std::vector<std::string> print_groups(const ir::Instruction& instruction) {
+    const std::vector<ir::Parameter>& parameters = module_.functions[instruction.imm].parameters;
+    const FunctionText& called = texts_[instruction.imm];
+    const auto operands = function_.operands_of(instruction);
+    std::vector<std::string> names(operands.size());
+    Names fields;
+    size_t first = 0;
+    for (size_t i = 0; i < operands.size(); ++i) {
+      const ir::Parameter& parameter = parameters[i];
+      if (parameter.group.empty()) continue;
+      if (i == 0 || parameter.group != parameters[i - 1].group) {
+        first = i;
+        fields = Names();
+        names[i] = names_.take(parameter.group);
+        language_.group_value(indent(), called.groups[i], parameter.uniform);
+        out_.append(" ").append(names[i]).append(";\n");
+      }
+      indent().append(names[first]).append(".").append(fields.take(parameter.name)).append(" = ");
+      language_.exactly(out_, operand(operands[i]), parameter.uniform);
+      out_ += ";\n";
+    }
+    return names;
+  }
+
   /// `f(a, b)`.
-  void print_call_expression(const ir::Instruction& instruction) {
+  void print_call_expression(const ir::Instruction& instruction, const std::vector<std::string>& groups) {
     const ir::Function& callee = module_.functions[instruction.imm];
     const FunctionText& called = texts_[instruction.imm];
     language_.callee(out_, called, uniform_[instruction.first_result]);
     out_ += called.loads && language_.passes_buffers() ? "(buffers" : "(";
     const auto operands = function_.operands_of(instruction);
-    for (size_t i = 0; i < operands.size();) {
-      const ir::Parameter& parameter = callee.parameters[i];
+    for (size_t i = 0; i < operands.size(); ++i) {
+      const bool plain = callee.parameters[i].group.empty();
+      if (!plain && groups[i].empty()) continue;  // another field of the same group
       separate();
-      if (parameter.group.empty()) {
-        out_ += text(operands[i++]);
-        continue;
-      }
-      std::vector<Operand> fields;
-      for (; i < operands.size() && callee.parameters[i].group == parameter.group; ++i)
-        fields.push_back(operand(operands[i]));
-      language_.make_record(out_, record_name(parameter.group), parameter.uniform, fields);
+      out_ += plain ? text(operands[i]) : groups[i];
     }
     out_ += ")";
   }
@@ -241,6 +263,7 @@ class FunctionPrinter {
   void print_call(const ir::Instruction& instruction) {
     const FunctionText& called = texts_[instruction.imm];
     const ir::ValueId first = instruction.first_result;
+    const std::vector<std::string> groups = print_groups(instruction);
     if (instruction.result_count == 1) {
       begin_definition(instruction);
     } else {
@@ -251,7 +274,7 @@ class FunctionPrinter {
       for (uint32_t i = 0; i < instruction.result_count; ++i)
         values_[first + i] = name + "." + called.result_fields[i];
     }
-    print_call_expression(instruction);
+    print_call_expression(instruction, groups);
     end_statement(first);
   }
 

@@ -81,14 +81,24 @@ class Glsl final : public Language {
     out.append(text.result_type.empty() ? ir::name(function.results[0].type) : text.result_type);
     out.append(" ").append(text.name).append("(");
   }
+  void group_value(std::string& out, std::string_view record, bool) const override { out += record; }
   void group_type(std::string& out, std::string_view record, bool) const override { out += record; }
 };
+
+constexpr std::string_view zero_head =
+    "// 0.0 where a driver would fold arithmetic with a literal, by rules of its own (x * 0.0 is not always "
+    "0.0).\n"
+    "// With the literal in its place bits may differ in rare cases. For the same bits on every device "
+    "define it as\n"
+    "// something that the compiler cannot see through, which is always 0.0: a word of a storage buffer.\n"
+    "#ifndef ISO_ZERO\n#define ISO_ZERO 0.0\n#endif\n\n";
 
 }  // namespace
 
 std::string glsl_functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
-  return print_functions(module, entry, Glsl(), texts);
+  return std::string(uses_hidden_zero(module, entry) ? zero_head : "") +
+         print_functions(module, entry, Glsl(), texts);
 }
 
 }  // namespace isoshade::emit

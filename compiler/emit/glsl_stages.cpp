@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/glsl.h"
 #include "compiler/emit/names.h"
+#include "compiler/emit/printer.h"
 #include "compiler/emit/result_words.h"
 #include "compiler/emit/stages.h"
 #include "compiler/lower/frame_layout.h"
@@ -21,6 +22,11 @@ constexpr std::string_view push_constants =
     "layout(push_constant) uniform Push {\n"
     "  int object;\n  int light_count;\n  int program;\n  int first;\n  int count;\n  int width;\n"
     "} push;\n";
+
+// A uniform will not do: lavapipe compiles a shader again for the values of some.
+constexpr std::string_view zero =
+    "layout(std430, set = 0, binding = 8) readonly buffer iso_zero_block { float iso_zero; };\n"
+    "#define ISO_ZERO iso_zero\n";
 
 constexpr std::string_view canonical_bits =
     "// The bits of a float; NaN is one value.\n"
@@ -91,21 +97,26 @@ std::string word_bits(const ResultWord& word) {
   return word.text;
 }
 
+/// `EvalResult row_results = eval(row);`
+std::string eval_call(const ir::Function& kernel, std::string_view row) {
+  const ir::Type type = kernel.results[0].type;
+  const bool single = kernel.results.size() == 1;
+  return std::string(single && type.is_float() ? "  precise " : "  ") +
+         (single ? std::string(ir::name(type)) : "EvalResult") + " row_results = eval(" + std::string(row) +
+         ");\n";
+}
+
 std::string eval_main(const ir::Function& kernel) {
   const std::vector<ResultWord> words = result_words(kernel, "row_results");
   const size_t targets = (words.size() + 3) / 4;
   std::string text;
   for (size_t i = 0; i < targets; ++i)
     text += "layout(location = " + std::to_string(i) + ") out ivec4 result_" + std::to_string(i) + ";\n";
-  const std::string type =
-      kernel.results.size() == 1 ? std::string(ir::name(kernel.results[0].type)) : "EvalResult";
   text += std::string(canonical_bits) +
           "\nvoid main() {\n"
           "  int row = push.first + int(gl_FragCoord.x) + int(gl_FragCoord.y) * push.width;\n"
-          "  if (row >= push.count) discard;\n"
-          "  " +
-          std::string(kernel.results[0].type.is_float() && kernel.results.size() == 1 ? "precise " : "") +
-          type + " row_results = eval(row);\n";
+          "  if (row >= push.count) discard;\n" +
+          eval_call(kernel, "row");
   for (size_t i = 0; i < targets; ++i) {
     std::string list;
     for (size_t k = 4 * i; k < 4 * i + 4; ++k)
@@ -115,9 +126,19 @@ std::string eval_main(const ir::Function& kernel) {
   return text + "}\n";
 }
 
+std::string vertex_eval_main(const ir::Function& kernel) {
+  const std::vector<ResultWord> words = result_words(kernel, "row_results");
+  std::string text = std::string(canonical_bits) + "\nvoid main() {\n" + eval_call(kernel, "gl_VertexIndex");
+  text += "  int word = gl_VertexIndex * " + std::to_string(words.size()) + ";\n";
+  for (size_t k = 0; k < words.size(); ++k)
+    text += "  words[word + " + std::to_string(k) + "] = " + word_bits(words[k]) + ";\n";
+  return text + "  gl_PointSize = 1.0;\n}\n";
+}
+
 }  // namespace
 
-std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading) {
+std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading,
+                       EvalIn eval_in) {
   std::vector<bool> used = used_buffers(module, entry);
   std::string text = glsl_head();
   text +=
@@ -143,10 +164,16 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
       body = pixel_main();
       break;
     case lower::Stage::eval:
+      if (eval_in == EvalIn::vertex_shader) {
+        interface = "layout(std430, set = 0, binding = 6) writeonly buffer words_block { int words[]; };\n";
+        body = vertex_eval_main(module.functions[entry]);
+        break;
+      }
       interface = push_constants;
       body = eval_main(module.functions[entry]);
       break;
   }
+  if (uses_hidden_zero(module, entry)) interface += zero;
   text.append(buffers_of(module, used)).append(interface).append("\n");
   text.append(glsl_functions(module, entry)).append("\n").append(body);
   return text;

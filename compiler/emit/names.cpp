@@ -37,7 +37,7 @@ const std::unordered_set<std::string_view> reserved = {
     "frame", "inputs", "lights", "objects", "triangles", "vertices", "clip", "ids", "id", "isoshade",
     "int_of", "bool_of", "float_of", "lane_count", "pixel", "vertex", "depth", "eval", "shade", "light_at",
     "edges_at", "attribute2", "attribute3", "Buffers", "NULL", "INFINITY", "NAN", "assert", "errno", "linux",
-    "unix", "near", "far", "VULKAN", "Lanes", "batch",
+    "unix", "near", "far", "ISO_ZERO", "iso_zero", "iso_zero_block", "words", "VULKAN", "Lanes", "batch",
     // rarer words of GLSL that glslang takes as keywords
     "active", "devicecoherent", "dmat2x2", "dmat2x3", "dmat2x4", "dmat3x2", "dmat3x3", "dmat3x4", "dmat4x2",
     "dmat4x3", "dmat4x4", "mat2x2", "mat2x3", "mat2x4", "mat3x2", "mat3x3", "mat3x4", "mat4x2", "mat4x3",

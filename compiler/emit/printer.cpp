@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/printer.h"
 
+#include <algorithm>
 #include <array>
+#include <span>
 
 #include "compiler/emit/function_printer.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::emit {
-
-std::string record_name(std::string_view group) {
-  std::string name(group);
-  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  return name;
-}
 
 namespace {
 
@@ -23,32 +19,76 @@ bool loads_directly(const ir::Function& function) {
   return false;
 }
 
-/// The structs of a function: one for its results if there are several, one for each parameter group.
-void print_records(std::string& out, const ir::Function& function, const FunctionText& text,
-                   const Language& language) {
-  if (!text.result_type.empty()) {
-    std::vector<std::pair<ir::Type, std::string>> fields;
-    for (size_t i = 0; i < function.results.size(); ++i)
-      fields.emplace_back(function.results[i].type, text.result_fields[i]);
-    language.record(out, text.result_type, fields, false);
-    out += "\n";
-  }
-  for (size_t i = 0; i < function.parameters.size();) {
-    const ir::Parameter& first = function.parameters[i];
-    if (first.group.empty()) {
-      ++i;
-      continue;
-    }
-    Names names;
-    std::vector<std::pair<ir::Type, std::string>> fields;
-    for (; i < function.parameters.size() && function.parameters[i].group == first.group; ++i)
-      fields.emplace_back(function.parameters[i].type, names.take(function.parameters[i].name));
-    language.record(out, record_name(first.group), fields, first.uniform);
-    out += "\n";
-  }
+/// The struct that a function's results or a parameter group become: "surface" -> "Surface".
+std::string record_name(std::string_view group) {
+  std::string name(group);
+  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  return name;
 }
 
+void print_result_record(std::string& out, const ir::Function& function, const FunctionText& text,
+                         const Language& language) {
+  if (text.result_type.empty()) return;
+  std::vector<std::pair<ir::Type, std::string>> fields;
+  for (size_t i = 0; i < function.results.size(); ++i)
+    fields.emplace_back(function.results[i].type, text.result_fields[i]);
+  language.record(out, text.result_type, fields, false);
+  out += "\n";
+}
+
+/// The structs that parameter groups become. Groups of one name and the same fields share one.
+class GroupRecords {
+ public:
+  GroupRecords(const Language& language, Names& globals) : language_(language), globals_(globals) {}
+
+  /// Names the structs of a function's groups, and prints those that are new.
+  void print(std::string& out, const ir::Function& function, FunctionText& text) {
+    text.groups.resize(function.parameters.size());
+    for (size_t i = 0; i < function.parameters.size();) {
+      const size_t begin = i;
+      const std::string& group = function.parameters[begin].group;
+      do ++i;
+      while (i < function.parameters.size() && !group.empty() && function.parameters[i].group == group);
+      if (!group.empty())
+        std::fill_n(text.groups.begin() + static_cast<ptrdiff_t>(begin), i - begin,
+                    name(out, std::span(function.parameters).subspan(begin, i - begin)));
+    }
+  }
+
+ private:
+  struct Record {
+    std::string name;
+    std::vector<ir::Parameter> fields;
+  };
+
+  std::string name(std::string& out, std::span<const ir::Parameter> fields) {
+    for (const Record& record : records_)
+      if (std::equal(fields.begin(), fields.end(), record.fields.begin(), record.fields.end()))
+        return record.name;
+    records_.push_back({globals_.take(record_name(fields[0].group)), {fields.begin(), fields.end()}});
+    Names names;
+    std::vector<std::pair<ir::Type, std::string>> printed;
+    for (const ir::Parameter& field : fields) printed.emplace_back(field.type, names.take(field.name));
+    language_.record(out, records_.back().name, printed, fields[0].uniform);
+    out += "\n";
+    return records_.back().name;
+  }
+
+  const Language& language_;
+  Names& globals_;
+  std::vector<Record> records_;
+};
+
 }  // namespace
+
+bool uses_hidden_zero(const ir::Module& module, uint32_t entry) {
+  const std::array entries{entry};
+  const auto reached = ir::callees_first(module, entries);
+  for (uint32_t index : *reached)
+    for (const ir::Instruction& instruction : module.functions[index].instructions)
+      if (instruction.op == ir::Opcode::hidden_zero) return true;
+  return false;
+}
 
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
                             std::vector<FunctionText>& texts) {
@@ -60,7 +100,7 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
   // Library functions and stages are named by us; lowering keeps authors' names off `shade`.
   const auto is_ours = [](const ir::Function& function) {
-    return function.document.empty() || function.name == "shade";
+    return (function.document.empty() && function.name != "main") || function.name == "shade";
   };
   for (uint32_t index : *order)
     if (is_ours(module.functions[index])) globals.hold(module.functions[index].name);
@@ -77,11 +117,13 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
     for (const ir::Result& result : function.results) text.result_fields.push_back(fields.take(result.name));
   }
   std::string out;
+  GroupRecords groups(language, globals);
   for (uint32_t index : *order) {
     const ir::Function& function = module.functions[index];
     if (!out.empty()) out += "\n";
     if (!function.document.empty()) out += "// " + comment_text(function.document) + "\n";
-    print_records(out, function, texts[index], language);
+    print_result_record(out, function, texts[index], language);
+    groups.print(out, function, texts[index]);
     print_function(out, module, function, texts[index], language, texts, globals);
   }
   return out;

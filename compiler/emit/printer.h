@@ -17,7 +17,8 @@ struct FunctionText {
   std::string name;         ///< in emitted text
   std::string result_type;  ///< the name of its result struct if it has several results, else empty
   std::vector<std::string> result_fields;
-  bool loads = false;  ///< it, or one it calls, loads from a buffer
+  std::vector<std::string> groups;  ///< the name of the struct of each parameter; empty: a plain parameter
+  bool loads = false;               ///< it, or one it calls, loads from a buffer
 };
 
 /// How a value is written: a name and its spelling's properties.
@@ -69,7 +70,8 @@ class Language {
   /// All before the first parameter; in C++ with the buffers, if the function loads.
   virtual void function_head(std::string& out, const ir::Function& function,
                              const FunctionText& text) const = 0;
-  /// The type of a parameter that is a whole group.
+  /// The type of a local, and of a parameter, that is a whole group.
+  virtual void group_value(std::string& out, std::string_view record, bool uniform) const = 0;
   virtual void group_type(std::string& out, std::string_view record, bool uniform) const = 0;
 };
 
@@ -79,7 +81,10 @@ class Language {
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
                             std::vector<FunctionText>& texts);
 
-/// The struct that a parameter group becomes: "surface" -> "Surface".
-std::string record_name(std::string_view group);
+/// The name of ir::Opcode::hidden_zero in emitted text.
+inline constexpr std::string_view hidden_zero = "ISO_ZERO";
+
+/// Whether the function or one it calls has a hidden zero.
+bool uses_hidden_zero(const ir::Module& module, uint32_t entry);
 
 }  // namespace isoshade::emit

@@ -2,7 +2,7 @@
 // Whole shaders and whole C++ files: a kernel with the stage around it.
 //
 // GLSL. Set 0: bindings 0-5 are the buffers of lower/frame_layout.h (only those used are declared), 6 `clip`
-// (uvec4, written by vertex), 7 `ids` (isampler2D, read by pixel). Push constants, six ints:
+// (uvec4, written by vertex), 7 `ids` (isampler2D, read by pixel), 8 a word that is 0.0 (see ir::Opcode). Push constants, six ints:
 //   object, light_count, program, first, count, width
 //   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as
 //   bits at
@@ -35,7 +35,12 @@ struct Heading {
   std::string name;
 };
 
-std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading);
+/// Which shader an eval program becomes. As a vertex shader it stores the words of row gl_VertexIndex, one
+/// record after another, at binding 6 (ints).
+enum class EvalIn : uint8_t { fragment_shader, vertex_shader };
+
+std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading,
+                       EvalIn eval_in = EvalIn::fragment_shader);
 /// Not for Stage::depth, which the CPU rasteriser computes from the same templates.
 std::string cpp_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading);
 

@@ -91,6 +91,7 @@ inline uint32_t evaluate(Opcode op, uint32_t a, uint32_t b, uint32_t c) {
     case Opcode::constant:
     case Opcode::construct:
     case Opcode::extract:
+    case Opcode::hidden_zero:
     case Opcode::load:
     case Opcode::call:
     case Opcode::branch:

@@ -68,7 +68,8 @@ class Interpreter::Compiler {
     const auto operands = function_.operands_of(instruction);
     const ValueId result = instruction.first_result;
     switch (instruction.op) {
-      case Opcode::constant: registers_[result] = literal(instruction.imm); return;
+      case Opcode::constant:
+      case Opcode::hidden_zero: registers_[result] = literal(instruction.imm); return;
       case Opcode::extract: registers_[result] = registers_[operands[0]] + instruction.imm; return;
       case Opcode::construct:
         allocate(result);

@@ -12,13 +12,14 @@ enum class Opcode : uint8_t {
 #define OP(name, arity, rule, glsl, cpp, precondition) name,
 #include "compiler/ir/ops.def"
   // The rest have no row: they compute nothing.
-  constant,   ///< imm: the bits of a bool (0, 1), int or float (never a denormal; NaN is 0x7fc00000)
-  construct,  ///< 2-4 floats -> vector
-  extract,    ///< vector, imm: component -> float
-  load,       ///< imm: buffer; int index -> the buffer's element; an index outside [0, size) is undefined
-  call,       ///< imm: callee (an index into Module::functions)
-  branch,     ///< bool; two blocks, each yields the results; only one is run
-  loop,       ///< int count, initial values; one block with parameters (index, carried...), yields carried
+  constant,     ///< imm: the bits of a bool (0, 1), int or float (never a denormal; NaN is 0x7fc00000)
+  construct,    ///< 2-4 floats -> vector
+  extract,      ///< vector, imm: component -> float
+  hidden_zero,  ///< 0.0, but what makes it so is not in the program: nothing can be folded with it
+  load,         ///< imm: buffer; int index -> the buffer's element; an index outside [0, size) is undefined
+  call,         ///< imm: callee (an index into Module::functions)
+  branch,       ///< bool; two blocks, each yields the results; only one is run
+  loop,         ///< int count, initial values; one block with parameters (index, carried...), yields carried
 };
 
 enum class Rule : uint8_t { same, compare, icompare, integer, logic, choose, to_int, to_float };

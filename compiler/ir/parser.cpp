@@ -201,6 +201,7 @@ class BodyParser : Reader {
       case Opcode::extract:
         types = {float_type};
         return reference(operands.emplace_back()) && expect(",") && take_number(made.imm, "a component");
+      case Opcode::hidden_zero: types = {float_type}; return true;
       case Opcode::load: {
         std::string buffer;
         if (!take(Kind::word, buffer, "a buffer")) return false;

@@ -121,6 +121,7 @@ class Printer {
     }
     if (instruction.result_count != 0) out_ += " = ";
     out_ += name(instruction.op);
+    if (instruction.op == Opcode::hidden_zero) return;
     out_ += ' ';
     const auto operands = f_.operands_of(instruction);
     switch (instruction.op) {

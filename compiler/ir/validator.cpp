@@ -167,6 +167,10 @@ class BodyValidator {
         if (made.imm >= operands[0].width) return "no such component";
         results = {float_type};
         return {};
+      case Opcode::hidden_zero:
+        if (!operands.empty()) return "it takes no operand";
+        results = {float_type};
+        return {};
       case Opcode::load:
         if (operands.size() != 1 || operands[0] != int_type) return "it takes an int";
         if (made.imm >= module_.buffers.size()) return "no such buffer";

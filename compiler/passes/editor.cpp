@@ -21,9 +21,12 @@ Editor::Editor(Function& function)
       defined_by_[f_.instructions[id].first_result + k] = id;
 }
 
-void Editor::run(Visit visit) {
+void Editor::run(Visit visit, Leave leave) {
   visit_ = std::move(visit);
+  leave_ = std::move(leave);
   visit_block(0);
+  std::vector<InstructionId>& body = f_.blocks[0].instructions;
+  body.insert(body.begin(), head_.begin(), head_.end());
 }
 
 void Editor::visit_block(BlockId block) {
@@ -31,6 +34,7 @@ void Editor::visit_block(BlockId block) {
   list_.reserve(f_.blocks[block].instructions.size());
   visit_all(std::exchange(f_.blocks[block].instructions, {}));
   for (ValueId& yield : f_.blocks[block].yields) yield = current(yield);
+  if (leave_) leave_(block);
   f_.blocks[block].instructions = std::exchange(list_, std::move(outer));
 }
 
@@ -116,6 +120,8 @@ ValueId Editor::make(Opcode op, std::span<const ValueId> operands) {
   support::check(type.has_value(), "a pass made operands that do not fit");
   return append(op, 0, operands, *type);
 }
+
+ValueId Editor::hidden_zero() { return append(Opcode::hidden_zero, 0, {}, float_type); }
 
 ValueId Editor::component(ValueId value, uint32_t index) {
   if (f_.type(value).width == 1) return value;

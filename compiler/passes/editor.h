@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compiler/ir/module.h"
@@ -19,7 +20,9 @@ class Editor {
   /// instruction, or `replace` all its results that are in use; what it makes meanwhile comes before the next
   /// instruction.
   using Visit = std::function<void(ir::InstructionId)>;
-  void run(Visit visit);
+  /// Called at the end of each block, its yields already replaced; what it makes still belongs to the block.
+  using Leave = std::function<void(ir::BlockId)>;
+  void run(Visit visit, Leave leave = {});
 
   void keep(ir::InstructionId instruction) { list_.push_back(instruction); }
   /// Visits the blocks of a kept instruction.
@@ -55,6 +58,17 @@ class Editor {
   /// A primitive op or a construct.
   ir::ValueId make(ir::Opcode op, std::initializer_list<ir::ValueId> operands);
   ir::ValueId make(ir::Opcode op, std::span<const ir::ValueId> operands);
+  /// Makes a value at the head of the function, where all its blocks see it.
+  template <class Make>
+  ir::ValueId at_head(Make make) {
+    const uint32_t origin = std::exchange(origin_, 0);
+    list_.swap(head_);
+    const ir::ValueId made = make();
+    list_.swap(head_);
+    origin_ = origin;
+    return made;
+  }
+  ir::ValueId hidden_zero();
   /// A component of a value; looks through constructs, and a float's only component is itself.
   ir::ValueId component(ir::ValueId value, uint32_t index);
 
@@ -67,7 +81,9 @@ class Editor {
 
   ir::Function& f_;
   Visit visit_;
+  Leave leave_;
   std::vector<ir::InstructionId> list_;        ///< the block being rebuilt
+  std::vector<ir::InstructionId> head_;        ///< comes before the body
   std::vector<ir::ValueId> replaced_by_;       ///< by value
   std::vector<ir::InstructionId> defined_by_;  ///< by value
   uint32_t origin_ = 0;

@@ -90,6 +90,7 @@ class Folder {
     const Instruction made = f_.instructions[id];
     switch (made.op) {
       case Opcode::constant:
+      case Opcode::hidden_zero:
       case Opcode::load: return edit_.keep(id);
       case Opcode::construct: return replace_or_keep(id, whole_vector(made));
       case Opcode::extract: return replace_or_keep(id, component(made));

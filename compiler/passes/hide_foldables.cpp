@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/passes/hide_foldables.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
+#include "compiler/ir/call_graph.h"
 #include "compiler/ir/evaluate.h"
 #include "compiler/passes/editor.h"
 #include "runtime/lanes/float_rules.h"
@@ -16,146 +19,152 @@ using namespace ir;
 using Bits = std::optional<uint32_t>;
 
 constexpr uint32_t smallest_normal_bits = 0x00800000;
+constexpr uint32_t small_bits = 0x20800000;  // 2^-62
+constexpr uint32_t large_bits = 0x5e800000;  // 2^62
 
 bool is_zero(Bits bits) { return bits && (*bits & ~sign_bit) == 0; }
 
-// Whether an op on operands of which these bits are known leaves a driver something to fold.
-bool is_foldable(Opcode op, int arity, Bits a, Bits b) {
-  if (a && (arity == 1 || b)) return true;
-  switch (op) {
-    case Opcode::fmul:
-    case Opcode::fdiv: return is_zero(a) || is_zero(b);
-    case Opcode::fadd: return a == 0u || b == 0u;
-    case Opcode::fsub: return is_zero(a) || b == sign_bit;
-    default: return false;
-  }
+/// Whether a product with it may have to be flushed; also infinities and NaN.
+bool is_extreme(Bits bits) {
+  return bits && !is_zero(bits) && ((*bits & ~sign_bit) < small_bits || (*bits & ~sign_bit) > large_bits);
 }
 
-// Whether drivers take a choice among these for a bool made float, +-1 or 0, of which they lose the zero's sign.
-bool is_float_of_bool(Bits a, Bits b) {
-  const auto pair = [](Bits one, Bits zero) {
-    return (one == one_bits && zero == sign_bit) || (one == (one_bits | sign_bit) && zero == 0u);
-  };
-  return pair(a, b) || pair(b, a);
-}
+bool is_plain(Bits bits) { return !is_zero(bits) && !is_extreme(bits); }
+
+bool is_arithmetic(Opcode op) { return is_primitive(op) && info(op).rule == Rule::same; }
 
 class Hider {
  public:
-  explicit Hider(Function& f) : f_(f), edit_(f) {}
+  Hider(const Module& module, Function& f, bool computes_on_results)
+      : module_(module), f_(f), edit_(f), open_(f.values.size(), false) {
+    yields_ = computes_on_results ? Yields::known : Yields::only_returned;
+    for (ValueId parameter : f_.blocks[0].parameters) open_[parameter] = true;
+  }
 
   void run() {
-    edit_.run([this](InstructionId id) { visit(id); });
+    edit_.run([this](InstructionId id) { visit(id); }, [this](BlockId block) { leave(block); });
   }
 
  private:
+  /// What a driver makes of the values that a block yields.
+  enum class Yields : uint8_t { only_returned, chosen, known };
+
   void visit(InstructionId id) {
     const Instruction made = f_.instructions[id];
-    if (made.blocks[0] != none) {
-      edit_.keep(id);
-      edit_.descend(id);
-      if (made.op == Opcode::branch) hide_yields(made);
-      return;
-    }
-    if (made.op == Opcode::select) return hide_select(id, made);
-    if (made.op == Opcode::ftoi) {
-      const Instruction* from = edit_.definition(edit_.operand(made, 0), Opcode::itof);
-      if (from != nullptr) return edit_.replace(made.first_result, truncated(edit_.operand(*from, 0)));
-    }
+    if (is_arithmetic(made.op)) return arithmetic(id, made);
     if (const auto compared = compare_with_zero(made)) return edit_.replace(made.first_result, *compared);
-    if (!is_primitive(made.op) || info(made.op).rule != Rule::same || !has_foldable(made))
-      return edit_.keep(id);
-    const uint32_t width = f_.type(made.first_result).width;
-    edit_.replace(made.first_result, vector(width, [&](uint32_t c) { return component(made, c); }));
-  }
-
-  // A scalar, or a vector of the components that `component` makes.
-  template <class Component>
-  ValueId vector(uint32_t width, Component component) {
-    std::array<ValueId, 4> components;
-    for (uint32_t c = 0; c < width; ++c) components[c] = component(c);
-    return width == 1 ? components[0] : edit_.make(Opcode::construct, std::span(components).first(width));
-  }
-
-  bool has_float_of_bool(ValueId a, ValueId b) const {
-    for (uint32_t c = 0; c < f_.type(a).width; ++c)
-      if (is_float_of_bool(edit_.known(a, c), edit_.known(b, c))) return true;
-    return false;
-  }
-
-  void hide_select(InstructionId id, const Instruction& made) {
-    const ValueId condition = edit_.operand(made, 0), a = edit_.operand(made, 1), b = edit_.operand(made, 2);
-    if (!has_float_of_bool(a, b)) return edit_.keep(id);
-    edit_.replace(made.first_result, vector(f_.type(a).width, [&](uint32_t c) {
-                    const Bits x = edit_.known(a, c), y = edit_.known(b, c);
-                    if (is_float_of_bool(x, y)) return choose(condition, *x, *y, f_.type(a).is_float());
-                    const ValueId values[] = {condition, edit_.component(a, c), edit_.component(b, c)};
-                    return edit_.make(Opcode::select, values);
-                  }));
-  }
-
-  // A branch becomes a select in drivers.
-  void hide_yields(const Instruction& made) {
-    for (uint32_t k = 0; k < made.result_count; ++k) {
-      const ValueId a = f_.blocks[made.blocks[0]].yields[k], b = f_.blocks[made.blocks[1]].yields[k];
-      const ValueId result = made.first_result + k;
-      if (!has_float_of_bool(a, b)) continue;
-      edit_.replace(result, vector(f_.type(a).width, [&](uint32_t c) {
-                      const Bits x = edit_.known(a, c), y = edit_.known(b, c);
-                      return is_float_of_bool(x, y)
-                                 ? choose(edit_.operand(made, 0), *x, *y, f_.type(a).is_float())
-                                 : edit_.component(result, c);
-                    }));
-    }
-  }
-
-  // One of two constants, neither of which stands in the text.
-  ValueId choose(ValueId condition, uint32_t a, uint32_t b, bool is_float) {
-    constexpr uint32_t mask = 0x40000000;
-    const ValueId masked = edit_.make(Opcode::select, {condition, integer(a ^ mask), integer(b ^ mask)});
-    const ValueId bits = edit_.make(Opcode::ixor, {masked, integer(mask)});
-    return is_float ? edit_.make(Opcode::bitsf_normal, {bits}) : bits;
-  }
-
-  Bits known(const Instruction& made, uint32_t operand, uint32_t component) const {
-    return operand < made.operand_count ? edit_.known(edit_.operand(made, operand), component) : std::nullopt;
-  }
-
-  bool has_foldable(const Instruction& made) const {
-    for (uint32_t c = 0; c < f_.type(made.first_result).width; ++c)
-      if (is_foldable(made.op, info(made.op).arity, known(made, 0, c), known(made, 1, c))) return true;
-    return false;
-  }
-
-  // One component of the result, without the shape.
-  ValueId component(const Instruction& made, uint32_t c) {
-    const Bits a = known(made, 0, c), b = known(made, 1, c);
-    const auto operand = [&](uint32_t i) { return edit_.component(edit_.operand(made, i), c); };
-    if (made.operand_count == 1)
-      return a ? literal(evaluate(made.op, *a, 0, 0)) : edit_.make(made.op, {operand(0)});
-    if (a && b) return literal(evaluate(made.op, *a, *b, 0));
-    if (!is_foldable(made.op, 2, a, b)) return edit_.make(made.op, {operand(0), operand(1)});
     switch (made.op) {
-      case Opcode::fmul: return a ? times_zero(operand(1), *a) : times_zero(operand(0), *b);
-      case Opcode::fadd: return plus_zero(operand(a ? 1 : 0));
-      case Opcode::fsub: {
-        if (b) return plus_zero(operand(0));
-        const ValueId negative = edit_.make(Opcode::fneg, {operand(1)});
-        return *a == 0 ? plus_zero(negative) : negative;
-      }
-      default:
-        return a ? zero_over(operand(1), *a)
-                 : edit_.make(Opcode::fmul, {operand(0), literal(*b | infinity_bits)});
+      case Opcode::construct: for_operands(made, 0, [&](ValueId v) { return chosen(v); }); break;
+      case Opcode::select: for_operands(made, 1, [&](ValueId v) { return chosen(v); }); break;
+      case Opcode::call: arguments(made); break;
+      case Opcode::branch: inside(id, Yields::chosen); break;
+      case Opcode::loop: loop(id, made); break;
+      case Opcode::ftoi:
+        // int(float(i))
+        for_operands(made, 0, [&](ValueId v) {
+          return is_open(v) ? edit_.make(Opcode::fadd, {v, zero()}) : v;
+        });
+        break;
+      case Opcode::itof:
+      case Opcode::bitsf:
+      case Opcode::bitsf_normal:
+        for_operands(made, 0, [&](ValueId v) {
+          return is_open(v) ? edit_.make(Opcode::ior, {v, bits()}) : v;
+        });
+        break;
+      default: break;
     }
+    if (made.blocks[0] == none) edit_.keep(id);
+    mark_open(made);
+  }
+
+  template <class Replace>
+  void for_operands(const Instruction& made, uint32_t first, Replace replace) {
+    for (uint32_t i = first; i < made.operand_count; ++i) {
+      const ValueId with = replace(edit_.operand(made, i));
+      f_.operands[made.first_operand + i] = with;
+    }
+  }
+
+  /// Whether a driver that inlines calls may know the int, or take the float for an int's.
+  bool is_open(ValueId value) const { return value < open_.size() && open_[value]; }
+
+  void mark_open(const Instruction& made) {
+    const auto operands = f_.operands_of(made);
+    const auto open = [&](ValueId value) { return is_open(value); };
+    bool is_open = false;
+    switch (made.op) {
+      case Opcode::constant: is_open = f_.type(made.first_result) == int_type; break;
+      case Opcode::itof:
+      case Opcode::call:
+      case Opcode::branch:
+      case Opcode::loop: is_open = true; break;
+      case Opcode::extract:
+      case Opcode::construct:
+      case Opcode::select:
+      case Opcode::floor:
+      case Opcode::fneg:
+      case Opcode::fabs: is_open = std::any_of(operands.begin(), operands.end(), open); break;
+      default:
+        is_open = is_primitive(made.op) && info(made.op).rule == Rule::integer &&
+                  std::all_of(operands.begin(), operands.end(), open);
+    }
+    for (uint32_t k = 0; k < made.result_count; ++k) open_[made.first_result + k] = is_open;
+  }
+
+  void arithmetic(InstructionId id, const Instruction& made) {
+    if (is_evaluated(made)) return edit_.replace(made.first_result, taken_apart(made));
+    const bool multiplies = made.op == Opcode::fmul || made.op == Opcode::fdiv;
+    for_operands(made, 0, [&](ValueId v) {
+      const Bits bits = f_.type(v).width == 1 ? edit_.known(v, 0) : std::nullopt;
+      return is_zero(bits) || (multiplies && is_extreme(bits)) ? hidden(v) : v;
+    });
+    edit_.keep(id);
+    mark_open(made);
+  }
+
+  /// Whether all operands are constant in some component.
+  bool is_evaluated(const Instruction& made) const {
+    for (uint32_t c = 0; c < f_.type(made.first_result).width; ++c)
+      if (evaluated(made, c)) return true;
+    return false;
+  }
+
+  Bits evaluated(const Instruction& made, uint32_t c) const {
+    std::array<uint32_t, 2> words{};
+    for (uint32_t i = 0; i < made.operand_count; ++i) {
+      const Bits word = edit_.known(edit_.operand(made, i), c);
+      if (!word) return std::nullopt;
+      words[i] = *word;
+    }
+    return evaluate(made.op, words[0], words[1], 0);
+  }
+
+  ValueId taken_apart(const Instruction& made) {
+    const uint32_t width = f_.type(made.first_result).width;
+    std::array<ValueId, 4> components;
+    for (uint32_t c = 0; c < width; ++c) {
+      if (const Bits word = evaluated(made, c)) {
+        components[c] = is_plain(word) ? edit_.constant(float_type, *word) : hidden(float_type, *word);
+        continue;
+      }
+      std::array<ValueId, 2> operands;
+      for (uint32_t i = 0; i < made.operand_count; ++i)
+        operands[i] = edit_.component(edit_.operand(made, i), c);
+      components[c] = edit_.make(made.op, std::span(operands).first(made.operand_count));
+    }
+    return width == 1 ? components[0] : edit_.make(Opcode::construct, std::span(components).first(width));
   }
 
   // No float is denormal: what is above 0 is at least the smallest normal number.
   std::optional<ValueId> compare_with_zero(const Instruction& made) {
     if (!is_primitive(made.op) || info(made.op).rule != Rule::compare) return std::nullopt;
-    const bool zero_first = is_zero(known(made, 0, 0));
-    if (!zero_first && !is_zero(known(made, 1, 0))) return std::nullopt;
+    const bool zero_first = is_zero(edit_.known(edit_.operand(made, 0), 0));
+    if (!zero_first && !is_zero(edit_.known(edit_.operand(made, 1), 0))) return std::nullopt;
     const ValueId x = edit_.operand(made, zero_first ? 1 : 0);
     const auto with = [&](Opcode op, bool negative) {
-      return edit_.make(op, {x, literal(smallest_normal_bits | (negative ? sign_bit : 0u))});
+      const uint32_t smallest = smallest_normal_bits | (negative ? sign_bit : 0u);
+      return edit_.make(op, {x, edit_.constant(float_type, smallest)});
     };
     switch (made.op) {
       case Opcode::flt: return zero_first ? with(Opcode::fge, false) : with(Opcode::fle, true);
@@ -166,53 +175,154 @@ class Hider {
     }
   }
 
-  ValueId literal(uint32_t bits) { return edit_.constant(float_type, bits); }
-  ValueId integer(uint32_t bits) { return edit_.constant(int_type, bits); }
-
-  // A zero whose sign is that of `zero` and the bits' together, or NaN.
-  ValueId signed_zero(ValueId bits, uint32_t zero, ValueId is_nan) {
-    ValueId sign = edit_.make(Opcode::iand, {bits, integer(sign_bit)});
-    if (zero != 0) sign = edit_.make(Opcode::ixor, {sign, integer(sign_bit)});
-    return edit_.make(Opcode::bitsf_normal, {edit_.make(Opcode::select, {is_nan, integer(nan_bits), sign})});
+  void arguments(const Instruction& made) {
+    // Without arithmetic, functions of the library choose among their arguments.
+    const bool chooses = !module_.functions[made.imm].library.empty();
+    for_operands(made, 0, [&](ValueId v) {
+      if (!f_.type(v).is_float()) return v;
+      const bool whole = edit_.definition(v, Opcode::construct) == nullptr || is_known(v);
+      return chooses && whole ? chosen(v) : known(v);
+    });
   }
 
-  ValueId times_zero(ValueId x, uint32_t zero) {
-    const ValueId bits = edit_.make(Opcode::fbits, {x});
-    const ValueId exponent = edit_.make(Opcode::iand, {bits, integer(infinity_bits)});
-    return signed_zero(bits, zero, edit_.make(Opcode::ieq, {exponent, integer(infinity_bits)}));
+  bool is_known(ValueId vector) const {
+    for (uint32_t c = 0; c < f_.type(vector).width; ++c)
+      if (!edit_.known(vector, c)) return false;
+    return true;
   }
 
-  ValueId zero_over(ValueId x, uint32_t zero) {
-    const ValueId bits = edit_.make(Opcode::fbits, {x});
-    const ValueId magnitude = edit_.make(Opcode::iand, {bits, integer(~sign_bit)});
-    const ValueId by_zero = edit_.make(Opcode::ieq, {magnitude, integer(0)});
-    const ValueId by_nan = edit_.make(Opcode::ieq, {magnitude, integer(nan_bits)});
-    return signed_zero(bits, zero, edit_.make(Opcode::bor, {by_zero, by_nan}));
+  void inside(InstructionId id, Yields yields) {
+    edit_.keep(id);
+    const Yields outer = std::exchange(yields_, yields);
+    edit_.descend(id);
+    yields_ = outer;
   }
 
-  ValueId plus_zero(ValueId x) {
-    const ValueId bits = edit_.make(Opcode::fbits, {x});
-    const ValueId is_minus_zero = edit_.make(Opcode::ieq, {bits, integer(sign_bit)});
-    return edit_.make(Opcode::select, {is_minus_zero, literal(0), x});
+  void loop(InstructionId id, const Instruction& made) {
+    const ValueId count = edit_.operand(made, 0);
+    if (edit_.known(count, 0)) f_.operands[made.first_operand] = hidden(count);
+    for_operands(made, 1, [&](ValueId v) { return f_.type(v).is_float() ? known(v) : v; });
+    for (ValueId parameter : f_.blocks[made.blocks[0]].parameters) open_[parameter] = true;
+    inside(id, Yields::known);
   }
 
-  ValueId truncated(ValueId i) {
-    const ValueId high = edit_.make(Opcode::itof, {edit_.make(Opcode::isar, {i, integer(16)})});
-    const ValueId low = edit_.make(Opcode::itof, {edit_.make(Opcode::iand, {i, integer(0xffff)})});
-    const ValueId scaled = edit_.make(Opcode::fmul, {high, literal(0x47800000)});  // 65536
-    return edit_.make(Opcode::ftoi, {edit_.make(Opcode::fadd, {scaled, low})});
+  void leave(BlockId block) {
+    if (yields_ == Yields::only_returned) return;
+    for (size_t k = 0; k < f_.blocks[block].yields.size(); ++k) {
+      const ValueId value = f_.blocks[block].yields[k];
+      const ValueId with = yields_ == Yields::chosen ? chosen(value) : known(value);
+      f_.blocks[block].yields[k] = with;
+    }
   }
 
+  /// A value that is chosen at run time: only its zeros and extremes matter. Ints: drivers take a choice among
+  /// the bits of 1 and -0 for a bool made float, and lose the zero's sign.
+  ValueId chosen(ValueId value) {
+    if (f_.type(value).width != 1 || f_.type(value) == bool_type) return value;
+    const Bits word = edit_.known(value, 0);
+    if (!word) return value;
+    const bool hide = f_.type(value).is_float() ? !is_plain(word) : (*word & ~sign_bit) == one_bits;
+    return hide ? hidden(value) : value;
+  }
+
+  /// A value that a driver will know if it is constant.
+  ValueId known(ValueId value) {
+    if (f_.type(value).width == 1) return edit_.known(value, 0) ? hidden(value) : value;
+    const Instruction* vector = edit_.definition(value, Opcode::construct);
+    if (vector == nullptr) return value;
+    std::array<ValueId, 4> components;
+    const uint32_t width = f_.type(value).width;
+    for (uint32_t c = 0; c < width; ++c) components[c] = f_.operands[vector->first_operand + c];
+    bool changed = false;
+    for (uint32_t c = 0; c < width; ++c) {
+      const ValueId component = std::exchange(components[c], known(components[c]));
+      changed = changed || component != components[c];
+    }
+    if (!changed) return value;
+    const ValueId made = edit_.make(Opcode::construct, std::span(components).first(width));
+    f_.values[made].names = f_.values[value].names;
+    return made;
+  }
+
+  ValueId zero() { return hidden(float_type, 0); }
+  ValueId bits() {
+    if (bits_ == none) {
+      const ValueId z = zero();
+      bits_ = edit_.at_head([&] { return edit_.make(Opcode::fbits_nonnan, {z}); });
+    }
+    return bits_;
+  }
+
+  ValueId hidden(ValueId constant) { return hidden(f_.type(constant), *edit_.known(constant, 0)); }
+
+  ValueId hidden(Type type, uint32_t word) {
+    for (const Hidden& made : hidden_)
+      if (made.type == type && made.word == word) return made.value;
+    const ValueId value = make_hidden(type, word);
+    hidden_.push_back({type, word, value});
+    return value;
+  }
+
+  ValueId make_hidden(Type type, uint32_t word) {
+    if (type.is_float() && word == 0) return edit_.at_head([&] { return edit_.hidden_zero(); });
+    const ValueId from = type.is_float() ? zero() : bits();
+    return edit_.at_head([&] {
+      if (type == bool_type)
+        return edit_.make(word != 0 ? Opcode::ieq : Opcode::ine, {from, edit_.constant(int_type, 0)});
+      if (type == int_type && word == 0) return from;
+      if (type == int_type) return edit_.make(Opcode::iadd, {from, edit_.constant(int_type, word)});
+      if (word == sign_bit) return edit_.make(Opcode::fneg, {from});
+      return edit_.make(Opcode::fadd, {from, edit_.constant(float_type, word)});
+    });
+  }
+
+  struct Hidden {
+    Type type;
+    uint32_t word;
+    ValueId value;
+  };
+
+  const Module& module_;
   Function& f_;
   Editor edit_;
+  std::vector<bool> open_;  ///< by value; those that were made here are not
+  std::vector<Hidden> hidden_;
+  ValueId bits_ = none;
+  Yields yields_;
 };
+
+// By function: whether a caller may compute with what it returns.
+std::vector<bool> find_computed(const Module& module, std::span<const uint32_t> entries) {
+  std::vector<bool> computed(module.functions.size(), true);
+  const auto order = callees_first(module, entries);
+  for (uint32_t reached : *order) computed[reached] = false;
+  for (auto caller = order->rbegin(); caller != order->rend(); ++caller) {
+    const Function& f = module.functions[*caller];
+    std::vector<bool> used(f.values.size(), computed[*caller]);
+    for (const Block& block : f.blocks) {
+      for (InstructionId id : block.instructions)
+        for (ValueId operand : f.operands_of(f.instructions[id])) used[operand] = true;
+      if (&block != &f.blocks[0])
+        for (ValueId yield : block.yields) used[yield] = true;
+    }
+    for (const Block& block : f.blocks)
+      for (InstructionId id : block.instructions) {
+        const Instruction& made = f.instructions[id];
+        if (made.op != Opcode::call) continue;
+        for (uint32_t k = 0; k < made.result_count; ++k)
+          if (used[made.first_result + k]) computed[made.imm] = true;
+      }
+  }
+  return computed;
+}
 
 }  // namespace
 
-void hide_foldables(ir::Module& module) {
+void hide_foldables(ir::Module& module, std::span<const uint32_t> entries) {
   const lanes::FpGuard guard;
-  for (Function& function : module.functions)
-    if (!function.is_declaration()) Hider(function).run();
+  const std::vector<bool> computed = find_computed(module, entries);
+  for (uint32_t i = 0; i < module.functions.size(); ++i)
+    if (!module.functions[i].is_declaration()) Hider(module, module.functions[i], computed[i]).run();
 }
 
 }  // namespace isoshade::passes

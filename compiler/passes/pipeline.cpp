@@ -24,7 +24,7 @@ void run_fold(ir::Module& m, Entries&) { fold(m, functions::expand); }
 void run_cse(ir::Module& m, Entries&) { cse(m); }
 void run_expand(ir::Module& m, Entries&) { functions::expand(m); }
 void run_specialize(ir::Module& m, Entries&) { specialize(m); }
-void run_hide(ir::Module& m, Entries&) { hide_foldables(m); }
+void run_hide(ir::Module& m, Entries& entries) { hide_foldables(m, entries); }
 void run_exact_division(ir::Module& m, Entries&) { exact_division(m); }
 
 constexpr Pass optimisation_table[] = {

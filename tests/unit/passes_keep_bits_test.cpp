@@ -81,7 +81,7 @@ TEST(PassesKeepEveryBit, FoldOfLibraryCalls) {
 }
 
 TEST(PassesKeepEveryBit, HideFoldables) {
-  expect_same_bits(3000, false, [](Module& m, uint64_t) { hide_foldables(m); });
+  expect_same_bits(3000, false, [](Module& m, uint64_t) { hide_foldables(m, {}); });
 }
 
 TEST(PassesKeepEveryBit, AnySequence) {
@@ -93,7 +93,7 @@ TEST(PassesKeepEveryBit, AnySequence) {
         case 0: renumber(m); break;
         case 1: cse(m); break;
         case 2: fold(m); break;
-        case 3: hide_foldables(m); break;
+        case 3: hide_foldables(m, {}); break;
         default: renumber(m), dce(m, entries);
       }
       ASSERT_EQ(ir::validate(m), "");

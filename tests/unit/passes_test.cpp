@@ -169,7 +169,7 @@ double seconds_for(const Module& module) {
     renumber(copy);
     fold(copy);
     cse(copy);
-    hide_foldables(copy);
+    hide_foldables(copy, {});
     renumber(copy);
     EXPECT_EQ(validate(copy), "");
     EXPECT_EQ(parsed(print(copy)), copy);

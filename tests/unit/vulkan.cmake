@@ -1,4 +1,6 @@
-isoshade_test(emit_spirv_test SOURCES unit/emit_spirv_test.cpp LINKS isoshade_emit)
+isoshade_test(emit_spirv_test
+  SOURCES unit/emit_names_of_groups_test.cpp unit/emit_spirv_test.cpp
+  LINKS isoshade_emit)
 
 if(ISOSHADE_VULKAN)
   isoshade_test(vulkan_test
