@@ -2,6 +2,7 @@
 // Every executor computes the same bits: each program of cases.h, on the same inputs, against the interpreter.
 #include <gtest/gtest.h>
 #include <memory>
+#include <tuple>
 
 #include "backends/cpu/backend.h"
 #include "backends/cpu/lane_count.h"
@@ -83,19 +84,22 @@ TEST_P(CpuLanes, ComputeTheInterpretersBits) {
 INSTANTIATE_TEST_SUITE_P(Conformance, CpuLanes, testing::Values("1", "4", "8", "16", "8x2", "16x2"));
 
 #ifdef ISOSHADE_VULKAN
-class VulkanDivision : public testing::TestWithParam<driver::Division> {};
+using VulkanCase = std::tuple<driver::Division, vulkan::EvalStage>;
+class Vulkan : public testing::TestWithParam<VulkanCase> {};
 
-TEST_P(VulkanDivision, ComputesTheInterpretersBits) {
+TEST_P(Vulkan, ComputesTheInterpretersBits) {
   support::Diagnostics diagnostics;
   vulkan::Options options;
-  options.division = GetParam();
+  std::tie(options.division, options.eval_stage) = GetParam();
   const auto backend = vulkan::create(options, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();
   expect_same_bits(*backend);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conformance, VulkanDivision,
-                         testing::Values(driver::Division::native, driver::Division::exact));
+INSTANTIATE_TEST_SUITE_P(Conformance, Vulkan,
+                         testing::Combine(testing::Values(driver::Division::native, driver::Division::exact),
+                                          testing::Values(vulkan::EvalStage::fragment,
+                                                          vulkan::EvalStage::vertex)));
 #endif
 
 }  // namespace

@@ -12,3 +12,10 @@ target_compile_definitions(scenes_test PRIVATE ${equivalence_definitions} $<$<BO
 
 isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
 target_compile_definitions(text_test PRIVATE ${equivalence_definitions})
+
+isoshade_test(random_programs_test
+  SOURCES equivalence/random_programs_test.cpp conformance/inputs.cpp unit/random_module.cpp
+  LINKS isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL equivalence
+  TIMEOUT 7200)
+target_compile_definitions(random_programs_test PRIVATE $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
