@@ -33,13 +33,14 @@ std::optional<Type> joined(Type a, Type b) {
   return std::nullopt;
 }
 
-Type vector_of(size_t numbers) {
+/// What so many numbers are, a colour only where it must be.
+Type tuple_of(size_t numbers, nodes::TypeSet accepts) {
   switch (numbers) {
     case 2: return Type::vector2;
-    case 3: return Type::vector3;
+    case 3: return !accepts.has(Type::vector3) && accepts.has(Type::color3) ? Type::color3 : Type::vector3;
     case 9: return Type::matrix33;
     case 16: return Type::matrix44;
-    default: return Type::vector4;
+    default: return !accepts.has(Type::vector4) && accepts.has(Type::color4) ? Type::color4 : Type::vector4;
   }
 }
 
@@ -91,6 +92,14 @@ class NodeInference {
 
   // Rows of the node table.
   const nodes::Port& port(size_t i) const { return node_.row->ports[i]; }
+  /// Of a port that nothing has settled: a comparison that chooses between nothing gives its truth.
+  Type natural_type(size_t i) {
+    bool truth = true;
+    for (size_t k = 0; k < node_.operand_count; ++k)
+      if (port(k).type.variable == port(i).type.variable)
+        truth = truth && given(k).port == nullptr && std::holds_alternative<bool>(port(k).value);
+    return truth ? Type::boolean : Type::floating;
+  }
   bool is_value(size_t i) const { return port(i).type.kind == PortType::Kind::value; }
   Settled& settled(size_t i) { return settled_[static_cast<size_t>(port(i).type.variable)]; }
   Type type_of(PortType type) const {
@@ -232,7 +241,7 @@ void NodeInference::settle_by_literals() {
     if (value->kind == Literal::Kind::boolean) {
       join(i, Type::boolean);
     } else if (tuple && !(at.type && graph::float_count(*at.type) == static_cast<int>(numbers))) {
-      join(i, vector_of(numbers));
+      join(i, tuple_of(numbers, port(i).type.accepts));
     } else if (value->kind == Literal::Kind::numbers) {
       report(Id::wrong_type, i,
              of_node(i) + " takes " + described(port(i).type.accepts) + ", not " + described(*value));
@@ -240,7 +249,7 @@ void NodeInference::settle_by_literals() {
   }
   for (size_t i = 0; i < node_.operand_count; ++i)
     if (is_value(i) && port(i).type.variable != Variable::none && !settled(i).type)
-      settled(i) = {Type::floating, i};
+      settled(i) = {natural_type(i), i};
 }
 
 void NodeInference::check_settled() {
@@ -270,7 +279,7 @@ void NodeInference::place_value(size_t i) {
     if (fits(*value, needed)) return place(work_.typed, *value, needed, to);
     report(Id::wrong_type, i, of_node(i) + " is " + name_of(needed) + ", not " + described(*value));
   } else {
-    place(work_.typed, std::get<float>(port(i).value), needed, to);
+    place(work_.typed, port(i).value, needed, to);
   }
 }
 
@@ -311,7 +320,7 @@ void NodeInference::settle_instance() {
     const Literal* value = literal(i);
     if (!inputs[i].any || value == nullptr || (any.type && fits(*value, *any.type))) continue;
     const size_t numbers = value->numbers.size();
-    if (numbers >= 2 && numbers <= 4) join_any(i, vector_of(numbers));
+    if (numbers >= 2 && numbers <= 4) join_any(i, tuple_of(numbers, nodes::float_types));
   }
   if (broken() || !any.type || *any.type == Type::floating) return;
   const support::Span where = work_.span(source_.type_place);

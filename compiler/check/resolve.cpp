@@ -49,11 +49,6 @@ bool resolve_link(Work& work, const Link& link, Operand& operand) {
   return false;
 }
 
-/// The nodes that only an effect has: they speak of its surface or of the scene's lights.
-bool belongs_to_effects(const nodes::Row& row) {
-  return row.is<nodes::Surface>() || row.is<nodes::Light>() || row.is<nodes::SumLights>();
-}
-
 class NodeResolver {
  public:
   NodeResolver(Work& work, uint32_t index)
@@ -65,8 +60,7 @@ class NodeResolver {
       node_.callee = function();
       if (node_.callee == nullptr || !passes_few_numbers()) return fail();
     }
-    if (node_.row != nullptr && belongs_to_effects(*node_.row) &&
-        work_.graph().kind == DocumentKind::function) {
+    if (node_.row != nullptr && node_.row->belongs_to_effects() && in_function()) {
       work_
           .report(Id::misplaced_node, source_.type_place,
                   "a function document cannot have the node " + quote(source_.label()))
@@ -83,6 +77,7 @@ class NodeResolver {
  private:
   void fail() { work_.broken[index_] = true; }
   bool is_call() const { return source_.origin == graph::Node::Origin::call; }
+  bool in_function() const { return work_.graph().kind == DocumentKind::function; }
   size_t port_count() const {
     return node_.row != nullptr ? node_.row->ports.size() : node_.callee->graph.inputs.size();
   }
@@ -185,7 +180,7 @@ class NodeResolver {
   }
 
   void check_left_out(uint32_t i) {
-    const bool required = node_.row != nullptr ? node_.row->ports[i].required()
+    const bool required = node_.row != nullptr ? node_.row->ports[i].required(in_function())
                                                : !node_.callee->graph.inputs[i].value.has_value();
     if (!required) return;
     fail();

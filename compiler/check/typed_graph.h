@@ -24,6 +24,7 @@ struct Operand {
     node,     ///< index: in Graph::nodes
     words,    ///< index: of the first of its words in TypedGraph::words; already of the needed type
     setting,  ///< index: the literal itself: a Type, the number of a choice, a component
+    surface,  ///< index: of a nodes::SurfaceValue
   };
   From from = From::nothing;
   Type type{};    ///< of what is read, after the swizzle

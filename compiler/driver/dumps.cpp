@@ -5,6 +5,7 @@
 
 #include "compiler/graph/graph.h"
 #include "compiler/ir/printer.h"
+#include "compiler/lower/lower.h"
 #include "compiler/nodes/table.h"
 
 namespace isoshade::driver {
@@ -55,6 +56,10 @@ std::string text(const check::TypedGraph& graph, const check::Operand& operand) 
   switch (operand.from) {
     case check::Operand::From::nothing: return "nothing";
     case check::Operand::From::setting: return fmt::format("#{}", operand.index);
+    case check::Operand::From::surface:
+      for (const lower::SurfaceField& field : lower::surface_fields())
+        if (field.value.index() == operand.index) out = "surface." + field.name;
+      break;
     case check::Operand::From::words: out = fmt::format("words[{}]", operand.index); break;
     case check::Operand::From::input: out = graph.graph.inputs[operand.index].name; break;
     case check::Operand::From::node:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/functions/library.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::lower {
@@ -13,6 +14,38 @@ using check::Operand;
 using graph::Type;
 using nodes::Value;
 using From = Operand::From;
+
+constexpr nodes::SurfaceValue world_position{nodes::Surface::position};
+
+/// What a node of a surface attribute gives. Its port "space", if it has one, is the first.
+nodes::SurfaceValue surface_value(const check::TypedGraph& graph, const Node& node) {
+  const auto attribute = std::get<nodes::Surface>(node.row->lowering);
+  const bool has_space = node.row->ports[0].name == "space";
+  return {attribute, has_space ? nodes::space_of(graph.operands_of(node)[0].index) : nodes::Space::world};
+}
+
+/// One matrix on the way between spaces; normals go by the transpose of its inverse.
+struct Step {
+  SpaceMatrix matrix;
+  bool transposed;
+};
+
+/// The way from one space to another, which leads through world space.
+std::vector<Step> way_of(const check::TypedGraph& graph, const Node& node, nodes::Transform what) {
+  using enum SpaceMatrix;
+  const std::span<const Operand> operands = graph.operands_of(node);
+  const nodes::Space from = nodes::space_of(operands[1].index), to = nodes::space_of(operands[2].index);
+  if (from == to) return {};
+  std::vector<Step> way;
+  const bool normal = what == nodes::Transform::normal;
+  if (from == nodes::Space::object)
+    way.push_back(normal ? Step{object_from_world, true} : Step{world_from_object, false});
+  if (from == nodes::Space::view) way.push_back({world_from_view, false});  // a rotation
+  if (to == nodes::Space::object)
+    way.push_back(normal ? Step{world_from_object, true} : Step{object_from_world, false});
+  if (to == nodes::Space::view) way.push_back({view_from_world, false});
+  return way;
+}
 
 class Body {
  public:
@@ -31,8 +64,8 @@ class Body {
   void make_row(const nodes::Row& row, uint32_t node);
   void make_call(const Node& node);
   void make_sum(uint32_t node);
+  Value transform(nodes::Transform what, const Node& node);
   std::vector<uint32_t> nodes_under(uint32_t sum);
-  Value light(nodes::Light what) const;
   /// Gives the results of a node its name, but for those that stood before it under another.
   void name_results(uint32_t node, ir::ValueId first_new);
   void name_value(const Value& value, uint32_t origin, ir::ValueId first_new);
@@ -60,6 +93,7 @@ Value Body::read(const Operand& operand) {
       return nodes::constant(b_, operand.needed, std::span(graph_.words).subspan(operand.index));
     case From::input: value = environment_.inputs[operand.index]; break;
     case From::node: value = values_[graph_.nodes[operand.index].first_type + operand.output]; break;
+    case From::surface: return environment_.surface[operand.index];
   }
   if (operand.swizzle_count > 0) {
     std::array<ir::ValueId, 4> components;
@@ -93,8 +127,16 @@ void Body::make(uint32_t index) {
 void Body::make_row(const nodes::Row& row, uint32_t index) {
   const Node& node = graph_.nodes[index];
   const std::span<Value> out = results_of(node);
-  if (const auto* attribute = std::get_if<nodes::Surface>(&row.lowering)) {
-    out[0] = environment_.surface[static_cast<size_t>(*attribute)];
+  if (row.is<nodes::Surface>()) {
+    out[0] = environment_.surface[surface_value(graph_, node).index()];
+    return;
+  }
+  if (row.is<nodes::Time>()) {
+    out[0] = environment_.time;
+    return;
+  }
+  if (const auto* what = std::get_if<nodes::Transform>(&row.lowering)) {
+    out[0] = transform(*what, node);
     return;
   }
   if (const auto* what = std::get_if<nodes::Light>(&row.lowering)) {
@@ -121,6 +163,20 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
                    graph_.types_of(node),
                    out};
   nodes::lower(row, site);
+}
+
+Value Body::transform(nodes::Transform what, const Node& node) {
+  ir::ValueId at = read(graph_.operands_of(node)[0]).id();
+  for (const Step step : way_of(graph_, node, what)) {
+    const std::array<ir::ValueId, 4>& columns = environment_.matrices[static_cast<size_t>(step.matrix)];
+    std::vector<ir::ValueId> arguments(columns.begin(), columns.begin() + 3);
+    if (step.transposed) arguments = functions::call_library(b_, "transpose", arguments);
+    arguments.push_back(at);
+    at = functions::call_library(b_, "transform", arguments).front();
+    if (what == nodes::Transform::point) at = b_.op(ir::Opcode::fadd, {at, columns[3]});
+  }
+  if (what != nodes::Transform::normal) return at;
+  return functions::call_library(b_, "normalize", std::array{at}).front();
 }
 
 void Body::make_call(const Node& node) {
@@ -169,8 +225,7 @@ void Body::make_sum(uint32_t index) {
   const Value initial = nodes::constant(b_, summand.needed, zero);
   const auto body = [&](ir::ValueId light_index, std::span<const ir::ValueId> carried) {
     if (asks_light) {
-      const std::array arguments{light_index,
-                                 environment_.surface[static_cast<size_t>(nodes::Surface::position)]};
+      const std::array arguments{light_index, environment_.surface[world_position.index()]};
       b_.set_origin(b_.add_origin("light", b_.function().origins[origin_of(index)].line));
       light_ = b_.call(environment_.light_at, arguments);
     }
@@ -200,7 +255,8 @@ void Body::name_results(uint32_t index, ir::ValueId first_new) {
     const std::string id = graph_.graph.nodes[index].id;
     const uint32_t line = b_.function().origins[origin_of(index)].line;
     for (size_t i = 0; i < results.size(); ++i) {
-      const std::string& output = node.callee->graph.outputs[i].name;
+      const std::string output =
+          node.row != nullptr ? std::string(node.row->outputs[i].name) : node.callee->graph.outputs[i].name;
       name_value(results[i], b_.add_origin(id + "_" + output, line), first_new);
     }
   }
@@ -213,6 +269,7 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
   const auto need = [&](const Operand& operand) {
     if (operand.from == From::node) nodes[operand.index] = true;
     if (operand.from == From::input) inputs[operand.index] = true;
+    if (operand.from == From::surface) surface[operand.index] = true;
   };
   std::ranges::for_each(results, need);
   for (auto it = graph.order.rbegin(); it != graph.order.rend(); ++it) {
@@ -220,12 +277,18 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     const Node& node = graph.nodes[*it];
     std::ranges::for_each(graph.operands_of(node), need);
     if (node.row == nullptr) continue;
-    if (const auto* attribute = std::get_if<nodes::Surface>(&node.row->lowering))
-      surface[static_cast<size_t>(*attribute)] = true;
+    if (node.row->is<nodes::Surface>()) surface[surface_value(graph, node).index()] = true;
+    if (const auto* what = std::get_if<nodes::Transform>(&node.row->lowering)) {
+      for (const Step step : way_of(graph, node, *what)) {
+        size_t& count = columns[static_cast<size_t>(step.matrix)];
+        count = std::max<size_t>(count, *what == nodes::Transform::point ? 4 : 3);
+      }
+    }
+    time |= node.row->is<nodes::Time>();
     lights |= node.row->is<nodes::SumLights>();
     light_at |= node.row->is<nodes::Light>();
   }
-  surface[static_cast<size_t>(nodes::Surface::position)] |= light_at;
+  surface[world_position.index()] |= light_at;
 }
 
 std::vector<Value> build_body(ir::Builder& builder, const check::TypedGraph& graph, const Needs& needs,

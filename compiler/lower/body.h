@@ -2,11 +2,13 @@
 // The nodes of one document as the body of one function.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
 #include "compiler/ir/builder.h"
+#include "compiler/lower/lower.h"
 #include "compiler/nodes/site.h"
 
 namespace isoshade::lower {
@@ -15,7 +17,9 @@ namespace isoshade::lower {
 struct Needs {
   std::vector<bool> nodes;
   std::vector<bool> inputs;
-  std::array<bool, nodes::surface_count> surface{};
+  std::array<bool, nodes::surface_value_count> surface{};  ///< by SurfaceValue::index
+  std::array<size_t, space_matrix_count> columns{};        ///< of each SpaceMatrix
+  bool time = false;
   bool lights = false;    ///< a sum over lights
   bool light_at = false;  ///< what a light gives
 
@@ -25,7 +29,9 @@ struct Needs {
 /// What the body reads from its function's parameters and calls in its module.
 struct Environment {
   std::vector<nodes::Value> inputs;  ///< of Graph::inputs; empty where not needed
-  std::array<ir::ValueId, nodes::surface_count> surface{};
+  std::array<ir::ValueId, nodes::surface_value_count> surface{};
+  std::array<std::array<ir::ValueId, 4>, space_matrix_count> matrices{};
+  ir::ValueId time = ir::none;
   ir::ValueId light_count = ir::none;
   uint32_t light_at = ir::none;
   std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called

@@ -22,7 +22,7 @@ inline constexpr FrameBufferInfo frame_buffers[] = {
     {"triangles", ir::Scalar::integer},  ///< clipped and snapped, see runtime/raster
     {"objects", ir::Scalar::floating},   ///< transforms and effect parameters
     {"lights", ir::Scalar::floating},    //
-    {"frame", ir::Scalar::floating},     ///< the camera
+    {"frame", ir::Scalar::floating},     ///< the camera and the time
     {"inputs", ir::Scalar::integer},     ///< of `eval`: one row a record, floats as bits
 };
 
@@ -31,7 +31,10 @@ namespace vertex_word {
 inline constexpr int position = 0;  ///< x y z, object space
 inline constexpr int normal = 3;    ///< x y z, unit, object space
 inline constexpr int texcoord = 6;  ///< u v
-inline constexpr int stride = 8;
+inline constexpr int tangent =
+    8;                            ///< x y z, unit, object space; and 1, or -1 where the bitangent is -(n x t)
+inline constexpr int color = 12;  ///< r g b a, linear
+inline constexpr int stride = 16;
 }  // namespace vertex_word
 
 /// triangles: one record of 64 bytes. Wound so that the doubled area, y down, is positive.
@@ -53,7 +56,8 @@ inline constexpr int normal =
     12;  ///< 3 columns of 3: object -> world for normals (cofactors; not normalised)
 inline constexpr int projected = 21;  ///< 4 columns of 4: object space -> clip space
 inline constexpr int program = 37;    ///< the index of the surface program as a float
-inline constexpr int parameters = 38;
+inline constexpr int inverse = 38;    ///< 4 columns of 3: world space -> object space
+inline constexpr int parameters = 50;
 }  // namespace object_word
 
 /// lights: one record a light.
@@ -68,11 +72,14 @@ inline constexpr int range = 12;  ///< point, spot: 1 / range^2, 0 for no end
 inline constexpr int stride = 16;
 }  // namespace light_word
 
-/// frame: the camera.
+/// frame: the camera and the time.
 namespace frame_word {
 inline constexpr int eye =
     0;  ///< homogeneous, world space: position and 1, or the direction to the viewer and 0
-inline constexpr int count = 4;
+inline constexpr int view = 4;           ///< 4 columns of 3: world space -> view space
+inline constexpr int inverse_view = 16;  ///< 4 columns of 3: view space -> world space
+inline constexpr int time = 28;          ///< seconds
+inline constexpr int count = 29;
 }  // namespace frame_word
 
 }  // namespace isoshade::lower

@@ -19,13 +19,9 @@ using graph::Type;
 using nodes::Value;
 
 /// What the stages around authored functions are called: no document takes these names.
-constexpr std::string_view names_of_stages[] = {shade_name, light_at_name, "vertex",     "depth",     "pixel",
-                                                "eval",     "edges_at",    "attribute2", "attribute3"};
-
-constexpr std::string_view surface_names[nodes::surface_count] = {"position", "normal", "texcoord",
-                                                                  "view_direction"};
-constexpr ir::Type surface_types[nodes::surface_count] = {ir::vector_type(3), ir::vector_type(3),
-                                                          ir::vector_type(2), ir::vector_type(3)};
+constexpr std::string_view names_of_stages[] = {shade_name,   light_at_name, "vertex",   "depth",
+                                                "pixel",      "eval",        "edges_at", "attribute2",
+                                                "attribute3", "attribute4"};
 
 /// A name that neither the stages nor library functions have.
 std::string authored_name(const std::string& name) {
@@ -168,10 +164,15 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
   function.name = shade_name;
   function.document = graph.document;
   function.results = {{"color", ir::vector_type(4)}};
-  for (size_t i = 0; i < nodes::surface_count; ++i) {
-    if (needs.surface[i])
-      function.parameters.push_back({std::string(surface_names[i]), surface_types[i], "surface", false});
+  for (const SurfaceField& field : surface_fields())
+    if (needs.surface[field.value.index()])
+      function.parameters.push_back({field.name, field.type, "surface", false});
+  for (size_t m = 0; m < space_matrix_count; ++m) {
+    for (size_t c = 0; c < needs.columns[m]; ++c)
+      function.parameters.push_back(
+          {std::string(space_matrix_names[m]) + "_" + std::to_string(c), ir::vector_type(3), "spaces", true});
   }
+  if (needs.time) function.parameters.push_back({"time", ir::float_type, "frame", true});
   Parameters parameters{function};
   std::vector<size_t> first(graph.graph.inputs.size());
   for (size_t i = 0; i < first.size(); ++i) {
@@ -183,8 +184,11 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
 
   ir::Builder b(module_, index);
   size_t next = 0;
-  for (size_t i = 0; i < nodes::surface_count; ++i)
-    if (needs.surface[i]) environment.surface[i] = b.parameter(next++);
+  for (const SurfaceField& field : surface_fields())
+    if (needs.surface[field.value.index()]) environment.surface[field.value.index()] = b.parameter(next++);
+  for (size_t m = 0; m < space_matrix_count; ++m)
+    for (size_t c = 0; c < needs.columns[m]; ++c) environment.matrices[m][c] = b.parameter(next++);
+  if (needs.time) environment.time = b.parameter(next++);
   for (size_t i = 0; i < first.size(); ++i) {
     environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
                                                  : Value());
@@ -200,6 +204,36 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
 }
 
 }  // namespace
+
+const std::vector<SurfaceField>& surface_fields() {
+  static const std::vector<SurfaceField> fields = [] {
+    using nodes::Space;
+    using nodes::Surface;
+    struct Attribute {
+      std::string_view name;
+      Surface what;
+      int width;
+      bool has_space;
+    };
+    std::vector<SurfaceField> all;
+    for (const Attribute& attribute : {Attribute{"position", Surface::position, 3, true},
+                                       {"normal", Surface::normal, 3, true},
+                                       {"texcoord", Surface::texcoord, 2, false},
+                                       {"view_direction", Surface::view_direction, 3, true},
+                                       {"tangent", Surface::tangent, 3, true},
+                                       {"bitangent", Surface::bitangent, 3, true},
+                                       {"color", Surface::color, 4, false}}) {
+      const ir::Type type = ir::vector_type(attribute.width);
+      const std::string name(attribute.name);
+      all.push_back({name, {attribute.what}, type});
+      if (!attribute.has_space) continue;
+      all.push_back({name + "_object", {attribute.what, Space::object}, type});
+      all.push_back({name + "_view", {attribute.what, Space::view}, type});
+    }
+    return all;
+  }();
+  return fields;
+}
 
 std::string entry_name(const TypedGraph& graph) {
   return graph.graph.kind == DocumentKind::function ? authored_name(graph.graph.name) : shade_name;

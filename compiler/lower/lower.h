@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <iterator>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "compiler/check/typed_graph.h"
 #include "compiler/ir/module.h"
@@ -26,12 +29,31 @@ inline constexpr const char* light_at_name = "light_at";
 /// outputs, in order; a matrix is its columns: "m_0", "m_1", ...
 ///
 /// A pass becomes `shade` -> (color: vec4) with these parameters, as far as they are used:
-///   surface.position vec3, .normal vec3 (unit), .texcoord vec2, .view_direction vec3 (unit): world space
+///   surface.position vec3, .normal vec3, .texcoord vec2, .view_direction vec3, .tangent vec3, .bitangent vec3,
+///            .color vec4; directions have length 1. In world space; in others .position_object, .normal_view ...
+///   spaces.world_from_object_0 ... uniform; columns of the matrices between world, object and view space, of
+///            which the fourth is the translation
+///   frame.time       float, uniform; seconds
 ///   parameters.NAME  uniform; of the effect, in its order
 ///   light_count      int, uniform: where there is a sum over lights
 /// What a light gives comes from light_at(index: int uniform, position: vec3) -> (direction: vec3, color:
 /// vec3), which is declared without a body where it is needed (see add_pixel_kernel).
 ir::Module lower(const check::TypedGraph& graph, const LowerOptions& options = {});
+
+/// A name that the kernel around `shade` understands.
+struct SurfaceField {
+  std::string name;  ///< "normal_object"
+  nodes::SurfaceValue value;
+  ir::Type type;
+};
+/// Every field that the group "surface" may have, in the order that it has them.
+const std::vector<SurfaceField>& surface_fields();
+
+/// The affine matrices of the group "spaces": three columns of each for vectors, and a fourth for points.
+enum class SpaceMatrix : uint8_t { world_from_object, object_from_world, view_from_world, world_from_view };
+inline constexpr std::string_view space_matrix_names[] = {"world_from_object", "object_from_world",
+                                                          "view_from_world", "world_from_view"};
+inline constexpr size_t space_matrix_count = std::size(space_matrix_names);
 
 /// The name of the function that lower() makes of a document.
 std::string entry_name(const check::TypedGraph& graph);

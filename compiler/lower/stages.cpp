@@ -1,89 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/lower/stages.h"
 
-#include <array>
-
-#include "compiler/functions/all.h"
-#include "compiler/functions/calls.h"
-#include "compiler/functions/interpolation.h"
-#include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/lower/surface.h"
 
 namespace isoshade::lower {
 
 namespace {
-
-using functions::traced::Bool;
-using functions::traced::Float;
-using functions::traced::Int;
-using Vec2 = lanes::vec<Float, 2>;
-using Vec3 = lanes::vec<Float, 3>;
-using Vec4 = lanes::vec<Float, 4>;
-
-/// A kernel under construction.
-class Kernel {
- public:
-  Kernel(ir::Module& module, std::string name, std::vector<ir::Parameter> parameters,
-         std::vector<ir::Result> results)
-      : index(new_function(module, std::move(name), std::move(parameters), std::move(results))),
-        b(module, index) {}
-  /// The body of a function that is declared.
-  Kernel(ir::Module& module, uint32_t declared) : index(declared), b(module, declared) {}
-
-  Int integer(size_t parameter) { return Int(b, b.parameter(parameter)); }
-  Vec3 vector3(size_t parameter) { return Vec3(b, b.parameter(parameter)); }
-
-  Float load(FrameBuffer buffer, Int word) {
-    return Float(b, b.load(static_cast<uint32_t>(buffer), word.id(b)));
-  }
-  Int load_int(FrameBuffer buffer, Int word) {
-    return Int(b, b.load(static_cast<uint32_t>(buffer), word.id(b)));
-  }
-  /// Three or four words of a record, from `record + word` on.
-  Vec3 load3(FrameBuffer buffer, Int record, int word) {
-    const auto at = [&](int i) { return load(buffer, record + Int(word + i)); };
-    return Vec3(at(0), at(1), at(2));
-  }
-  Vec4 load4(FrameBuffer buffer, Int record, int word) {
-    const auto at = [&](int i) { return load(buffer, record + Int(word + i)); };
-    return Vec4(at(0), at(1), at(2), at(3));
-  }
-
-  /// Gives a value a name for readers of the emitted text.
-  ir::ValueId named(std::string name, ir::ValueId value) {
-    b.name(value, b.add_origin(std::move(name), 0));
-    return value;
-  }
-  template <class T>
-  T named(std::string name, T value) {
-    named(std::move(name), value.value);
-    return value;
-  }
-
-  std::vector<ir::ValueId> call(std::string_view function, std::initializer_list<ir::ValueId> arguments) {
-    const uint32_t callee = b.module().find(function);
-    support::check(callee != ir::none, function);
-    return b.call(callee, std::span(arguments));
-  }
-
-  const uint32_t index;
-  ir::Builder b;
-
- private:
-  static uint32_t new_function(ir::Module& module, std::string name, std::vector<ir::Parameter> parameters,
-                               std::vector<ir::Result> results) {
-    support::check(module.find(name) == ir::none, name);
-    ir::Function function;
-    function.name = std::move(name);
-    function.parameters = std::move(parameters);
-    function.results = std::move(results);
-    module.functions.push_back(std::move(function));
-    return static_cast<uint32_t>(module.functions.size() - 1);
-  }
-};
-
-ir::Parameter int_parameter(std::string name) { return {std::move(name), ir::int_type, "", false}; }
-ir::Parameter uniform_int(std::string name) { return {std::move(name), ir::int_type, "", true}; }
 
 /// edges_at(x, y, triangle): the edge functions at the centre of a pixel.
 void add_edges(ir::Module& module) {
@@ -103,102 +25,12 @@ void add_edges(ir::Module& module) {
   k.b.finish(std::array{k.named("edges", edges.value)});
 }
 
-/// attributeN(weights, first0, first1, first2): N words of `vertices` from each vertex's own, interpolated.
-void add_attribute(ir::Module& module, int width) {
-  const std::string name = "attribute" + std::to_string(width);
-  if (module.find(name) != ir::none) return;
-  Kernel k(module, name,
-           {{"weights", ir::vector_type(3), "", false},
-            int_parameter("first0"),
-            int_parameter("first1"),
-            int_parameter("first2")},
-           {{"value", ir::vector_type(width)}});
-  std::vector<ir::ValueId> components;
-  for (int i = 0; i < width; ++i) {
-    const auto word = [&](size_t vertex) {
-      return k.load(FrameBuffer::vertices, k.integer(vertex) + Int(i));
-    };
-    components.push_back(functions::interpolate<Float>(k.vector3(0), word(1), word(2), word(3)).value);
-  }
-  k.b.finish(std::array{k.b.construct(components)});
-}
-
-/// Sums `columns` weighted by the components of `v`, in order.
-template <class Column>
-Column weighted(const std::array<Column, 3>& columns, Vec3 v) {
-  constexpr int n = std::is_same_v<Column, Vec4> ? 4 : 3;
-  return (columns[0] * functions::splat<n>(v[0]) + columns[1] * functions::splat<n>(v[1])) +
-         columns[2] * functions::splat<n>(v[2]);
-}
-
 Vec4 to_clip(Kernel& k, Int object, Vec3 position) {
   const auto column = [&](int i) {
     return k.load4(FrameBuffer::objects, object, object_word::projected + 4 * i);
   };
   return weighted<Vec4>({column(0), column(1), column(2)}, position) + column(3);
 }
-
-/// What `shade` may ask for, made once and only if it does.
-class Surface {
- public:
-  Surface(Kernel& kernel, Int x, Int y, Int triangle, Int object) : k_(kernel), object_(object) {
-    const ir::ValueId edges = k_.call("edges_at", {x.id(k_.b), y.id(k_.b), triangle.id(k_.b)})[0];
-    k_.named("edges", edges);
-    const Int record = k_.named("record", triangle * Int(triangle_word::stride));
-    std::vector<Float> inverse_w;
-    for (int i = 0; i < 3; ++i) {
-      const auto word = [&](int at) { return k_.load_int(FrameBuffer::triangles, record + Int(at + i)); };
-      const std::string digit = std::to_string(i);
-      inverse_w.push_back(k_.named("inverse_w" + digit, from_bits_normal(word(triangle_word::inverse_w))));
-      first_.push_back(k_.named("first" + digit, word(triangle_word::vertex) * Int(vertex_word::stride)));
-    }
-    weights_ = k_.named("weights", functions::attribute_weights<Float>(Vec3(k_.b, edges), inverse_w[0],
-                                                                       inverse_w[1], inverse_w[2]))
-                   .value;
-  }
-
-  ir::ValueId field(std::string_view name) {
-    if (name == "position") return position().value;
-    if (name == "normal") return k_.named("normal", normal());
-    if (name == "texcoord") return k_.named("texcoord", attribute(2, vertex_word::texcoord));
-    if (name == "view_direction") return k_.named("view_direction", view_direction());
-    support::bug("a surface has no " + std::string(name));
-  }
-
- private:
-  ir::ValueId attribute(int width, int word) {
-    add_attribute(k_.b.module(), width);
-    const auto first = [&](int vertex) { return (first_[static_cast<size_t>(vertex)] + Int(word)).id(k_.b); };
-    return k_.call("attribute" + std::to_string(width), {weights_, first(0), first(1), first(2)})[0];
-  }
-  std::array<Vec3, 3> columns(int word) {
-    const auto column = [&](int i) { return k_.load3(FrameBuffer::objects, object_, word + 3 * i); };
-    return {column(0), column(1), column(2)};
-  }
-  Vec3 position() {
-    if (position_ == ir::none) {
-      const Vec3 local(k_.b, attribute(3, vertex_word::position));
-      const Vec3 origin = k_.load3(FrameBuffer::objects, object_, object_word::model + 9);
-      position_ = k_.named("position", (weighted(columns(object_word::model), local) + origin).value);
-    }
-    return Vec3(k_.b, position_);
-  }
-  ir::ValueId normal() {
-    const Vec3 local(k_.b, attribute(3, vertex_word::normal));
-    return normalize(weighted(columns(object_word::normal), local)).value;
-  }
-  // The eye is homogeneous: a point for perspective, a direction for orthographic projection.
-  ir::ValueId view_direction() {
-    const Vec4 eye = k_.load4(FrameBuffer::frame, Int(k_.b, k_.b.constant(frame_word::eye)), 0);
-    return normalize(Vec3(eye[0], eye[1], eye[2]) - position() * functions::splat<3>(eye[3])).value;
-  }
-
-  Kernel& k_;
-  Int object_;
-  ir::ValueId weights_ = ir::none;
-  std::vector<Int> first_;  ///< of each vertex: the first word of its record
-  ir::ValueId position_ = ir::none;
-};
 
 ir::ValueId load_typed(Kernel& k, ir::Type type, Int object, int offset) {
   const auto word = [&](int i) { return k.load(FrameBuffer::objects, object + Int(offset + i)); };
@@ -291,12 +123,17 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
             uniform_int("light_count")},
            {{"color", ir::vector_type(4)}});
   const Int object = k.integer(3);
-  Surface surface(k, k.integer(0), k.integer(1), k.integer(2), object);
+  SurfacePoint surface(k, k.integer(0), k.integer(1), k.integer(2), object);
   const std::vector<ir::Parameter> wanted = module.functions[shade].parameters;
   std::vector<ir::ValueId> arguments;
   for (const ir::Parameter& parameter : wanted) {
     if (parameter.group == "surface") {
       arguments.push_back(surface.field(parameter.name));
+    } else if (parameter.group == "spaces") {
+      arguments.push_back(surface.column(parameter.name));
+    } else if (parameter.group == "frame") {
+      const Int time(k.b, k.b.constant(frame_word::time));
+      arguments.push_back(k.named(parameter.name, k.load(FrameBuffer::frame, time)).value);
     } else if (parameter.group == "parameters") {
       int offset = -1;
       for (const auto& [name, word] : parameters)

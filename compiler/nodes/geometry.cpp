@@ -1,20 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface point that is shaded. Only in effects: a function takes what it needs as inputs.
+#include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
+namespace {
+
+/// Meshes have one set of texture coordinates and one of colours.
+template <size_t port>
+std::optional<Refusal> set_exists(std::span<const Type>, std::span<const uint32_t> settings, Type) {
+  if (settings[port] == 0) return std::nullopt;
+  return Refusal{support::Id::out_of_range, port, "meshes have the set 0 and no other"};
+}
+
+void facing_ratio(Site& s) {
+  const ir::ValueId cosine = s.call("dot", {s.in[0], s.in[1]}).id();
+  const ir::ValueId both_sides = s.op(ir::Opcode::fabs, {cosine});
+  const ir::ValueId facing = s.op(ir::Opcode::select, {s[2], both_sides, cosine});
+  const ir::ValueId inverted = s.op(ir::Opcode::fsub, {s.b.constant(1.0f), facing});
+  s.out[0] = s.op(ir::Opcode::select, {s[3], inverted, facing});
+}
+
+}  // namespace
 
 std::vector<Row> geometry_rows() {
-  const Port space{"space", Choice, "the coordinate space", "world", {"world"}};
+  const Port space{"space", Choice, "the space that it is given in; \"model\" is \"object\"", "world",
+                   space_names};
+  const Port set{"index", WholeNumber, "which set of texture coordinates", 0.0f};
   return {
       {"position", "Where the point is.", {space}, Vector3, Surface::position},
       {"normal", "The unit normal of the surface.", {space}, Vector3, Surface::normal},
+      {"tangent",
+       "The unit vector along u on the surface.",
+       {space, set},
+       Vector3,
+       Surface::tangent,
+       set_exists<1>},
+      {"bitangent",
+       "The unit vector against v on the surface: up in the picture that it is covered with.",
+       {space, set},
+       Vector3,
+       Surface::bitangent,
+       set_exists<1>},
       {"viewdirection",
        "The unit vector from the point towards the viewer.",
        {space},
        Vector3,
        Surface::view_direction},
-      {"texcoord", "The texture coordinates of the point.", {}, Vector2, Surface::texcoord},
+      {"facingratio",
+       "The cosine of the angle between `viewdirection` and `normal`.",
+       {{"viewdirection", Vector3, "unit length", SurfaceValue{Surface::view_direction}},
+        {"normal", Vector3, "unit length", SurfaceValue{Surface::normal}},
+        {"faceforward", Boolean, "without its sign, so that a back is like a front", true},
+        {"invert", Boolean, "1 - the cosine", false}},
+       Float,
+       facing_ratio},
+      {"texcoord",
+       "The texture coordinates of the point: u to the right and v down in the picture, both 0 to 1.",
+       {set},
+       Vector2,
+       Surface::texcoord,
+       set_exists<0>},
+      {"vertexcolor",
+       "The colour that the mesh has there, linear; white where it has none. MaterialX's geomcolor.",
+       {{"index", WholeNumber, "which set of colours", 0.0f}},
+       Color4,
+       Surface::color,
+       set_exists<0>},
+      {"time", "Seconds since the beginning: the scene's \"time\".", {}, Float, Time{}},
   };
 }
 

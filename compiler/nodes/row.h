@@ -3,6 +3,7 @@
 // schema all come from it.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -19,9 +20,42 @@ namespace isoshade::nodes {
 
 struct Site;
 
-/// What a port has that is neither linked nor given: nothing (then it must be), a float in every component,
-/// or a text.
-using Default = std::variant<std::monostate, float, std::string_view>;
+/// Attributes of the surface point that an effect shades.
+enum class Surface : uint8_t {
+  position,        ///< vec3
+  normal,          ///< vec3, unit
+  texcoord,        ///< vec2; has no space
+  view_direction,  ///< vec3, unit, towards the viewer
+  tangent,         ///< vec3, unit, along the texture's u
+  bitangent,       ///< vec3, unit, up in the texture: against its v
+  color            ///< vec4, linear: what the mesh has, else 1; has no space
+};
+
+/// Where coordinates count from.
+enum class Space : uint8_t {
+  world,
+  object,
+  view  ///< the eye at the origin, looking along -z, y up
+};
+
+/// What ports that ask for a space can be. MaterialX calls object space also "model".
+inline const std::vector<std::string_view> space_names{"world", "object", "view", "model"};
+constexpr Space space_of(uint32_t choice) { return choice == 3 ? Space::object : static_cast<Space>(choice); }
+
+/// An attribute; vectors are given in a space.
+struct SurfaceValue {
+  Surface attribute;
+  Space space = Space::world;
+
+  constexpr size_t index() const { return 3 * static_cast<size_t>(attribute) + static_cast<size_t>(space); }
+};
+inline constexpr size_t surface_value_count = 3 * 7;  ///< of SurfaceValue::index
+
+/// What a port has that is neither linked nor given: nothing (then it must be), a number in every component
+/// (of a matrix: of the diagonal), a boolean (0 where another type is needed), three numbers, a text, or an
+/// attribute of the surface (in a function document, which has none, it must be linked or given).
+using Default =
+    std::variant<std::monostate, float, bool, std::array<float, 3>, std::string_view, SurfaceValue>;
 
 struct Port {
   std::string_view name;
@@ -30,7 +64,9 @@ struct Port {
   Default value = {};
   std::vector<std::string_view> choices = {};  ///< of a PortType::Kind::choice
 
-  bool required() const { return value.index() == 0; }
+  bool required(bool in_function) const {
+    return value.index() == 0 || (in_function && std::holds_alternative<SurfaceValue>(value));
+  }
 };
 
 struct Output {
@@ -49,15 +85,6 @@ struct Function {
   std::string_view row;
 };
 
-/// Attributes of the surface point that an effect shades.
-enum class Surface : uint8_t {
-  position,       ///< vec3, world space
-  normal,         ///< vec3, unit, world space
-  texcoord,       ///< vec2
-  view_direction  ///< vec3, unit, world space, towards the viewer
-};
-inline constexpr int surface_count = 4;
-
 /// What a light gives at the surface point.
 enum class Light : uint8_t {
   direction,  ///< vec3, unit, world space, towards the light
@@ -67,10 +94,16 @@ enum class Light : uint8_t {
 /// Sums its input over the lights.
 struct SumLights {};
 
+/// Takes its first port from the space of the second to that of the third.
+enum class Transform : uint8_t { point, vector, normal };
+
+/// Seconds since the scene began.
+struct Time {};
+
 /// Makes the outputs of a Site from its inputs.
 using Custom = void (*)(Site&);
 
-using Lowering = std::variant<ir::Opcode, Function, Surface, Light, SumLights, Custom>;
+using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Custom>;
 
 /// What a row demands of its ports beyond their types, and what is wrong there.
 struct Refusal {
@@ -94,6 +127,10 @@ struct Row {
   template <class Kind>
   bool is() const {
     return std::holds_alternative<Kind>(lowering);
+  }
+  /// Whether it speaks of the surface, the scene or its lights: function documents have none of these.
+  bool belongs_to_effects() const {
+    return is<Surface>() || is<Transform>() || is<Time>() || is<Light>() || is<SumLights>();
   }
 };
 

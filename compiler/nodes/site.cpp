@@ -79,11 +79,19 @@ Value call_function(ir::Builder& b, std::string_view row, std::span<const Value>
   return b.construct(std::span<const ir::ValueId>(results).first(width));
 }
 
+Value Site::op_of_columns(ir::Opcode opcode) const {
+  std::array<ir::ValueId, 4> columns;
+  for (size_t c = 0; c < in[0].count; ++c) {
+    std::array<ir::ValueId, 3> operands;
+    for (size_t i = 0; i < in.size(); ++i) operands[i] = in[i].columns[c];
+    columns[c] = b.op(opcode, std::span<const ir::ValueId>(operands).first(in.size()));
+  }
+  return Value(std::span<const ir::ValueId>(columns).first(in[0].count));
+}
+
 void lower(const Row& row, Site& site) {
   if (const auto* opcode = std::get_if<ir::Opcode>(&row.lowering)) {
-    std::array<ir::ValueId, 3> operands;
-    for (size_t i = 0; i < site.in.size(); ++i) operands[i] = site[i];
-    site.out[0] = site.b.op(*opcode, std::span<const ir::ValueId>(operands).first(site.in.size()));
+    site.out[0] = site.op_of_columns(*opcode);
   } else if (const auto* function = std::get_if<Function>(&row.lowering)) {
     site.out[0] = call_function(site.b, function->row, site.in);
   } else if (const auto* custom = std::get_if<Custom>(&row.lowering)) {

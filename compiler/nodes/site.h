@@ -52,6 +52,8 @@ struct Site {
   ir::ValueId op(ir::Opcode opcode, std::initializer_list<ir::ValueId> operands) const {
     return b.op(opcode, operands);
   }
+  /// The op of all ports, which are alike; of matrices column by column.
+  Value op_of_columns(ir::Opcode opcode) const;
   Value call(std::string_view row, std::initializer_list<Value> arguments) const {
     return call_function(b, row, arguments);
   }

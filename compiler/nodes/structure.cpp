@@ -9,6 +9,8 @@ namespace {
 using graph::float_count;
 using ir::Opcode;
 
+constexpr TypeSet scalars = only(Type::boolean) | only(Type::integer) | only(Type::floating);
+
 bool is_tuple(Type type) { return (vector_types | color_types).has(type); }
 
 std::optional<Refusal> component_exists(std::span<const Type> types, std::span<const uint32_t> settings,
@@ -20,17 +22,23 @@ std::optional<Refusal> component_exists(std::span<const Type> types, std::span<c
                      std::to_string(count - 1)};
 }
 
-/// Numbers and truth values become any type of floats, a tuple a tuple.
+/// Scalars become each other and tuples, a tuple a tuple.
 std::optional<Refusal> conversion_exists(std::span<const Type> types, std::span<const uint32_t>, Type out) {
   const Type in = types[0];
   if (in == out) return std::nullopt;
-  const bool from_scalar = in == Type::boolean || in == Type::integer || in == Type::floating;
-  if (from_scalar && (out == Type::floating || is_tuple(out))) return std::nullopt;
-  if (in == Type::boolean && out == Type::integer) return std::nullopt;
+  if (scalars.has(in) && (scalars.has(out) || is_tuple(out))) return std::nullopt;
   if (is_tuple(in) && is_tuple(out)) return std::nullopt;
   return Refusal{support::Id::type_mismatch, 0,
                  "a " + std::string(graph::type_name(in)) + " cannot be converted to " +
                      std::string(graph::type_name(out))};
+}
+
+/// Towards zero, within the range of integers; NaN is 0.
+ir::ValueId to_integer(Site& s) {
+  constexpr float least = -2147483648.0f, greatest = 2147483520.0f;
+  const Value inside = s.call("clamp", {s.in[0], s.b.constant(least), s.b.constant(greatest)});
+  const ir::ValueId number = s.op(Opcode::feq, {s[0], s[0]});
+  return s.op(Opcode::ftoi, {s.op(Opcode::select, {number, inside.id(), s.b.constant(0.0f)})});
 }
 
 void convert(Site& s) {
@@ -40,6 +48,12 @@ void convert(Site& s) {
     s.out[0] = s.in[0];
   } else if (in == Type::boolean && out == Type::integer) {
     s.out[0] = s.op(Opcode::select, {s[0], s.b.constant(1), s.b.constant(0)});
+  } else if (in == Type::integer && out == Type::boolean) {
+    s.out[0] = s.op(Opcode::ine, {s[0], s.b.constant(0)});
+  } else if (out == Type::boolean) {
+    s.out[0] = s.op(Opcode::fne, {s[0], s.b.constant(0.0f)});
+  } else if (out == Type::integer) {
+    s.out[0] = to_integer(s);
   } else if (in == Type::boolean) {
     const Value number = s.op(Opcode::select, {s[0], s.b.constant(1.0f), s.b.constant(0.0f)});
     s.out[0] = broadcast(s.b, number, Type::floating, out);
@@ -54,6 +68,11 @@ void convert(Site& s) {
       components[i] = i < float_count(in) ? s.b.extract(s[0], i) : s.b.constant(i == 3 ? 1.0f : 0.0f);
     s.out[0] = s.b.construct(std::span<const ir::ValueId>(components).first(count));
   }
+}
+
+void separate(Site& s) {
+  const auto count = static_cast<uint32_t>(float_count(s.types[0]));
+  for (uint32_t i = 0; i < s.out.size(); ++i) s.out[i] = s.b.extract(s[0], i % count);
 }
 
 void combine(Site& s) {
@@ -81,7 +100,7 @@ std::vector<Row> structure_rows() {
        [](Site& s) { s.out[0] = s.in[0]; }},
       {"convert",
        "`in` as another type. Numbers fill every component; tuples lose components, or gain 0 and as fourth "
-       "1.",
+       "1. Floats become integers towards zero, the nearest where there is none. Not 0 is true.",
        {{"in", Any, "the value"}, {"to", name_of(Other), "the type to convert to"}},
        Other,
        convert,
@@ -104,6 +123,28 @@ std::vector<Row> structure_rows() {
        Float,
        [](Site& s) { s.out[0] = s.b.extract(s[0], s.settings[1]); },
        component_exists},
+      {"separate2",
+       "Both components of a vector2.",
+       {{"in", Vector2, "the vector"}},
+       {{"outx", Float}, {"outy", Float}},
+       separate},
+      {"separate3",
+       "The components of `in`, each under two names.",
+       {{"in", three, "a vector3 or color3"}},
+       {{"outx", Float}, {"outy", Float}, {"outz", Float}, {"outr", Float}, {"outg", Float}, {"outb", Float}},
+       separate},
+      {"separate4",
+       "The components of `in`, each under two names.",
+       {{"in", four, "a vector4 or color4"}},
+       {{"outx", Float},
+        {"outy", Float},
+        {"outz", Float},
+        {"outw", Float},
+        {"outr", Float},
+        {"outg", Float},
+        {"outb", Float},
+        {"outa", Float}},
+       separate},
   };
 }
 

@@ -20,6 +20,8 @@ const std::vector<Row>& table() {
     add("math", math_rows());
     add("vector", vector_rows());
     add("logic", logic_rows());
+    add("color", color_rows());
+    add("procedural", procedural_rows());
     add("geometry", geometry_rows());
     add("light", light_rows());
     return all;

@@ -22,6 +22,8 @@ std::vector<Row> structure_rows();
 std::vector<Row> math_rows();
 std::vector<Row> vector_rows();
 std::vector<Row> logic_rows();
+std::vector<Row> color_rows();
+std::vector<Row> procedural_rows();
 std::vector<Row> geometry_rows();
 std::vector<Row> light_rows();
 

@@ -31,7 +31,7 @@ struct PortType {
     value,      ///< a value of one of `accepts`
     type_name,  ///< a literal string: the name of the type that `variable` is
     choice,     ///< a literal string: one of the port's choices
-    component   ///< a literal integer: which component of the value of `variable`
+    component   ///< a literal integer: which component of the value of `variable`, or a number of things
   };
   TypeSet accepts;
   Variable variable = Variable::none;
@@ -45,17 +45,23 @@ inline constexpr TypeSet matrix_types = only(Type::matrix33) | only(Type::matrix
 inline constexpr TypeSet float_types = scalar_types | vector_types | color_types;
 inline constexpr TypeSet value_types = float_types | matrix_types | only(Type::boolean) | only(Type::integer);
 
+inline constexpr PortType Boolean{only(Type::boolean)};
+inline constexpr PortType Integer{only(Type::integer)};
 inline constexpr PortType Float{only(Type::floating)};
 inline constexpr PortType Vector2{only(Type::vector2)};
 inline constexpr PortType Vector3{only(Type::vector3)};
 inline constexpr PortType Color3{only(Type::color3)};
+inline constexpr PortType Color4{only(Type::color4)};
 inline constexpr PortType AnyFloat{float_types, Variable::t};  ///< float, a vector or a colour
 inline constexpr PortType Vector{vector_types, Variable::t};
 inline constexpr PortType VectorOrColor{vector_types | color_types, Variable::t};
+inline constexpr PortType Color{color_types, Variable::t};
+inline constexpr PortType Matrix{matrix_types, Variable::t};
 inline constexpr PortType FloatOrMatrix{float_types | matrix_types, Variable::t};
 inline constexpr PortType Any{value_types, Variable::t};
 inline constexpr PortType Other{value_types, Variable::u};  ///< of another type than Any
 inline constexpr PortType Choice{{}, Variable::none, PortType::Kind::choice};
+inline constexpr PortType WholeNumber{{}, Variable::none, PortType::Kind::component};
 
 /// The same variable's name: "to": "color3".
 constexpr PortType name_of(PortType type) { return {type.accepts, type.variable, PortType::Kind::type_name}; }

@@ -6,14 +6,28 @@
 namespace isoshade::nodes {
 namespace {
 
-/// A matrix takes vectors as tall as it is.
 std::optional<Refusal> matrix_fits(std::span<const Type> types, std::span<const uint32_t>, Type) {
-  const Type needed = types[0] == Type::vector3 ? Type::matrix33 : Type::matrix44;
-  if (types[1] == needed) return std::nullopt;
+  const bool fits3 = types[0] != Type::vector4, fits4 = types[0] != Type::vector2;
+  if (types[1] == Type::matrix33 ? fits3 : fits4) return std::nullopt;
   return Refusal{support::Id::type_mismatch, 1,
-                 "a " + std::string(graph::type_name(types[0])) + " is transformed by a " +
-                     std::string(graph::type_name(needed)) + ", not by a " +
-                     std::string(graph::type_name(types[1]))};
+                 "a " + std::string(graph::type_name(types[0])) + " is transformed by a matrix" +
+                     (fits3 ? "33" : "44") + ", not by a " + std::string(graph::type_name(types[1]))};
+}
+
+/// A vector that is one shorter than the matrix is a point: it gets a fourth or third component of 1.
+void transform(Site& s) {
+  const auto height = static_cast<uint32_t>(graph::float_count(s.types[0]));
+  if (height == s.in[1].count) {
+    s.out[0] = s.call("transform", {s.in[1], s.in[0]});
+    return;
+  }
+  std::array<ir::ValueId, 4> components;
+  for (uint32_t i = 0; i < height; ++i) components[i] = s.b.extract(s[0], i);
+  components[height] = s.b.constant(1.0f);
+  const std::span<ir::ValueId> tall = std::span(components).first(height + 1);
+  const ir::ValueId result = s.call("transform", {s.in[1], s.b.construct(tall)}).id();
+  for (uint32_t i = 0; i < height; ++i) components[i] = s.b.extract(result, i);
+  s.out[0] = s.b.construct(tall.first(height));
 }
 
 }  // namespace
@@ -21,6 +35,8 @@ std::optional<Refusal> matrix_fits(std::span<const Type> types, std::span<const 
 std::vector<Row> vector_rows() {
   const Port in1{"in1", Vector, "the first vector"};
   const Port in2{"in2", Vector, "the second vector"};
+  const Port from{"fromspace", Choice, "the space of `in`", "world", space_names};
+  const Port to{"tospace", Choice, "the space of the result; \"model\" is \"object\"", "world", space_names};
   return {
       {"dotproduct", "The sum of products of components.", {in1, in2}, Float, Function{"dot"}},
       {"crossproduct",
@@ -47,15 +63,35 @@ std::vector<Row> vector_rows() {
         {"ior", Float, "index of refraction before the surface over that behind it", 1.0f}},
        Vector,
        Function{"refract"}},
+      {"transformpoint",
+       "The point `in` in the coordinates of another space.",
+       {{"in", Vector3, "a point in `fromspace`"}, from, to},
+       Vector3,
+       Transform::point},
+      {"transformvector",
+       "The direction and length `in` in the coordinates of another space.",
+       {{"in", Vector3, "a vector in `fromspace`"}, from, to},
+       Vector3,
+       Transform::vector},
+      {"transformnormal",
+       "The normal `in` in another space, at length 1.",
+       {{"in", Vector3, "a normal in `fromspace`, of any length but 0"}, from, to},
+       Vector3,
+       Transform::normal},
       {"transformmatrix",
-       "`mat` times `in`. A vector3 takes a matrix33, a vector4 a matrix44.",
-       {{"in", {only(Type::vector3) | only(Type::vector4), Variable::t}, "the vector, a column"},
+       "`mat` times `in`. A vector2 under a matrix33 and a vector3 under a matrix44 are points.",
+       {{"in", Vector, "the vector, a column"},
         {"mat", {matrix_types, Variable::u}, "the matrix; literals are written column by column"}},
-       {{"out", {only(Type::vector3) | only(Type::vector4), Variable::t}}},
-       [](Site& s) {
-         s.out[0] = s.call("transform", {s.in[1], s.in[0]});
-       },
+       {{"out", Vector}},
+       transform,
        matrix_fits},
+      {"transpose", "Rows become columns.", {{"in", Matrix, "the matrix"}}, Matrix, Function{"transpose"}},
+      {"determinant", "The determinant.", {{"in", Matrix, "the matrix"}}, Float, Function{"determinant"}},
+      {"invertmatrix",
+       "The inverse; infinities and NaN where there is none.",
+       {{"in", Matrix, "the matrix"}},
+       Matrix,
+       Function{"inverse"}},
   };
 }
 

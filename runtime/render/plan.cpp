@@ -36,6 +36,12 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
   return kinds;
 }
 
+/// The upper three rows, column by column.
+void store_affine(const glm::mat4& matrix, float* words) {
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 3; ++r) words[3 * c + r] = scene::canonical(matrix[c][r]);
+}
+
 /// What culling means for a mesh that a mirroring transform turns inside out.
 backends::Cull cull_of(graph::Cull cull, bool mirrored) {
   switch (cull) {
@@ -65,6 +71,7 @@ class Planner {
   bool check_limits();
   void make_meshes();
   void place_object(size_t o);
+  void store_frame();
   void place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
                   const glm::mat4& projected);
 
@@ -197,6 +204,7 @@ void Planner::place_copy(const Object& object, size_t o, const Instance& instanc
                          const glm::mat4& projected) {
   namespace word = lower::object_word;
   const glm::mat3 normal = scene::normal_matrix(model);
+  const glm::mat4 inverse = scene::affine_inverse(model);
   const std::vector<float> parameters = parameters_[o].words(object, instance);
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
@@ -207,8 +215,8 @@ void Planner::place_copy(const Object& object, size_t o, const Instance& instanc
     const size_t first = plan_.frame.objects.size();
     plan_.frame.objects.resize(first + word::parameters);
     float* record = &plan_.frame.objects[first];
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 3; ++r) record[word::model + 3 * c + r] = scene::canonical(model[c][r]);
+    store_affine(model, record + word::model);
+    store_affine(inverse, record + word::inverse);
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) record[word::normal + 3 * c + r] = scene::canonical(normal[c][r]);
     for (int c = 0; c < 4; ++c)
@@ -228,6 +236,16 @@ void Planner::place_copy(const Object& object, size_t o, const Instance& instanc
     plan_.stats.vertices += draw.vertex_count;
     plan_.stats.triangles += static_cast<int64_t>(mesh.indices.size() / 3);
   }
+}
+
+void Planner::store_frame() {
+  namespace word = lower::frame_word;
+  std::vector<float>& words = plan_.frame.frame;
+  words.resize(word::count);
+  for (int i = 0; i < 4; ++i) words[word::eye + i] = scene::canonical(view_.eye[i]);
+  store_affine(view_.view, &words[word::view]);
+  store_affine(view_.inverse, &words[word::inverse_view]);
+  words[word::time] = scene::canonical(scene_.time);
 }
 
 void Planner::place_object(size_t o) {
@@ -267,7 +285,7 @@ std::optional<Plan> Planner::plan() {
   {
     const lanes::FpGuard guard;
     view_ = scene::make_view(scene_.camera, frame.width, frame.height);
-    for (int i = 0; i < lower::frame_word::count; ++i) frame.frame.push_back(scene::canonical(view_.eye[i]));
+    store_frame();
     for (const scene::Light& light : scene_.lights) {
       const auto record = scene::light_record(light);
       frame.lights.insert(frame.lights.end(), record.begin(), record.end());

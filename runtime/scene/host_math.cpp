@@ -92,6 +92,19 @@ glm::mat3 normal_matrix(const glm::mat4& model) {
   return to_glm(functions::normal_matrix(to_lanes<4>(model)));
 }
 
+glm::mat4 affine_inverse(const glm::mat4& a) {
+  const glm::vec3 x(a[0]), y(a[1]), z(a[2]), origin(a[3]);
+  const glm::vec3 cofactors[3] = {cross(y, z), cross(z, x), cross(x, y)};
+  const float determinant = dot(x, cofactors[0]);
+  glm::mat4 inverse(1);
+  for (int r = 0; r < 3; ++r) {
+    const glm::vec3 row = cofactors[r] / determinant;
+    for (int c = 0; c < 3; ++c) inverse[c][r] = row[c];
+    inverse[3][r] = -dot(row, origin);
+  }
+  return inverse;
+}
+
 float dot(const glm::vec3& a, const glm::vec3& b) { return functions::dot(to_lanes<3>(a), to_lanes<3>(b)); }
 
 glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {

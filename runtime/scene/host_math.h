@@ -29,6 +29,9 @@ glm::vec4 multiply(const glm::mat4& a, const glm::vec4& b);
 /// outside.
 glm::mat3 normal_matrix(const glm::mat4& model);
 
+/// Of a matrix whose last row is 0 0 0 1 and whose first three columns span space.
+glm::mat4 affine_inverse(const glm::mat4& a);
+
 float dot(const glm::vec3& a, const glm::vec3& b);
 glm::vec3 cross(const glm::vec3& a, const glm::vec3& b);
 /// Also for vectors whose squares overflow or vanish; 0 gives 0.

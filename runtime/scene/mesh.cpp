@@ -13,9 +13,12 @@ namespace {
 /// part/whole in [0, 1]
 float fraction(int64_t part, int64_t whole) { return static_cast<float>(part) / static_cast<float>(whole); }
 
-void add_vertex(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float u, float v) {
-  for (const float value : {position.x, position.y, position.z, normal.x, normal.y, normal.z, u, v})
-    mesh.vertices.push_back(canonical(value));
+/// White, and with normal, tangent and the way up in the texture right-handed.
+void add_vertex(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float u, float v, glm::vec3 tangent) {
+  const float record[lower::vertex_word::stride] = {
+      position.x, position.y, position.z, normal.x, normal.y, normal.z, u, v,  //
+      tangent.x,  tangent.y,  tangent.z,  1,        1,        1,        1, 1};
+  for (const float value : record) mesh.vertices.push_back(canonical(value));
 }
 
 void add_triangle(Mesh& mesh, int64_t a, int64_t b, int64_t c) {
@@ -38,18 +41,23 @@ glm::vec3 sphere_direction(const MeshShape& shape, int64_t ring, int64_t segment
 void make_sphere(const MeshShape& shape, Mesh& mesh) {
   const int64_t segments = shape.segments;
   const int64_t rings = shape.rings;
-  const auto add = [&](int64_t ring, int64_t segment, float u) {
+  const auto add = [&](int64_t ring, int64_t segment, float u, SinCos longitude) {
     const glm::vec3 normal = normalize(sphere_direction(shape, ring, segment));
-    add_vertex(mesh, normal * shape.size.x, normal, u, fraction(ring, rings));
+    const glm::vec3 tangent = normalize(glm::vec3(-longitude.cos, 0, longitude.sin));
+    add_vertex(mesh, normal * shape.size.x, normal, u, fraction(ring, rings), tangent);
   };
   // A pole is one point but many vertices: each of its triangles has its own u there.
   const auto add_pole = [&](int64_t ring) {
-    for (int64_t s = 0; s < segments; ++s) add(ring, 0, fraction(2 * s + 1, 2 * segments));
+    for (int64_t s = 0; s < segments; ++s) {
+      const int64_t part = 2 * s + 1, whole = 2 * segments;
+      add(ring, 0, fraction(part, whole), sin_cos_of_turn(part, whole));
+    }
   };
   add_pole(0);
   for (int64_t ring = 1; ring < rings; ++ring) {
     // The seam's two columns are the same points.
-    for (int64_t s = 0; s <= segments; ++s) add(ring, s % segments, fraction(s, segments));
+    for (int64_t s = 0; s <= segments; ++s)
+      add(ring, s % segments, fraction(s, segments), sin_cos_of_turn(s % segments, segments));
   }
   add_pole(rings);
 
@@ -68,7 +76,7 @@ void make_plane(const MeshShape& shape, Mesh& mesh) {
     for (int64_t column = 0; column <= n; ++column) {
       const float u = fraction(column, n);
       const float v = fraction(row, n);
-      add_vertex(mesh, {(u - 0.5f) * shape.size.x, 0, (v - 0.5f) * shape.size.z}, {0, 1, 0}, u, v);
+      add_vertex(mesh, {(u - 0.5f) * shape.size.x, 0, (v - 0.5f) * shape.size.z}, {0, 1, 0}, u, v, {1, 0, 0});
     }
   }
   for (int64_t row = 0; row < n; ++row) {
@@ -93,7 +101,8 @@ void make_box(const MeshShape& shape, Mesh& mesh) {
   for (const Face& face : faces) {
     const auto first = static_cast<int64_t>(mesh.vertices.size()) / lower::vertex_word::stride;
     const auto add = [&](float right, float up, float u, float v) {
-      add_vertex(mesh, (face.normal + face.right * right + face.up * up) * half, face.normal, u, v);
+      add_vertex(mesh, (face.normal + face.right * right + face.up * up) * half, face.normal, u, v,
+                 face.right);
     };
     add(-1, -1, 0, 1);
     add(1, -1, 1, 1);

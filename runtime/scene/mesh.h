@@ -34,7 +34,8 @@ int64_t vertex_count(const MeshShape& shape);
 int64_t triangle_count(const MeshShape& shape);
 
 /// All are centred on the origin. Sphere: poles at +y (v = 0) and -y, the seam of u at -z. Plane: in y = 0,
-/// facing +y, u along +x and v along +z. Box: each face of its own 4 vertices.
+/// facing +y, u along +x and v along +z. Box: each face of its own 4 vertices. Tangents run along u, normal x
+/// tangent against v; vertices are white.
 Mesh make_mesh(const MeshShape& shape);
 
 }  // namespace isoshade::scene

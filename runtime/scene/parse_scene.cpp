@@ -120,6 +120,7 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   scene.name = reader.string("scene");
   Names names(document, diagnostics);
   parse_size(document, reader, scene);
+  scene.time = reader.number("time", coordinates, 0.0f);
   if (const Json* camera = reader.object("camera"))
     scene.camera = parse_camera(document, *camera, diagnostics);
   if (const Json* lights = reader.object("lights", Need::optional))

@@ -76,8 +76,10 @@ View make_view(const Camera& camera, int width, int height) {
   const glm::vec3 up = cross(back, right);
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   View view;
-  view.projection =
-      multiply(projection_matrix(camera, aspect), view_matrix(right, up, back, camera.position));
+  view.view = view_matrix(right, up, back, camera.position);
+  view.inverse =
+      glm::mat4(glm::vec4(right, 0), glm::vec4(up, 0), glm::vec4(back, 0), glm::vec4(camera.position, 1));
+  view.projection = multiply(projection_matrix(camera, aspect), view.view);
   view.eye =
       camera.projection == Projection::perspective ? glm::vec4(camera.position, 1) : glm::vec4(back, 0);
   return view;

@@ -15,6 +15,8 @@ namespace isoshade::scene {
 /// World space to clip space, y up. Depth is reversed: z = w on the near plane; in perspective z is near and
 /// w the distance along the view, in orthographic projection w is 1 and z falls to 0 at `far`.
 struct View {
+  glm::mat4 view;        ///< world space -> view space: the camera at the origin, looking along -z, y up
+  glm::mat4 inverse;     ///< view space -> world space
   glm::mat4 projection;  ///< world space -> clip space
   glm::vec4 eye;         ///< frame_word::eye
 };

@@ -77,15 +77,15 @@ struct TestFrame {
 
     const float x = 2.4f * random() - 1.2f, y = 2.4f * random() - 1.2f, size = random() * random();
     for (uint32_t v = 0; v < vertices_of_object; ++v) {
-      const float position[] = {x + size * (random() - 0.5f),
-                                y + size * (random() - 0.5f),
-                                random() - 0.2f,
-                                0,
-                                0,
-                                1,
-                                random(),
-                                random()};
-      frame.vertices.insert(frame.vertices.end(), std::begin(position), std::end(position));
+      const float vertex[lower::vertex_word::stride] = {x + size * (random() - 0.5f),
+                                                        y + size * (random() - 0.5f),
+                                                        random() - 0.2f,
+                                                        0,
+                                                        0,
+                                                        1,
+                                                        random(),
+                                                        random()};
+      frame.vertices.insert(frame.vertices.end(), std::begin(vertex), std::end(vertex));
     }
   }
 

@@ -83,7 +83,7 @@ TEST(CheckTypes, PortsSayWhatTheyTake) {
 )");
   EXPECT_EQ(
       messages_of(R"("type": "add", "in1": true, "in2": 1)"),
-      R"(test.json:5:29: error[type-mismatch]: "in1" of "add" takes float, vector2, vector3, vector4, color3 or color4, not boolean
+      R"(test.json:5:29: error[type-mismatch]: "in1" of "add" takes float, vector2, vector3, vector4, color3, color4, matrix33 or matrix44, not boolean
   5 | "n": {"type": "add", "in1": true, "in2": 1}
     |                             ^^^^
 )");
@@ -97,7 +97,7 @@ TEST(CheckTypes, ArraysHaveAsManyNumbersAsTheTypeHasComponents) {
 )");
   EXPECT_EQ(
       messages_of(R"("type": "add", "in1": [1, 2, 3, 4, 5], "in2": 1)"),
-      R"(test.json:5:29: error[wrong-type]: "in1" of "add" takes float, vector2, vector3, vector4, color3 or color4, not an array of 5 numbers
+      R"(test.json:5:29: error[wrong-type]: "in1" of "add" takes float, vector2, vector3, vector4, color3, color4, matrix33 or matrix44, not an array of 5 numbers
   5 | "n": {"type": "add", "in1": [1, 2, 3, 4, 5], "in2": 1}
     |                             ^^^^^^^^^^^^^^^
 )");

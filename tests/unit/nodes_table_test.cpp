@@ -2,57 +2,14 @@
 // What the node table promises of every row.
 #include <set>
 
+#include "compiler/nodes/example.h"
 #include "compiler/nodes/site.h"
-#include "compiler/nodes/table.h"
 #include "tests/unit/front_end.h"
 
 namespace isoshade {
 namespace {
 
-using graph::Type;
-using nodes::PortType;
 using nodes::Row;
-using nodes::Variable;
-
-std::vector<Type> types_in(nodes::TypeSet set) {
-  std::vector<Type> types;
-  for (const std::string_view name : graph::all_type_names())
-    if (set.has(*graph::find_type(name))) types.push_back(*graph::find_type(name));
-  return types;
-}
-
-/// The types that a variable of the row can have, or one that is never looked at.
-std::vector<Type> choices_of(const Row& row, Variable variable) {
-  for (const nodes::Port& port : row.ports)
-    if (port.type.variable == variable) return types_in(port.type.accepts);
-  return {Type::floating};
-}
-
-/// A function document with one node of the row, all ports linked to inputs; the document's name tells
-/// nothing. `t` and `u` are the types of the row's variables.
-std::string document_of(const Row& row, Type t, Type u) {
-  std::string inputs, ports;
-  for (const nodes::Port& port : row.ports) {
-    const std::string name(port.name);
-    const Type variable = port.type.variable == Variable::u ? u : t;
-    if (port.type.kind == PortType::Kind::type_name) {
-      ports += ", \"" + name + "\": \"" + std::string(graph::type_name(variable)) + "\"";
-      continue;
-    }
-    if (port.type.kind != PortType::Kind::value) continue;
-    const Type type = port.type.variable == Variable::none ? types_in(port.type.accepts).front() : variable;
-    inputs += (inputs.empty() ? "" : ", ") + ("\"" + name + "\": {\"type\": \"") +
-              std::string(graph::type_name(type)) + "\"}";
-    ports += ", \"" + name + "\": \"" + name + "\"";
-  }
-  return "{\"isoshade\": 1, \"function\": \"f\", \"inputs\": {" + inputs +
-         "}, \"nodes\": {\"node\": {\"type\": \"" + std::string(row.name) + "\"" + ports +
-         "}}, \"outputs\": {\"result\": \"node\"}}";
-}
-
-bool belongs_to_effects(const Row& row) {
-  return row.is<nodes::Surface>() || row.is<nodes::Light>() || row.is<nodes::SumLights>();
-}
 
 TEST(NodeTable, EveryRowAndPortIsDocumentedAndHasItsOwnName) {
   std::set<std::string_view> names;
@@ -71,31 +28,24 @@ TEST(NodeTable, EveryRowAndPortIsDocumentedAndHasItsOwnName) {
 }
 
 TEST(NodeTable, EveryNodeLowersForEveryTypeThatItAccepts) {
-  int lowered = 0;
+  size_t lowered = 0;
   for (const Row& row : nodes::table()) {
-    if (belongs_to_effects(row)) continue;
-    int of_row = 0;
-    for (const Type t : choices_of(row, Variable::t)) {
-      for (const Type u : choices_of(row, Variable::u)) {
-        const std::string text = document_of(row, t, u);
-        FrontEnd front_end;
-        const auto graph = front_end.check(text);
-        if (graph == nullptr) {
-          // Only a row's own condition may refuse what its ports accept.
-          EXPECT_NE(row.condition, nullptr) << front_end.diagnostics.text() << text;
-          continue;
-        }
-        const ir::Module module = lower::lower(*graph);
-        EXPECT_EQ(ir::validate(module), "") << text;
-        EXPECT_EQ(module.functions.at(module.find("f")).results[0].type,
-                  nodes::ir_type(graph->outputs[0].needed));
-        ++of_row;
-      }
+    if (row.belongs_to_effects()) continue;
+    const std::vector<nodes::Example> examples = nodes::examples_of(row);
+    EXPECT_FALSE(examples.empty()) << row.name;
+    for (const nodes::Example& example : examples) {
+      const std::string text = nodes::function_document(std::span(&example, 1));
+      FrontEnd front_end;
+      const auto graph = front_end.check(text);
+      ASSERT_NE(graph, nullptr) << front_end.diagnostics.text() << text;
+      const ir::Module module = lower::lower(*graph);
+      EXPECT_EQ(ir::validate(module), "") << text;
+      const ir::Function& function = module.functions.at(module.find("example"));
+      EXPECT_EQ(function.results[0].type, nodes::ir_type(example.type_of(row.outputs[0].type))) << text;
     }
-    EXPECT_GT(of_row, 0) << row.name;
-    lowered += of_row;
+    lowered += examples.size();
   }
-  EXPECT_GT(lowered, 200);
+  EXPECT_GT(lowered, 300u);
 }
 
 TEST(NodeTable, NodesOfEffectsLowerInAnEffect) {
@@ -113,6 +63,68 @@ TEST(NodeTable, NodesOfEffectsLowerInAnEffect) {
     parameters += parameter.group + "." + parameter.name + (parameter.uniform ? "! " : " ");
   EXPECT_EQ(parameters,
             "surface.position surface.normal surface.texcoord surface.view_direction .light_count! ");
+}
+
+std::string effect_of(const std::string& node, const std::string& color) {
+  return R"({"isoshade": 1, "effect": "e", "nodes": {"n": {)" + node +
+         R"(}}, "passes": [{"name": "base", "color": ")" + color + R"("}]})";
+}
+
+std::string parameters_of(const ir::Module& module) {
+  std::string names;
+  for (const ir::Parameter& parameter : module.functions.at(module.find("shade")).parameters)
+    names += (names.empty() ? "" : " ") + parameter.group + "." + parameter.name;
+  return names;
+}
+
+std::string asked_by(const std::string& node, const std::string& color = "n.x") {
+  return parameters_of(FrontEnd().lower(effect_of(node, color)));
+}
+
+TEST(NodeTable, EachSpaceOfAnAttributeIsAFieldOfItsOwn) {
+  for (const std::string name : {"position", "normal", "tangent", "bitangent", "viewdirection"}) {
+    const std::string field = "surface." + (name == "viewdirection" ? "view_direction" : name);
+    EXPECT_EQ(asked_by(R"("type": ")" + name + R"(")"), field);
+    EXPECT_EQ(asked_by(R"("type": ")" + name + R"(", "space": "world")"), field);
+    EXPECT_EQ(asked_by(R"("type": ")" + name + R"(", "space": "view")"), field + "_view");
+    EXPECT_EQ(asked_by(R"("type": ")" + name + R"(", "space": "object")"), field + "_object");
+    EXPECT_EQ(asked_by(R"("type": ")" + name + R"(", "space": "model")"), field + "_object");
+  }
+  EXPECT_EQ(asked_by(R"("type": "vertexcolor")"), "surface.color");
+  EXPECT_EQ(asked_by(R"("type": "texcoord", "index": 0)"), "surface.texcoord");
+  EXPECT_EQ(asked_by(R"("type": "time")", "n"), "frame.time");
+}
+
+TEST(NodeTable, TransformsAskForTheColumnsTheyNeed) {
+  const auto node = [](const std::string& type, const std::string& from, const std::string& to) {
+    return R"("type": "transform)" + type + R"(", "in": [1, 2, 3], "fromspace": ")" + from +
+           R"(", "tospace": ")" + to + "\"";
+  };
+  const auto columns = [](const std::string& name, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += (i > 0 ? " spaces." : "spaces.") + name + "_" + std::to_string(i);
+    return text;
+  };
+  EXPECT_EQ(asked_by(node("point", "view", "view")), "");
+  EXPECT_EQ(asked_by(node("point", "object", "world")), columns("world_from_object", 4));
+  EXPECT_EQ(asked_by(node("vector", "model", "world")), columns("world_from_object", 3));
+  EXPECT_EQ(asked_by(node("vector", "world", "object")), columns("object_from_world", 3));
+  EXPECT_EQ(asked_by(node("normal", "world", "object")), columns("world_from_object", 3));
+  EXPECT_EQ(asked_by(node("normal", "object", "world")), columns("object_from_world", 3));
+  EXPECT_EQ(asked_by(node("point", "object", "view")),
+            columns("world_from_object", 4) + " " + columns("view_from_world", 4));
+  EXPECT_EQ(asked_by(node("point", "view", "object")),
+            columns("object_from_world", 4) + " " + columns("world_from_view", 4));
+}
+
+TEST(NodeTable, PortsThatDefaultToTheSurfaceAreRequiredInFunctions) {
+  EXPECT_EQ(asked_by(R"("type": "facingratio")", "n"), "surface.normal surface.view_direction");
+  EXPECT_EQ(asked_by(R"("type": "ramplr", "valuel": 1, "valuer": 2)", "n"), "surface.texcoord");
+  EXPECT_NE(FrontEnd()
+                .messages(R"({"isoshade": 1, "function": "f", "nodes": {
+                    "n": {"type": "ramplr", "valuel": 1, "valuer": 2}}, "outputs": {"out": "n"}})")
+                .find("error[missing-port]: node \"n\" (\"ramplr\") needs \"texcoord\""),
+            std::string::npos);
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ TEST_F(PlanTest, BoundsWhatIsDrawn) {
 }
 
 TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
-  const auto made = plan(R"("background": [0.1, 0.2, 0.3, 0.4], "size": [17, 9],
+  const auto made = plan(R"("background": [0.1, 0.2, 0.3, 0.4], "size": [17, 9], "time": 2.5,
     "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]},
                "lamp": {"type": "point", "position": [1, 2, 3], "intensity": 5}}, "objects": {})");
   ASSERT_TRUE(made) << diagnostics_.text();
@@ -185,7 +185,15 @@ TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   EXPECT_EQ(made->frame.light_count, 2);
   EXPECT_EQ(made->frame.lights.size(), 2u * lower::light_word::stride);
   EXPECT_EQ(made->frame.lights[lower::light_word::stride + lower::light_word::color], 5.0f);
-  EXPECT_EQ(made->frame.frame, (std::vector<float>{0, 0, 5, 1}));
+  EXPECT_EQ(made->frame.frame.size(), static_cast<size_t>(lower::frame_word::count));
+  const auto words = [&](int first, size_t count) {
+    return std::vector(made->frame.frame.begin() + first, made->frame.frame.begin() + first + count);
+  };
+  EXPECT_EQ(words(lower::frame_word::eye, 4), (std::vector<float>{0, 0, 5, 1}));
+  EXPECT_EQ(words(lower::frame_word::view, 12), (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -5}));
+  EXPECT_EQ(words(lower::frame_word::inverse_view, 12),
+            (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 5}));
+  EXPECT_EQ(words(lower::frame_word::time, 1), std::vector<float>{2.5f});
   EXPECT_EQ(made->frame.background[3], 0.4f);
   options_.width = 5;
   options_.height = 7;

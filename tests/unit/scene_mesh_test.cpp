@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 #include <map>
 
@@ -105,6 +106,32 @@ TEST(Mesh, TextureRunsRightAndDownSeenFromOutside) {
   EXPECT_EQ(plane.vertices[word::texcoord], 0.0f);
 }
 
+TEST(Mesh, TangentsAreUnitAndRunAlongUWithTheirNormalsAndUpRightHanded) {
+  for (const MeshShape& shape : shapes) {
+    const Mesh mesh = scene::make_mesh(shape);
+    for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+      const auto corner = [&](size_t i, int at) { return vector_at(mesh, mesh.indices[t + i], at); };
+      const auto uv = [&](size_t i) { return glm::vec2(corner(i, word::texcoord)); };
+      // The texture's gradients over the triangle.
+      const glm::vec3 e1 = corner(1, word::position) - corner(0, word::position);
+      const glm::vec3 e2 = corner(2, word::position) - corner(0, word::position);
+      const glm::vec2 d1 = uv(1) - uv(0), d2 = uv(2) - uv(0);
+      const float sign = d1.x * d2.y - d2.x * d1.y < 0 ? -1.0f : 1.0f;
+      const glm::vec3 along_u = sign * (d2.y * e1 - d1.y * e2), along_v = sign * (d1.x * e2 - d2.x * e1);
+      for (size_t i = 0; i < 3; ++i) {
+        const glm::vec3 tangent = corner(i, word::tangent), normal = corner(i, word::normal);
+        ASSERT_NEAR(glm::length(tangent), 1.0f, 3e-7f);
+        const bool pole = std::abs(normal.y) > 0.999f && shape.kind == MeshKind::sphere;
+        ASSERT_NEAR(glm::dot(tangent, normal), 0.0f, pole ? 1e-4f : 3e-7f);
+        ASSERT_GT(glm::dot(tangent, along_u), 0.0f) << "triangle " << t / 3;
+        ASSERT_LT(glm::dot(glm::cross(normal, tangent), along_v), 0.0f) << "triangle " << t / 3;
+        const float* rest = &mesh.vertices[mesh.indices[t + i] * word::stride + word::tangent + 3];
+        ASSERT_EQ(std::vector<float>(rest, rest + 5), (std::vector<float>{1, 1, 1, 1, 1}));
+      }
+    }
+  }
+}
+
 TEST(Mesh, HoldsNoDenormalsAndNoNegativeZeros) {
   for (const MeshShape& shape : shapes) {
     for (const float value : scene::make_mesh(shape).vertices) {
@@ -116,9 +143,9 @@ TEST(Mesh, HoldsNoDenormalsAndNoNegativeZeros) {
 TEST(Mesh, IsTheSameBitsOnEveryMachine) {
   // Recorded with g++ 12 on x86-64; any compiler and any level of optimisation must give it.
   EXPECT_EQ(hash_of(scene::make_mesh({MeshKind::sphere, {1, 1, 1}, 64, 32})),
-            "1f29203aa1d5e3ad885cb43c5326166f874597df591cb650c1be006f224535db");
+            "9ac6349b6b550ea4a3c596fdf657355b7a64f0dbe302d515eeb483aa2f3157f6");
   EXPECT_EQ(hash_of(scene::make_mesh({MeshKind::box, {1, 2, 3}, 64, 32})),
-            "f2c1f47c9c5d58766b419413adc849fa08ad4e19f1e0fa0c96e60c3a77fed4c0");
+            "fba70acdc19de1bfa02ffd2e4c42eeb2b04b7c99350a3f913225e40c976f41c1");
 }
 
 }  // namespace

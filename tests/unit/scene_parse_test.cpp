@@ -18,7 +18,7 @@ constexpr const char* ball = R"("objects": {"ball": {"mesh": "sphere", "effect":
 TEST(ParseScene, ReadsEveryPart) {
   const ParsedScene parsed = parse_text(R"({
     "$schema": "../schema/isoshade.schema.json", "isoshade": 1, "scene": "all", "doc": "All there is.",
-    "size": [320, 200], "background": [0.1, 0.2, 0.3, 0.5], "posts": [], "extras": {"free": [1]},
+    "size": [320, 200], "time": 1.5, "background": [0.1, 0.2, 0.3, 0.5], "posts": [], "extras": {"free": [1]},
     "camera": {"type": "orthographic", "position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1],
                "height": 7, "near": 0.5, "far": 50},
     "lights": {
@@ -38,6 +38,7 @@ TEST(ParseScene, ReadsEveryPart) {
   EXPECT_EQ(scene.name, "all");
   EXPECT_EQ(scene.width, 320);
   EXPECT_EQ(scene.height, 200);
+  EXPECT_EQ(scene.time, 1.5f);
   EXPECT_EQ(scene.background[3], 0.5f);
   EXPECT_EQ(scene.camera.projection, scene::Projection::orthographic);
   EXPECT_EQ(scene.camera.up, glm::vec3(0, 0, 1));

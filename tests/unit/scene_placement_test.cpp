@@ -124,6 +124,24 @@ TEST(Placement, NormalsStandOnScaledAndMirroredSurfaces) {
   }
 }
 
+TEST(Placement, InversesTakePointsBack) {
+  const lanes::FpGuard guard;
+  scene::Object object;
+  object.transform.scale = {-2, 0.25f, 3};
+  object.transform.rotate = {20, 130, -40};
+  object.transform.translate = {5, -6, 7};
+  const glm::mat4 model = scene::model_matrix(object, {});
+  const scene::View view = scene::make_view({.position = {1, 2, 3}, .target = {-4, 0, 1}}, 640, 360);
+  const std::pair<glm::mat4, glm::mat4> pairs[] = {{model, scene::affine_inverse(model)},
+                                                   {view.view, view.inverse}};
+  for (const auto& [there, back] : pairs) {
+    const glm::mat4 product = scene::multiply(back, there);
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 4; ++r) EXPECT_NEAR(product[c][r], c == r ? 1.0f : 0.0f, 1e-5f);
+  }
+  EXPECT_EQ(scene::multiply(view.view, glm::vec4(1, 2, 3, 1)), glm::vec4(0, 0, 0, 1));
+}
+
 TEST(Placement, LightRecordsPointTowardsTheLight) {
   const lanes::FpGuard guard;
   scene::Light sun;

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/nodes/manual.h"
+
+#include <algorithm>
+
+#include "compiler/nodes/example.h"
+#include "compiler/support/parse_number.h"
+
+namespace isoshade::nodes {
+namespace {
+
+struct SetName {
+  TypeSet types;
+  std::string_view name;
+};
+/// Sets that readers know by one word.
+constexpr SetName set_names[] = {{value_types, "any type"},
+                                 {scalar_types, "float"},
+                                 {vector_types, "vector"},
+                                 {color_types, "colour"},
+                                 {matrix_types, "matrix"}};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
+}
+
+std::string types_text(TypeSet types) {
+  std::vector<std::string> words;
+  for (const SetName& set : set_names) {
+    if ((types | set.types) != types) continue;
+    words.emplace_back(set.name);
+    types.bits = static_cast<uint16_t>(types.bits & ~set.types.bits);
+  }
+  for (const Type type : types_in(types)) words.emplace_back(graph::type_name(type));
+  return joined(words);
+}
+
+std::string surface_text(SurfaceValue value) {
+  constexpr std::string_view names[] = {
+      "position", "normal", "texture coordinates", "view direction", "tangent", "bitangent", "colour"};
+  const bool object = value.space == Space::object;
+  return "the surface's " + std::string(names[static_cast<size_t>(value.attribute)]) +
+         (object ? " in object space" : "");
+}
+
+/// As documents have it: whole numbers without a fraction.
+std::string number_text(float number) {
+  std::string text = support::format_float(number);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+std::string padded(std::string text, size_t width) {
+  if (text.size() < width) text.resize(width, ' ');
+  return text;
+}
+
+std::string_view first_sentence(std::string_view doc) {
+  const size_t end = doc.find(". ");
+  return end == std::string_view::npos ? doc : doc.substr(0, end + 1);
+}
+
+/// A cell of a table: no bars.
+std::string cell(std::string text) {
+  for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.replace(at, 1, "\\|");
+  return text;
+}
+
+std::string port_markdown(const Port& port) {
+  const std::string value = default_text(port);
+  return "`" + std::string(port.name) + (value.empty() ? "`" : "` (" + value + ")");
+}
+
+}  // namespace
+
+std::string type_text(const PortType& type) {
+  switch (type.kind) {
+    case PortType::Kind::type_name: return "the name of a type: " + types_text(type.accepts);
+    case PortType::Kind::choice: return "one of its names";
+    case PortType::Kind::component: return "a whole number, written in place";
+    case PortType::Kind::value: break;
+  }
+  constexpr std::string_view suffixes[] = {"", " (T)", " (U)"};
+  return types_text(type.accepts) + std::string(suffixes[static_cast<size_t>(type.variable)]);
+}
+
+std::string default_text(const Port& port) {
+  const Default& value = port.value;
+  if (const auto* number = std::get_if<float>(&value)) return number_text(*number);
+  if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
+  if (const auto* text = std::get_if<std::string_view>(&value))
+    return text->empty() ? "" : "\"" + std::string(*text) + "\"";
+  if (const auto* attribute = std::get_if<SurfaceValue>(&value)) return surface_text(*attribute);
+  std::string list;
+  if (const auto* numbers = std::get_if<std::array<float, 3>>(&value))
+    for (const float number : *numbers) list += (list.empty() ? "[" : ", ") + number_text(number);
+  return list.empty() ? list : list + "]";
+}
+
+std::string table_text() {
+  std::string text;
+  std::string_view group;
+  for (const Row& row : table()) {
+    if (row.group != group) text += (group.empty() ? "" : "\n") + std::string(row.group) + "\n";
+    group = row.group;
+    text += "  " + padded(std::string(row.name), 18) + std::string(first_sentence(row.doc)) + "\n";
+  }
+  return text;
+}
+
+std::string row_text(const Row& row) {
+  std::string text =
+      std::string(row.name) + " (" + std::string(row.group) + ")\n  " + std::string(row.doc) + "\n";
+  if (row.belongs_to_effects()) text += "  Only in effects.\n";
+  size_t width = 0;
+  for (const Port& port : row.ports) width = std::max(width, port.name.size() + 2);
+  for (const Output& output : row.outputs) width = std::max(width, output.name.size() + 2);
+  if (!row.ports.empty()) text += "ports\n";
+  for (const Port& port : row.ports) {
+    std::string line = "  " + padded(std::string(port.name), width);
+    std::vector<std::string> choices;
+    for (const std::string_view choice : port.choices) choices.push_back("\"" + std::string(choice) + "\"");
+    line += choices.empty() ? type_text(port.type) : joined(choices);
+    const std::string value = default_text(port);
+    if (!value.empty()) line += "; default " + value;
+    if (port.required(false)) line += "; required";
+    text += line + "\n  " + std::string(width, ' ') + std::string(port.doc) + "\n";
+  }
+  text += "outputs\n";
+  for (const Output& output : row.outputs)
+    text += "  " + padded(std::string(output.name), width) + type_text(output.type) + "\n";
+  return text;
+}
+
+std::string table_markdown() {
+  std::string text;
+  std::string_view group;
+  for (const Row& row : table()) {
+    if (row.group != group) {
+      text += (group.empty() ? "**" : "\n**") + std::string(row.group) +
+              "**\n\n| node | ports (defaults) | gives | |\n|---|---|---|---|\n";
+      group = row.group;
+    }
+    std::string ports, outputs;
+    for (const Port& port : row.ports) ports += (ports.empty() ? "" : " ") + port_markdown(port);
+    if (row.outputs.size() == 1) outputs = types_text(row.outputs[0].type.accepts);
+    for (const Output& output : row.outputs)
+      if (row.outputs.size() > 1) outputs += (outputs.empty() ? "`" : " `") + std::string(output.name) + "`";
+    text += "| " + cell("`" + std::string(row.name) + "`") + " | " + cell(ports) + " | " + cell(outputs) +
+            " | " + cell(std::string(row.doc)) + " |\n";
+  }
+  return text;
+}
+
+}  // namespace isoshade::nodes

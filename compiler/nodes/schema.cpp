@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/nodes/schema.h"
+
+#include "compiler/nodes/example.h"
+#include "compiler/nodes/manual.h"
+#include "compiler/nodes/schema_json.h"
+
+namespace isoshade::nodes {
+
+SchemaJson object_schema(const std::vector<SchemaKey>& keys) {
+  SchemaJson properties = SchemaJson::object();
+  std::vector<std::string_view> required;
+  for (const SchemaKey& key : keys) {
+    properties[std::string(key.name)] = key.schema;
+    if (key.required) required.push_back(key.name);
+  }
+  properties["extras"] = true;
+  SchemaJson schema{{"type", "object"}};
+  if (!required.empty()) schema["required"] = required;
+  schema["properties"] = std::move(properties);
+  schema["additionalProperties"] = false;
+  return schema;
+}
+
+SchemaJson map_schema(SchemaJson value) {
+  return {{"type", "object"}, {"propertyNames", reference("id")}, {"additionalProperties", std::move(value)}};
+}
+
+SchemaJson variants_schema(std::string_view key, bool required,
+                           const std::vector<std::pair<std::string_view, std::vector<SchemaKey>>>& kinds) {
+  std::vector<std::string_view> names;
+  std::vector<SchemaJson> branches;
+  const std::string tag(key);
+  for (const auto& [name, keys] : kinds) {
+    std::vector<SchemaKey> all{{key, true}};
+    all.insert(all.end(), keys.begin(), keys.end());
+    SchemaJson condition{{"properties", {{tag, {{"const", name}}}}}};
+    if (!names.empty() || required) condition["required"] = {tag};
+    branches.push_back({{"if", condition}, {"then", object_schema(all)}});
+    names.push_back(name);
+  }
+  SchemaJson schema{{"type", "object"}};
+  if (required) schema["required"] = {tag};
+  schema["properties"] = {{tag, one_of(names)}};
+  schema["allOf"] = branches;
+  return schema;
+}
+
+std::vector<SchemaKey> document_keys(std::string_view kind) {
+  return {{"$schema", string_schema()},
+          {"isoshade", {{"const", 1}}, true},
+          {kind, reference("id"), true},
+          {"doc", string_schema()}};
+}
+
+namespace {
+
+/// What may stand in a port of these types: a link, or a literal of one of them.
+SchemaJson value_schema(TypeSet accepts) {
+  std::vector<SchemaJson> forms{reference("link")};
+  const auto has = [&](TypeSet types) { return (accepts.bits & types.bits) != 0; };
+  if (has(only(Type::boolean))) forms.push_back(boolean_schema());
+  if (accepts == only(Type::integer)) {
+    forms.push_back({{"type", "integer"}});
+  } else if (has(float_types | only(Type::integer))) {
+    forms.push_back(number_schema());
+  }
+  if (has(only(Type::vector2))) forms.push_back(numbers_schema(2));
+  if (has(only(Type::vector3) | only(Type::color3))) forms.push_back(numbers_schema(3));
+  if (has(only(Type::vector4) | only(Type::color4))) forms.push_back(numbers_schema(4));
+  if (has(only(Type::matrix33))) forms.push_back(numbers_schema(9));
+  if (has(only(Type::matrix44))) forms.push_back(numbers_schema(16));
+  return any_of(std::move(forms));
+}
+
+SchemaJson port_schema(const Port& port) {
+  std::string doc = std::string(port.doc) + ": " + type_text(port.type);
+  const std::string value = default_text(port);
+  if (!value.empty()) doc += "; default " + value;
+  switch (port.type.kind) {
+    case PortType::Kind::type_name: {
+      std::vector<std::string_view> names;
+      for (const Type type : types_in(port.type.accepts)) names.push_back(graph::type_name(type));
+      return described(one_of(names), doc);
+    }
+    case PortType::Kind::choice: return described(one_of(port.choices), doc);
+    case PortType::Kind::component: return described({{"type", "integer"}, {"minimum", 0}}, doc);
+    case PortType::Kind::value: break;
+  }
+  return described(value_schema(port.type.accepts), doc);
+}
+
+SchemaJson row_schema(const Row& row) {
+  std::vector<SchemaKey> keys{{"type", true, true}, {"doc", string_schema()}};
+  for (const Port& port : row.ports) keys.push_back({port.name, port_schema(port), port.required(false)});
+  return object_schema(keys);
+}
+
+SchemaJson node_schema() {
+  std::vector<SchemaJson> types, branches;
+  const auto add = [&](std::string_view name, std::string_view doc, SchemaJson schema) {
+    types.push_back({{"const", name}, {"description", doc}});
+    branches.push_back({{"if", {{"properties", {{"type", {{"const", name}}}}}, {"required", {"type"}}}},
+                        {"then", std::move(schema)}});
+  };
+  for (const Row& row : table()) add(row.name, row.doc, row_schema(row));
+  constexpr std::string_view expression = "Arithmetic as text, over ports that it names.";
+  add("expression", expression,
+      {{"required", {"code"}},
+       {"properties",
+        {{"code", {{"description", "such as \"a*a / (pi * t*t)\""}, {"type", "string"}}},
+         {"doc", string_schema()},
+         {"extras", true}}},
+       {"additionalProperties", reference("port")}});
+  types.push_back({{"pattern", "/|\\.json$|^[A-Za-z_][A-Za-z0-9_]*$"},
+                   {"description", "a function document: its library name, or a path that ends in .json"},
+                   {"type", "string"}});
+  return {{"type", "object"},
+          {"required", {"type"}},
+          {"properties", {{"type", {{"anyOf", types}}}, {"doc", string_schema()}, {"extras", true}}},
+          {"additionalProperties", reference("port")},
+          {"allOf", branches}};
+}
+
+SchemaJson input_schema(bool is_parameter) {
+  std::vector<std::string_view> types = graph::all_type_names();
+  if (!is_parameter) types.push_back(graph::any_type_name);
+  return object_schema({{"type", one_of(types), true},
+                        {"min", described(number_schema(), "the least that a component may be")},
+                        {"max", described(number_schema(), "the greatest that a component may be")},
+                        {"value", reference("literal"), is_parameter},
+                        {"doc", string_schema()}});
+}
+
+SchemaJson pass_schema() {
+  return object_schema({{"name", reference("id"), true},
+                        {"cull", one_of({"none", "back", "front"})},
+                        {"depth", one_of({"nearer", "always"})},
+                        {"position", reference("link")},
+                        {"color", reference("link"), true}});
+}
+
+SchemaJson with_one_key(SchemaJson map) {
+  map["minProperties"] = 1;
+  return map;
+}
+
+SchemaJson graph_schema(std::string_view kind, const std::vector<SchemaKey>& rest) {
+  std::vector<SchemaKey> keys = document_keys(kind);
+  keys.insert(keys.end(), rest.begin(), rest.end());
+  keys.push_back({"nodes", map_schema(reference("node"))});
+  return object_schema(keys);
+}
+
+}  // namespace
+
+std::string json_schema() {
+  constexpr std::string_view id = "[A-Za-z_][A-Za-z0-9_]{0,127}";
+  const std::string link = "^" + std::string(id) + "(\\." + std::string(id) + "){0,2}$";
+  SchemaJson definitions;
+  definitions["id"] = {{"type", "string"}, {"pattern", "^" + std::string(id) + "$"}};
+  definitions["link"] = {{"description", "\"node\", \"node.output\" or \"node.xyz\""},
+                         {"anyOf",
+                          {{{"type", "string"}, {"pattern", link}},
+                           object_schema({{"link", {{"type", "string"}, {"pattern", link}}, true}})}}};
+  definitions["literal"] =
+      any_of({boolean_schema(), number_schema(), string_schema(), array_schema(number_schema(), 1, 16)});
+  definitions["port"] = any_of({reference("literal"), reference("link")});
+  definitions["node"] = node_schema();
+  definitions["input"] = input_schema(false);
+  definitions["parameter"] = input_schema(true);
+  definitions["pass"] = pass_schema();
+  const SchemaJson outputs = with_one_key(map_schema(reference("link")));
+  const SchemaJson parameters = map_schema(reference("parameter"));
+  definitions["function"] =
+      graph_schema("function", {{"inputs", map_schema(reference("input"))}, {"outputs", outputs, true}});
+  definitions["effect"] = graph_schema(
+      "effect", {{"parameters", parameters}, {"passes", array_schema(reference("pass"), 1, 64), true}});
+  definitions["post"] = graph_schema("post", {{"parameters", parameters}, {"outputs", outputs, true}});
+  SchemaJson scene = scene_schema(definitions);
+  definitions["scene"] = std::move(scene);
+  std::vector<SchemaJson> kinds;
+  for (const std::string_view kind : {"function", "effect", "post", "scene"})
+    kinds.push_back({{"if", {{"required", {kind}}}}, {"then", reference(kind)}});
+  const SchemaJson schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+                          {"title", "isoshade document"},
+                          {"type", "object"},
+                          {"oneOf",
+                           {{{"required", {"function"}}},
+                            {{"required", {"effect"}}},
+                            {{"required", {"post"}}},
+                            {{"required", {"scene"}}}}},
+                          {"allOf", kinds},
+                          {"definitions", definitions}};
+  return schema.dump(1) + "\n";
+}
+
+}  // namespace isoshade::nodes

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shapes of scene documents, as runtime/scene reads them.
+#include "compiler/nodes/schema_json.h"
+
+namespace isoshade::nodes {
+namespace {
+
+const SchemaJson vec3 = numbers_schema(3);
+const SchemaJson brightness = number_schema(0, 1e6);
+const SchemaJson length = number_schema(1e-6, 1e9);
+const SchemaJson extent = number_schema(1e-6, 1e6);
+constexpr int64_t max_segments = 1024;
+
+SchemaJson camera_schema() {
+  const SchemaKey position{"position", vec3, true}, target{"target", vec3, true}, up{"up", vec3};
+  const SchemaKey near{"near", described(length, "distance of the near plane")};
+  const SchemaKey fov{"fov", described(number_schema(0.01, 179), "the vertical angle of view, in degrees")};
+  const SchemaKey height{"height", described(length, "of the view"), true}, far{"far", length};
+  return variants_schema("type", false,
+                         {{"perspective", {position, target, up, near, fov}},
+                          {"orthographic", {position, target, up, near, height, far}}});
+}
+
+SchemaJson light_schema() {
+  const SchemaKey color{"color", described(vec3, "linear")}, intensity{"intensity", brightness};
+  const SchemaKey direction{"direction", described(vec3, "the way the light travels"), true};
+  const SchemaKey position{"position", vec3, true};
+  const SchemaKey range{"range", described(length, "where the light ends; left out, nowhere")};
+  const SchemaKey inner{"inner_angle",
+                        described(number_schema(0, 89), "degrees up to which it shines in full")};
+  const SchemaKey outer{"outer_angle", described(number_schema(0.01, 90), "degrees where it ends")};
+  return variants_schema("type", true,
+                         {{"directional", {color, intensity, direction}},
+                          {"point", {color, intensity, position, range}},
+                          {"spot", {color, intensity, direction, position, range, inner, outer}}});
+}
+
+SchemaJson mesh_schema() {
+  const SchemaJson kinds = variants_schema(
+      "type", true,
+      {{"sphere",
+        {{"radius", extent},
+         {"segments", integer_schema(3, max_segments)},
+         {"rings", integer_schema(2, max_segments)}}},
+       {"plane", {{"size", numbers_schema(2)}, {"segments", integer_schema(1, max_segments)}}},
+       {"box", {{"size", vec3}}}});
+  return any_of({one_of({"sphere", "plane", "box"}), kinds});
+}
+
+SchemaJson transform_schema() {
+  return object_schema({{"translate", vec3},
+                        {"rotate", described(array_schema(number_schema(), 3, 4),
+                                             "degrees about x, then y, then z; or a quaternion x y z w")},
+                        {"scale", any_of({number_schema(), vec3})}});
+}
+
+SchemaJson repeat_schema() {
+  const SchemaJson list = object_schema(
+      {{"values", {{"type", "array"}, {"items", reference("literal")}, {"minItems", 1}}, true}});
+  const SchemaJson range =
+      object_schema({{"from", reference("literal"), true}, {"to", reference("literal"), true}});
+  return object_schema({{"count", integer_schema(1, 65536), true},
+                        {"step", described(vec3, "from one copy to the next"), true},
+                        {"parameters", map_schema(any_of({list, range}))}});
+}
+
+}  // namespace
+
+SchemaJson scene_schema(SchemaJson& definitions) {
+  definitions["camera"] = camera_schema();
+  definitions["light"] = light_schema();
+  definitions["mesh"] = mesh_schema();
+  definitions["transform"] = transform_schema();
+  definitions["repeat"] = repeat_schema();
+  definitions["object"] =
+      object_schema({{"mesh", reference("mesh"), true},
+                     {"effect", described(string_schema(), "path of the effect's document"), true},
+                     {"transform", reference("transform")},
+                     {"parameters", map_schema(reference("literal"))},
+                     {"repeat", array_schema(reference("repeat"), 0, 3)}});
+  definitions["output"] = object_schema({{"encoding", one_of({"srgb", "linear"})}, {"exposure", brightness}});
+  std::vector<SchemaKey> keys = document_keys("scene");
+  const std::vector<SchemaKey> rest{
+      {"size", described(array_schema(integer_schema(1, 8192), 2, 2), "width and height in pixels")},
+      {"time", described(number_schema(-1e9, 1e9), "what the node `time` gives, in seconds")},
+      {"background", described(numbers_schema(4), "linear RGBA")},
+      {"camera", reference("camera"), true},
+      {"lights", map_schema(reference("light"))},
+      {"objects", map_schema(reference("object"))},
+      {"posts", array_schema(SchemaJson::object(), 0, 0)},
+      {"output", reference("output")}};
+  keys.insert(keys.end(), rest.begin(), rest.end());
+  return object_schema(keys);
+}
+
+}  // namespace isoshade::nodes
