@@ -13,7 +13,7 @@ packages=(
   # drawing graphs
   graphviz
   # testing
-  libgtest-dev libbenchmark-dev glslang-tools clang vulkan-validationlayers
+  libgtest-dev libbenchmark-dev glslang-tools clang vulkan-validationlayers python3-jsonschema
 )
 
 missing=()

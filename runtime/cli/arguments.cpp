@@ -136,6 +136,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(backend_names)
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
+  render_app->add_option("--time", render.time, "Seconds for the node `time` instead of the scene's")
+      ->check(CLI::Range(-1e9, 1e9));
   render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why");
   add_settings(*render_app, render.settings);
   add_choice(*render_app, render.choice);
@@ -197,6 +199,15 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       app.add_subcommand("devices", "List Vulkan devices and what the probe finds on each");
   devices_app->add_option("--device", devices.choice.device, "Only this device");
 
+  NodesArguments nodes;
+  CLI::App* nodes_app = app.add_subcommand("nodes", "List the nodes of the language, or tell all of one");
+  CLI::Option* node = nodes_app->add_option("NAME", nodes.name, "A node: its ports, cost and error");
+  nodes_app->add_flag("--markdown", nodes.markdown, "All nodes as the tables of graphs/README.md")
+      ->excludes(node);
+
+  CLI::App* schema_app =
+      app.add_subcommand("schema", "Print the JSON Schema (draft-07) of all documents, for editors");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -232,6 +243,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (format_app->parsed()) parsed.format = format;
   if (draw_app->parsed()) parsed.draw = draw;
   if (devices_app->parsed()) parsed.devices = devices;
+  if (nodes_app->parsed()) parsed.nodes = nodes;
+  if (schema_app->parsed()) parsed.schema.emplace();
   return parsed;
 }
 

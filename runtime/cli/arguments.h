@@ -43,6 +43,7 @@ struct RenderArguments {
   std::string output;
   std::string backend = "cpu";
   std::optional<Size> size;
+  std::optional<float> time;          ///< instead of the scene's, in seconds
   std::vector<std::string> settings;  ///< name.parameter=value
   bool stats = false;
   BackendChoice choice;
@@ -83,6 +84,13 @@ struct DevicesArguments {
   BackendChoice choice;
 };
 
+struct NodesArguments {
+  std::string name;       ///< empty: all
+  bool markdown = false;  ///< all, as the manual's tables
+};
+
+struct SchemaArguments {};
+
 struct Common {
   bool quiet = false;
   bool json = false;  ///< diagnostics as a JSON array, and nothing else on stderr
@@ -101,6 +109,8 @@ struct Arguments {
   std::optional<FormatArguments> format;
   std::optional<DrawArguments> draw;
   std::optional<DevicesArguments> devices;
+  std::optional<NodesArguments> nodes;
+  std::optional<SchemaArguments> schema;
 };
 
 /// Exactly one subcommand is set, or `exit` is (help, version, a wrong command line).

@@ -27,6 +27,8 @@ int run(int argc, char** argv) {
   if (arguments->eval) return eval(*arguments->eval, arguments->common);
   if (arguments->format) return format(*arguments->format, arguments->common);
   if (arguments->draw) return draw(*arguments->draw, arguments->common);
+  if (arguments->nodes) return nodes(*arguments->nodes, arguments->common);
+  if (arguments->schema) return schema();
   return devices(*arguments->devices, arguments->common);
 }
 

@@ -28,8 +28,9 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
   if (!scene::check_image_path(arguments.output, diagnostics) ||
       !may_write(arguments.output, {arguments.scene}, diagnostics))
     return false;
-  const auto scene = load_scene(arguments.scene, arguments.settings, diagnostics);
+  auto scene = load_scene(arguments.scene, arguments.settings, diagnostics);
   if (!scene) return false;
+  if (arguments.time) scene->time = *arguments.time;
   check::Library library = make_library(common);
   render::Options options;
   if (arguments.size) {

@@ -4,3 +4,10 @@ target_compile_definitions(cli_test PRIVATE
   ISOSHADE_COMMAND="$<TARGET_FILE:isoshade>"
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
   ISOSHADE_VERSION="${PROJECT_VERSION}")
+
+# python3-jsonschema
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME schema_test
+  COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/schema_test.py
+    $<TARGET_FILE:isoshade> ${PROJECT_SOURCE_DIR}/graphs)
+set_tests_properties(schema_test PROPERTIES TIMEOUT 120 LABELS unit)

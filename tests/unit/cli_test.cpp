@@ -213,6 +213,19 @@ TEST_F(Cli, TakesTheInterpreterForTheCpuOnlyWhereNothingIsProven) {
   EXPECT_EQ(with("ISOSHADE_CXX=/nonexistent ", render).exit, 2) << "a compiler was named, and is not there";
 }
 
+TEST_F(Cli, ListsTheNodesAndTellsAllOfOne) {
+  const Outcome all = run("nodes");
+  EXPECT_EQ(all.exit, 0);
+  EXPECT_NE(all.text.find("\n  noise3d "), std::string::npos);
+  const Outcome one = run("nodes sin");
+  EXPECT_EQ(one.exit, 0);
+  EXPECT_NE(one.text.find("\nerror  1.75 ULP\n"), std::string::npos) << one.text;
+  EXPECT_NE(one.text.find(" operations on vector3\n"), std::string::npos) << one.text;
+  const Outcome none = run("nodes nois3d");
+  EXPECT_EQ(none.exit, 2);
+  EXPECT_NE(none.text.find("did you mean \"noise3d\"?"), std::string::npos) << none.text;
+}
+
 TEST_F(Cli, DumpsEveryStage) {
   const std::string command = "compile " + ggx + " -o " + file("out") + " --quiet --dump-after ";
   std::istringstream stages(run(command + "help").text);

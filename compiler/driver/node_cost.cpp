@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/driver/node_cost.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+#include "compiler/check/check.h"
+#include "compiler/functions/library.h"
+#include "compiler/graph/document.h"
+#include "compiler/lower/lower.h"
+#include "compiler/passes/pipeline.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::driver {
+
+namespace {
+
+ir::Module lowered(const nodes::Example& example) {
+  support::Diagnostics diagnostics;
+  const auto source =
+      std::make_shared<support::SourceFile>("example.json", nodes::function_document(std::span(&example, 1)));
+  const auto document = graph::parse_document(source, diagnostics);
+  auto graph = document ? graph::build_graph(*document, diagnostics) : std::nullopt;
+  check::Library library;
+  const auto typed = graph ? check::check(std::move(*graph), library, diagnostics) : nullptr;
+  if (typed == nullptr) support::bug(diagnostics.text());
+  return lower::lower(*typed);
+}
+
+bool is_operation(ir::Opcode op) { return static_cast<int>(op) < ir::primitive_count; }
+
+/// Operations of a block on single numbers, with those of what it calls.
+class Counter {
+ public:
+  explicit Counter(const ir::Module& module) : module_(module) {}
+
+  int64_t of_function(uint32_t index) { return of_block(module_.functions[index], 0); }
+
+ private:
+  int64_t of_block(const ir::Function& function, ir::BlockId block) {
+    int64_t count = 0;
+    for (const ir::InstructionId id : function.blocks[block].instructions) {
+      const ir::Instruction& instruction = function.instructions[id];
+      if (is_operation(instruction.op)) count += function.type(instruction.first_result).width;
+      if (instruction.op == ir::Opcode::call) count += of_function(instruction.imm);
+      for (const ir::BlockId inner : instruction.blocks)
+        if (inner != ir::none) count += of_block(function, inner);
+    }
+    return count;
+  }
+
+  const ir::Module& module_;
+};
+
+struct Accuracy {
+  std::string_view row;
+  double ulp;
+  std::string_view unit;
+};
+
+constexpr Accuracy accuracies[] = {
+#define FUNCTION(name, signature, ulp, domain, reference, unit) {#name, ulp, #unit},
+#include "compiler/functions/functions.def"
+#undef FUNCTION
+};
+
+std::string error_of_row(std::string_view row) {
+  const auto* found = std::ranges::find(accuracies, row, &Accuracy::row);
+  support::check(found != std::end(accuracies), row);
+  return fmt::format("{:g} ULP{}", found->ulp, found->unit == "result" ? "" : " of its terms");
+}
+
+}  // namespace
+
+NodeCost cost_of(const nodes::Example& example) {
+  NodeCost cost;
+  ir::Module module = lowered(example);
+  std::set<std::string> calls;
+  uint32_t entry = module.find("example");
+  for (const ir::Instruction& instruction : module.functions[entry].instructions) {
+    cost.own_operations += is_operation(instruction.op) ? 1 : 0;
+    if (instruction.op != ir::Opcode::call) continue;
+    const std::string& name = module.functions[instruction.imm].library;
+    for (const functions::Variant& variant : functions::variants())
+      if (variant.name == name) calls.emplace(variant.row);
+  }
+  cost.calls.assign(calls.begin(), calls.end());
+  passes::Entries entries{entry};
+  passes::run(passes::optimisations(), module, entries);
+  cost.operations = Counter(module).of_function(entries[0]);
+  return cost;
+}
+
+std::string error_of(const NodeCost& cost) {
+  if (cost.calls.empty()) {
+    if (cost.own_operations == 0) return "exact";
+    return cost.own_operations == 1 ? "0 ULP" : fmt::format("0 ULP in each of {} steps", cost.own_operations);
+  }
+  if (cost.calls.size() == 1 && cost.own_operations == 0) return error_of_row(cost.calls[0]);
+  std::string text;
+  for (const std::string& row : cost.calls)
+    text += (text.empty() ? "" : ", ") + fmt::format("{} in `{}`", error_of_row(row), row);
+  return text + (cost.own_operations > 0 ? ", else 0 in each step" : "");
+}
+
+}  // namespace isoshade::driver

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade nodes, isoshade schema: the node library for readers and for editors.
+#include <algorithm>
+#include <cstdio>
+
+#include "compiler/driver/node_cost.h"
+#include "compiler/nodes/manual.h"
+#include "compiler/nodes/schema.h"
+#include "compiler/support/visible.h"
+#include "runtime/cli/session.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+/// What is measured of a row: as far as it takes them, floats and three of them.
+std::vector<nodes::Example> measured(const nodes::Row& row) {
+  const std::vector<nodes::Example> all = nodes::examples_of(row);
+  std::vector<nodes::Example> chosen;
+  for (const graph::Type wanted : {graph::Type::floating, graph::Type::vector3, graph::Type::color3}) {
+    const auto found = std::ranges::find(all, wanted, &nodes::Example::t);
+    if (found != all.end() && chosen.size() < 2) chosen.push_back(*found);
+  }
+  return chosen.empty() ? std::vector{all.front()} : chosen;
+}
+
+std::string cost_text(const nodes::Row& row) {
+  std::string cost, error;
+  for (const nodes::Example& example : measured(row)) {
+    const driver::NodeCost measured = driver::cost_of(example);
+    if (!cost.empty()) cost += ", ";
+    cost += std::to_string(measured.operations) + " operations";
+    const bool typed = std::ranges::any_of(
+        row.ports, [](const nodes::Port& port) { return port.type.variable == nodes::Variable::t; });
+    if (typed) cost += " on " + std::string(graph::type_name(example.t));
+    if (error.empty()) error = driver::error_of(measured);
+  }
+  return "cost   " + cost + "\nerror  " + error + "\n";
+}
+
+}  // namespace
+
+int nodes(const NodesArguments& arguments, const Common& common) {
+  if (arguments.name.empty()) {
+    const std::string text = arguments.markdown ? nodes::table_markdown() : nodes::table_text();
+    std::fputs(text.c_str(), stdout);
+    return success;
+  }
+  const nodes::Row* row = nodes::find(arguments.name);
+  if (row == nullptr) {
+    support::Diagnostics diagnostics = make_diagnostics(common);
+    std::vector<std::string_view> names;
+    for (const nodes::Row& known : nodes::table()) names.push_back(known.name);
+    const std::string_view near = support::nearest(arguments.name, names);
+    diagnostics.report(support::Id::unknown_node, "the node library has no " + support::quote(arguments.name))
+        .suggest(near.empty() ? "`isoshade nodes` lists all" : "did you mean " + support::quote(near) + "?");
+    flush(diagnostics, common);
+    return failure;
+  }
+  std::string text = nodes::row_text(*row);
+  if (!row->belongs_to_effects()) text += cost_text(*row);
+  std::fputs(text.c_str(), stdout);
+  return success;
+}
+
+int schema() {
+  std::fputs(nodes::json_schema().c_str(), stdout);
+  return success;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the node table makes: that the tables of graphs/README.md are what `isoshade nodes --markdown` prints, and
+of the JSON Schema that the shipped one is what `isoshade schema` prints, that every shipped document is valid
+by it, and that documents with one thing wrong are not.
+
+schema_test.py ISOSHADE GRAPHS_FOLDER            tests
+schema_test.py ISOSHADE GRAPHS_FOLDER --update   writes the tables and the schema instead
+"""
+
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import jsonschema
+
+ISOSHADE, GRAPHS = sys.argv[1], pathlib.Path(sys.argv[2])
+MANUAL = GRAPHS / "README.md"
+SHIPPED = GRAPHS / "schema" / "isoshade.schema.json"
+
+
+def printed(*arguments):
+    return subprocess.run([ISOSHADE, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def manual_parts():
+    """The manual before its tables, the tables, and what follows."""
+    command = "isoshade nodes --markdown"
+    begin, end = f"<!-- begin of `{command}` -->\n\n", f"\n<!-- end of `{command}` -->"
+    before, rest = MANUAL.read_text().split(begin)
+    tables, after = rest.split(end)
+    return before + begin, tables, end + after
+
+
+def update():
+    SHIPPED.parent.mkdir(exist_ok=True)
+    SHIPPED.write_text(printed("schema"))
+    before, _, after = manual_parts()
+    MANUAL.write_text(before + printed("nodes", "--markdown") + after)
+
+
+FUNCTION = {
+    "isoshade": 1,
+    "function": "f",
+    "inputs": {"x": {"type": "float", "min": 0, "value": 1}, "c": {"type": "any"}},
+    "nodes": {
+        "a": {"type": "add", "in1": "x", "in2": [1, 2, 3]},
+        "s": {"type": "convert", "in": "a", "to": "color3"},
+        "k": {"type": "brdf/ggx_d", "alpha": "x", "n_dot_h": 1},
+        "e": {"type": "expression", "code": "x * y", "x": "x", "y": 2},
+        "m": {"type": "transpose", "in": [1, 2, 3, 4, 5, 6, 7, 8, 9]},
+    },
+    "outputs": {"out": "s.xyz"},
+}
+EFFECT = {
+    "isoshade": 1,
+    "effect": "e",
+    "parameters": {"p": {"type": "color3", "value": [1, 1, 1]}},
+    "nodes": {"n": {"type": "normal", "space": "view"}},
+    "passes": [{"name": "base", "color": {"link": "n"}}],
+}
+SCENE = {
+    "isoshade": 1,
+    "scene": "s",
+    "time": 2,
+    "camera": {"position": [0, 0, 1], "target": [0, 0, 0], "fov": 30},
+    "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]}},
+    "objects": {"o": {"mesh": {"type": "sphere", "radius": 2}, "effect": "e.json", "parameters": {"p": 1},
+                      "repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"q": {"values": [1, 2]}}}]}},
+}
+
+# A document, the place of a value in it, and what is put there instead.
+BROKEN = [
+    (FUNCTION, "isoshade", 2),
+    (FUNCTION, "function", "1f"),
+    (FUNCTION, "effect", "too"),
+    (FUNCTION, "outputs", {}),
+    (FUNCTION, "inputs/x/type", "flaot"),
+    (FUNCTION, "inputs/x/least", 0),
+    (FUNCTION, "inputs/1x", {"type": "float"}),
+    (FUNCTION, "nodes/a/in3", 1),
+    (FUNCTION, "nodes/a/in1", None),
+    (FUNCTION, "nodes/a/in1", [1, 2, 3, 4, 5]),
+    (FUNCTION, "nodes/a/in1", "x..y"),
+    (FUNCTION, "nodes/a/in1", True),
+    (FUNCTION, "nodes/s/to", "colour3"),
+    (FUNCTION, "nodes/s/in", ...),
+    (FUNCTION, "nodes/a/type", ...),
+    (FUNCTION, "nodes/e/code", ...),
+    (FUNCTION, "nodes/m/in", [1, 2, 3]),
+    (FUNCTION, "outputs/out", 1),
+    (EFFECT, "parameters/p/value", ...),
+    (EFFECT, "parameters/p/type", "any"),
+    (EFFECT, "nodes/n/space", "wrold"),
+    (EFFECT, "passes", []),
+    (EFFECT, "passes/0/color", ...),
+    (EFFECT, "passes/0/cull", "left"),
+    (SCENE, "camera", ...),
+    (SCENE, "camera/type", "fisheye"),
+    (SCENE, "camera/height", 3),
+    (SCENE, "camera/fov", 180),
+    (SCENE, "lights/sun/direction", ...),
+    (SCENE, "lights/sun/range", 3),
+    (SCENE, "objects/o/mesh", "teapot"),
+    (SCENE, "objects/o/mesh/rings", 1),
+    (SCENE, "objects/o/effect", ...),
+    (SCENE, "objects/o/repeat/0/count", 0),
+    (SCENE, "objects/o/repeat/0/parameters/q", {"from": 1}),
+    (SCENE, "size", [0, 10]),
+    (SCENE, "sizes", [10, 10]),
+]
+
+
+def changed(document, path, value):
+    """A copy with the value at the path, or without the key for `...`."""
+    document = copy.deepcopy(document)
+    *parents, last = [int(step) if step.isdigit() else step for step in path.split("/")]
+    target = document
+    for step in parents:
+        target = target[step]
+    if value is ...:
+        del target[last]
+    else:
+        target[last] = value
+    return document
+
+
+class Schema(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.text = printed("schema")
+        schema = json.loads(cls.text)
+        jsonschema.Draft7Validator.check_schema(schema)
+        cls.validator = jsonschema.Draft7Validator(schema)
+
+    def errors(self, document):
+        return [f"{'/'.join(map(str, e.absolute_path))}: {e.message}" for e in self.validator.iter_errors(document)]
+
+    def test_the_shipped_schema_is_current(self):
+        self.assertTrue(SHIPPED.read_text() == self.text, "update it: schema_test.py ... --update")
+
+    def test_every_shipped_document_is_valid(self):
+        documents = [p for p in GRAPHS.rglob("*.json") if p.parent.name != "schema"]
+        self.assertGreater(len(documents), 10)
+        for path in documents:
+            self.assertEqual(self.errors(json.loads(path.read_text())), [], path)
+
+    def test_documents_of_every_kind_are_valid(self):
+        for document in FUNCTION, EFFECT, SCENE:
+            self.assertEqual(self.errors(document), [])
+
+    def test_documents_with_one_thing_wrong_are_not(self):
+        for document, path, value in BROKEN:
+            self.assertNotEqual(self.errors(changed(document, path, value)), [], f"{path} = {value}")
+
+
+class Manual(unittest.TestCase):
+    def test_the_tables_are_current(self):
+        self.assertTrue(manual_parts()[1] == printed("nodes", "--markdown"), "update them: schema_test.py ... --update")
+
+
+if __name__ == "__main__":
+    if "--update" in sys.argv:
+        update()
+    else:
+        unittest.main(argv=sys.argv[:1])
