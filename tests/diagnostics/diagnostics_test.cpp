@@ -107,6 +107,9 @@ TEST_P(DiagnosticOf, IsWhatTheDocumentGets) {
   const std::string& id = GetParam();
   ASSERT_NE(command_for(id), "") << "no document for " << id << ": write tests/diagnostics/" << id
                                  << ".json that is wrong in this way, then run diagnostics_test --update";
+#ifndef ISOSHADE_VULKAN
+  if (id == support::id_text(support::Id::no_device)) GTEST_SKIP() << "without Vulkan the message is another";
+#endif
   int exit = 0;
   const std::string text = message_of(id, exit);
   EXPECT_NE(text.find("[" + id + "]"), std::string::npos) << text;

@@ -7,7 +7,8 @@ isoshade_test(scenes_test
   SOURCES equivalence/scenes_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
   LABEL equivalence
-  TIMEOUT 900)
+  TIMEOUT 900
+  DEVICES)
 target_compile_definitions(scenes_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
 isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
@@ -17,5 +18,6 @@ isoshade_test(random_programs_test
   SOURCES equivalence/random_programs_test.cpp conformance/inputs.cpp unit/random_module.cpp
   LINKS isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
   LABEL equivalence
-  TIMEOUT 7200)
+  TIMEOUT 7200
+  DEVICES)
 target_compile_definitions(random_programs_test PRIVATE $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)

@@ -5,10 +5,10 @@ isoshade_test(emit_spirv_test
 if(ISOSHADE_VULKAN)
   isoshade_test(vulkan_test
     SOURCES
-      unit/driver_leaks.cpp
       unit/vulkan_backend_test.cpp
       unit/vulkan_device_test.cpp
       unit/vulkan_probe_test.cpp
     LINKS isoshade_vulkan
-    TIMEOUT 120)
+    TIMEOUT 120
+    DEVICES)
 endif()
