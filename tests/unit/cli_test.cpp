@@ -159,7 +159,8 @@ TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
 TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("compile, render, verify, eval, fmt, draw, devices"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("compile, render, verify, eval, fmt, draw, devices"), std::string::npos)
+      << outcome.text;
 }
 
 TEST_F(Cli, NeverWritesOverWhatItReads) {
@@ -234,6 +235,78 @@ TEST_F(Cli, DumpsEveryStage) {
     EXPECT_NE(run(command + stage).text.find("# after " + stage + "\n"), std::string::npos) << stage;
   EXPECT_GE(count, 10);
   EXPECT_EQ(run(command + "nowhere").exit, 2);
+}
+
+TEST_F(Cli, FormatsDocumentsInPlaceAndChecksThem) {
+  const std::string path = file("f.json", "{\"isoshade\":1,  \"function\":\"f\"}");
+  const Outcome listed = run("fmt --check " + path);
+  EXPECT_EQ(listed.exit, 1);
+  EXPECT_EQ(listed.text, path + "\n");
+  EXPECT_EQ(run("fmt " + path).exit, 0);
+  EXPECT_EQ(read(path), "{\n  \"isoshade\": 1,\n  \"function\": \"f\"\n}\n");
+  EXPECT_EQ(run("fmt --check " + path).exit, 0);
+  EXPECT_EQ(run("fmt - < " + path).text, read(path));
+  const std::string broken = file("broken.json", "{\"a\": ");
+  EXPECT_EQ(run("fmt " + broken).exit, 2);
+  EXPECT_EQ(read(broken), "{\"a\": ");
+}
+
+TEST_F(Cli, DrawsGraphsAsSvgPngAndDot) {
+  if (std::system("command -v dot >/dev/null") != 0) GTEST_SKIP() << "graphviz is not installed";
+  for (const std::string name : {"g.svg", "g.png", "g.dot"}) {
+    const Outcome outcome = run("draw " + ggx + " -o " + file(name));
+    EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  }
+  EXPECT_NE(read(folder_ / "g.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(read(folder_ / "g.png").substr(1, 3), "PNG");
+  EXPECT_EQ(read(folder_ / "g.dot").substr(0, 7), "digraph");
+  EXPECT_EQ(run("draw " + ggx + " -o " + file("g.pdf")).exit, 2);
+}
+
+TEST_F(Cli, TellsDiagnosticsAsData) {
+  const std::string path =
+      file("f.json", R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "add", "in1": "y", "in2": 1}}, "outputs": {"out": "n"}})");
+  const Outcome outcome = run("compile " + path + " -o " + file("out") + " --diagnostics json");
+  EXPECT_EQ(outcome.exit, 2);
+  for (const std::string part : {R"("id": "unknown-node")", R"("line": 2)", R"("column": 38)",
+                                 R"("pointer": "/nodes/n/in1")", R"("severity": "error")"})
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
+  EXPECT_EQ(run("compile " + ggx + " -o " + file("out") + " --diagnostics json").text, "[]\n");
+}
+
+TEST_F(Cli, TakesWarningsAsAsked) {
+  const std::string path =
+      file("f.json", R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
+"nodes": {"lost": {"type": "add", "in1": "x", "in2": 1}}, "outputs": {"out": "x"}})");
+  const std::string command = "compile " + path + " -q -o " + file("out");
+  const Outcome warned = run(command);
+  EXPECT_EQ(warned.exit, 0);
+  EXPECT_NE(warned.text.find("warning[unused-node]"), std::string::npos) << warned.text;
+  const Outcome refused = run(command + " -Werror");
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.text.find("error[unused-node]"), std::string::npos) << refused.text;
+  EXPECT_EQ(run(command + " -Werror -Wno-unused-node").text, "");
+  const Outcome unknown = run(command + " -Wno-such");
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_NE(unknown.text.find("unused-node"), std::string::npos) << unknown.text;
+}
+
+TEST_F(Cli, FilesOutsideOfTheCollectionAreRefusedUnlessAllowed) {
+  fs::create_directories(folder_ / "a");
+  fs::create_directories(folder_ / "b");
+  file("a/part.json", R"({"isoshade": 1, "function": "part", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "sin", "in": "x"}}, "outputs": {"out": "n"}})");
+  const std::string user =
+      file("b/user.json", R"({"isoshade": 1, "function": "user", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "../a/part.json", "x": "x"}}, "outputs": {"out": "n"}})");
+  const std::string command = "compile " + user + " -q -o " + file("out");
+  const Outcome refused = run(command);
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.text.find("error[outside-reference]"), std::string::npos) << refused.text;
+  EXPECT_EQ(run(command + " --allow-outside").exit, 0);
+  file("isoshade.root", "here");
+  EXPECT_EQ(run(command).exit, 0);
 }
 
 }  // namespace
