@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "compiler/graph/files.h"
 #include "compiler/graph/reader.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/output_file.h"
@@ -71,10 +72,7 @@ std::string size_text(const Golden& golden) {
 std::string golden_key(const std::string& scene_path, const std::string& golden_path) {
   namespace fs = std::filesystem;
   const auto folder_of = [](const std::string& path) {
-    std::error_code error;
-    const fs::path folder = fs::path(path).parent_path();
-    const fs::path canonical = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-    return error ? fs::absolute(folder, error).lexically_normal() : canonical;
+    return fs::path(graph::canonical_path(fs::path(path).parent_path().string()));
   };
   const fs::path folder = folder_of(scene_path).lexically_relative(folder_of(golden_path));
   return (folder / fs::path(scene_path).filename()).lexically_normal().generic_string();

@@ -269,7 +269,7 @@ TEST_F(Cli, TellsDiagnosticsAsData) {
 "nodes": {"n": {"type": "add", "in1": "y", "in2": 1}}, "outputs": {"out": "n"}})");
   const Outcome outcome = run("compile " + path + " -o " + file("out") + " --diagnostics json");
   EXPECT_EQ(outcome.exit, 2);
-  for (const std::string part : {R"("id": "unknown-node")", R"("line": 2)", R"("column": 38)",
+  for (const std::string part : {R"("id": "unknown-node")", R"("line": 2)", R"("column": 39)",
                                  R"("pointer": "/nodes/n/in1")", R"("severity": "error")"})
     EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
   EXPECT_EQ(run("compile " + ggx + " -o " + file("out") + " --diagnostics json").text, "[]\n");
