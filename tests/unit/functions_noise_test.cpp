@@ -86,15 +86,16 @@ TEST(Noise, TakesWhatHasNoCellForZero) {
 TEST(Noise, HasChannelsOfWhichTheFirstIsTheScalar) {
   const lanes::FpGuard guard;
   Places places;
+  int different = 0;  // by chance channels can be the same somewhere
   for (int i = 0; i < 100; ++i) {
     const Vec2 p = places.plane();
     const Vec3 q = places.space();
     const Vec3 plane = noise2d_vector3(p), space = noise3d_vector3(q);
     ASSERT_EQ(plane[0], noise2d(p));
     ASSERT_EQ(space[0], noise3d(q));
-    ASSERT_NE(plane[1], plane[2]);
-    ASSERT_NE(space[1], space[2]);
+    different += (plane[1] != plane[2]) + (space[1] != space[2]);
   }
+  EXPECT_GT(different, 150);
 }
 
 TEST(Fractal, OfOneOctaveIsNoise) {
