@@ -34,7 +34,9 @@ inline constexpr int texcoord = 6;  ///< u v
 inline constexpr int tangent =
     8;                            ///< x y z, unit, object space; and 1, or -1 where the bitangent is -(n x t)
 inline constexpr int color = 12;  ///< r g b a, linear
-inline constexpr int stride = 16;
+inline constexpr int outline_normal =
+    16;  ///< x y z, unit, object space: the way out of the surface, one for all vertices at a position
+inline constexpr int stride = 19;
 }  // namespace vertex_word
 
 /// triangles: one record of 64 bytes. Wound so that the doubled area, y down, is positive.

@@ -36,15 +36,28 @@ SchemaJson light_schema() {
 }
 
 SchemaJson mesh_schema() {
+  const SchemaJson around = integer_schema(3, max_segments), along = integer_schema(1, max_segments);
+  const SchemaKey radius{"radius", extent}, height{"height", extent}, segments{"segments", around};
+  const SchemaKey rings{"rings", described(along, "along the side")};
+  const SchemaKey caps{"caps", described(boolean_schema(), "whether its ends are closed")};
+  const SchemaKey smooth{"smooth", described(boolean_schema(), "no edge runs along the circle")};
+  const SchemaJson at = described(numbers_schema(2), "radius, height");
+  const SchemaJson point = any_of({at, object_schema({{"at", at, true}, smooth})});
   const SchemaJson kinds = variants_schema(
       "type", true,
-      {{"sphere",
-        {{"radius", extent},
-         {"segments", integer_schema(3, max_segments)},
-         {"rings", integer_schema(2, max_segments)}}},
-       {"plane", {{"size", numbers_schema(2)}, {"segments", integer_schema(1, max_segments)}}},
-       {"box", {{"size", vec3}}}});
-  return any_of({one_of({"sphere", "plane", "box"}), kinds});
+      {{"sphere", {radius, segments, {"rings", integer_schema(2, max_segments)}}},
+       {"plane", {{"size", numbers_schema(2)}, {"segments", along}}},
+       {"box", {{"size", vec3}}},
+       {"icosphere", {radius, {"subdivisions", integer_schema(0, 8)}}},
+       {"cylinder", {radius, height, segments, rings, caps}},
+       {"cone", {radius, height, segments, rings, caps}},
+       {"torus",
+        {radius, {"tube", described(extent, "the radius of the tube")}, segments, {"rings", around}}},
+       {"lathe",
+        {{"profile", described(array_schema(point, 2, 256), "from the bottom up, seen from outside"), true},
+         smooth,
+         segments}}});
+  return any_of({one_of({"sphere", "plane", "box", "icosphere", "cylinder", "cone", "torus"}), kinds});
 }
 
 SchemaJson transform_schema() {

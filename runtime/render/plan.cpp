@@ -52,6 +52,10 @@ backends::Cull cull_of(graph::Cull cull, bool mirrored) {
   return backends::Cull::none;
 }
 
+/// A MeshShape, in an order.
+using MeshKey =
+    std::tuple<scene::MeshKind, float, float, float, int, int, bool, std::vector<scene::ProfilePoint>>;
+
 class Planner {
  public:
   Planner(const Scene& scene, const Options& options, Diagnostics& diagnostics)
@@ -68,8 +72,8 @@ class Planner {
   support::Source read_effect(const scene::Object& object);
   uint32_t add_program(const driver::Program& program);
   bool resolve_parameters();
-  bool check_limits();
-  void make_meshes();
+  bool make_meshes();
+  const StoredMesh& make_mesh(const Object& object);
   void place_object(size_t o);
   void store_frame();
   void place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
@@ -84,6 +88,7 @@ class Planner {
   std::vector<std::vector<PassPrograms>> programs_of_effect_;
   std::map<std::string, uint32_t> program_by_text_;
   std::vector<ObjectParameters> parameters_;
+  std::map<MeshKey, size_t> mesh_by_shape_;
   std::vector<size_t> mesh_of_object_;
 };
 
@@ -149,7 +154,8 @@ bool Planner::resolve_parameters() {
   return good;
 }
 
-bool Planner::check_limits() {
+/// One object after the other, so that no more is made than fits the limits.
+bool Planner::make_meshes() {
   struct Count {
     std::string_view what;
     int64_t limit;
@@ -160,10 +166,11 @@ bool Planner::check_limits() {
   Count words{"words of object records", max_object_words};
   for (size_t o = 0; o < scene_.objects.size(); ++o) {
     const Object& object = scene_.objects[o];
+    const StoredMesh& mesh = make_mesh(object);
     const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
     const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
-    vertices.total += draws * scene::vertex_count(object.mesh);
-    triangles.total += draws * scene::triangle_count(object.mesh);
+    vertices.total += draws * mesh.vertex_count;
+    triangles.total += draws * static_cast<int64_t>(mesh.indices.size() / 3);
     words.total += draws * (lower::object_word::parameters + parameters_[o].word_count());
     for (const Count* count : {&vertices, &triangles, &words}) {
       if (count->total <= count->limit) continue;
@@ -178,26 +185,25 @@ bool Planner::check_limits() {
   return true;
 }
 
-void Planner::make_meshes() {
-  using Key = std::tuple<scene::MeshKind, float, float, float, int, int>;
-  std::map<Key, size_t> known;
+/// The mesh of the next object: that of an earlier one of the same shape, or a new one.
+const StoredMesh& Planner::make_mesh(const Object& object) {
+  const scene::MeshShape& shape = object.mesh;
+  const auto [found, is_new] =
+      mesh_by_shape_.try_emplace(MeshKey{shape.kind, shape.size.x, shape.size.y, shape.size.z, shape.segments,
+                                         shape.rings, shape.caps, shape.profile},
+                                 plan_.meshes.size());
+  mesh_of_object_.push_back(found->second);
+  if (!is_new) return plan_.meshes[found->second];
   std::vector<float>& vertices = plan_.frame.vertices;
-  for (const Object& object : scene_.objects) {
-    const scene::MeshShape& shape = object.mesh;
-    const Key key{shape.kind, shape.size.x, shape.size.y, shape.size.z, shape.segments, shape.rings};
-    const auto [found, is_new] = known.try_emplace(key, plan_.meshes.size());
-    mesh_of_object_.push_back(found->second);
-    if (!is_new) continue;
-    scene::Mesh mesh = scene::make_mesh(shape);
-    StoredMesh stored;
-    stored.first_vertex = static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride);
-    stored.vertex_count = static_cast<uint32_t>(mesh.vertices.size() / lower::vertex_word::stride);
-    stored.indices = std::move(mesh.indices);
-    stored.low = mesh.low;
-    stored.high = mesh.high;
-    vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    plan_.meshes.push_back(std::move(stored));
-  }
+  scene::Mesh mesh = scene::make_mesh(shape);
+  StoredMesh& stored = plan_.meshes.emplace_back();
+  stored.first_vertex = static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride);
+  stored.vertex_count = static_cast<uint32_t>(mesh.vertices.size() / lower::vertex_word::stride);
+  stored.indices = std::move(mesh.indices);
+  stored.low = mesh.low;
+  stored.high = mesh.high;
+  vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  return stored;
 }
 
 void Planner::place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
@@ -276,12 +282,11 @@ std::optional<Plan> Planner::plan() {
   Clock clock;
   if (!compile_effects()) return std::nullopt;
   plan_.stats.compile_seconds = clock.lap();
-  if (!resolve_parameters() || !check_limits()) return std::nullopt;
+  if (!resolve_parameters() || !make_meshes()) return std::nullopt;
 
   backends::Frame& frame = plan_.frame;
   frame.width = options_.width > 0 ? options_.width : scene_.width;
   frame.height = options_.height > 0 ? options_.height : scene_.height;
-  make_meshes();
   {
     const lanes::FpGuard guard;
     view_ = scene::make_view(scene_.camera, frame.width, frame.height);

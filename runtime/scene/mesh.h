@@ -2,40 +2,57 @@
 // Meshes made by rule. One shape is one set of bits on every machine.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
 namespace isoshade::scene {
 
-enum class MeshKind : uint8_t { sphere, plane, box };
+enum class MeshKind : uint8_t { sphere, plane, box, icosphere, cylinder, cone, torus, lathe };
 
-inline constexpr int64_t max_segments = 1024;  ///< of a mesh, along each direction
+inline constexpr int64_t max_segments = 1024;      ///< of a mesh, along each direction
+inline constexpr int64_t max_subdivisions = 8;     ///< of an icosphere
+inline constexpr size_t max_profile_points = 256;  ///< of a lathe
+
+/// A point of the outline that a lathe turns: a circle around the y axis.
+struct ProfilePoint {
+  float radius = 0, height = 0;  ///< the radius is 0 only at an end
+  bool smooth = true;            ///< no edge runs along the circle
+  auto operator<=>(const ProfilePoint&) const = default;
+};
 
 /// What a mesh is made from. Equal shapes give equal meshes.
 struct MeshShape {
   MeshKind kind = MeshKind::sphere;
-  glm::vec3 size{1, 1, 1};  ///< sphere: the radius in each component; plane: x and z; box: x, y and z
-  int segments = 64;        ///< sphere: around the axis; plane: along x and along z
-  int rings = 32;           ///< sphere: from pole to pole
+  /// (Ico)sphere: the radius in each component; plane: x and z; box: x, y and z; cylinder, cone: the radius and
+  /// the height; torus: the radius of the circle in the tube's middle, and that of the tube, which is less.
+  glm::vec3 size{1, 1, 1};
+  int segments = 64;  ///< around the axis; plane: along x and along z
+  int rings = 32;     ///< sphere: from pole to pole; cylinder, cone: along the side; torus: around the tube;
+                      ///< icosphere: how often its triangles are cut into four
+  bool caps = true;   ///< cylinder, cone: whether their ends are closed
+  std::vector<ProfilePoint> profile{};  ///< lathe: at least 2 points, each apart from the one before
   bool operator==(const MeshShape&) const = default;
 };
 
-/// Vertices are records of lower::vertex_word, indices triples. Seen from outside (a plane: from above),
-/// triangles run counter-clockwise; none is degenerate.
+/// Vertices are records of lower::vertex_word, indices triples. Seen from outside (a plane: from above; a
+/// lathe: from the right of the profile's way), triangles run counter-clockwise; none is degenerate.
 struct Mesh {
   std::vector<float> vertices;
   std::vector<uint32_t> indices;
   glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the box around all positions
 };
 
-/// What make_mesh will make of a shape, without making it.
-int64_t vertex_count(const MeshShape& shape);
-int64_t triangle_count(const MeshShape& shape);
-
-/// All are centred on the origin. Sphere: poles at +y (v = 0) and -y, the seam of u at -z. Plane: in y = 0,
-/// facing +y, u along +x and v along +z. Box: each face of its own 4 vertices. Tangents run along u, normal x
-/// tangent against v; vertices are white.
+/// All but the lathe are centred on the origin; what turns does so about y. Longitude runs from -z over -x, +z
+/// and +x, and u with it; v runs down.
+///
+/// Sphere: poles at +y (v = 0) and -y. Icosphere: the same texture on triangles of nearly one size; u passes 1
+/// in those that cross the seam. Plane: in y = 0, facing +y, u along +x and v along +z. Box: each face of its
+/// own 4 vertices. Cylinder, cone (its tip at +y): v is 0 to 1 on the side and on each cap, from its middle at
+/// the top, to its middle at the bottom. Torus: v runs around the tube from the inside over the top. Lathe: v
+/// is the part of the profile's length that is left. Tangents run along u, normal x tangent against v; vertices
+/// are white.
 Mesh make_mesh(const MeshShape& shape);
 
 }  // namespace isoshade::scene

@@ -207,40 +207,6 @@ std::optional<Literal> parse_literal(const Document& document, const Json& json,
   return std::nullopt;
 }
 
-MeshShape parse_mesh(const Document& document, const Json& json, Diagnostics& diagnostics) {
-  static const std::vector<std::string_view> kinds = {"sphere", "plane", "box"};
-  constexpr Range sizes{1e-6, 1e6};
-  MeshShape shape;
-  if (json.kind == Json::Kind::string) {
-    const auto kind = std::find(kinds.begin(), kinds.end(), json.string);
-    shape.kind = static_cast<MeshKind>(kind - kinds.begin());
-    if (kind == kinds.end()) {
-      diagnostics.report_unknown(Id::out_of_range, document.span(json),
-                                 "no mesh is called " + quote(json.string), json.string, kinds);
-    }
-    if (shape.kind == MeshKind::plane) shape.segments = 1;
-    return shape;
-  }
-  ObjectReader reader(document, json, "a mesh", diagnostics);
-  shape.kind = static_cast<MeshKind>(reader.choice("type", kinds));
-  switch (shape.kind) {
-    case MeshKind::sphere:
-      shape.size = glm::vec3(reader.number("radius", sizes, 1.0f));
-      shape.segments = static_cast<int>(reader.integer("segments", {3, max_segments}, shape.segments));
-      shape.rings = static_cast<int>(reader.integer("rings", {2, max_segments}, shape.rings));
-      break;
-    case MeshKind::plane: {
-      const auto size = reader.numbers<2>("size", sizes, {{1, 1}});
-      shape.size = {size[0], 0, size[1]};
-      shape.segments = static_cast<int>(reader.integer("segments", {1, max_segments}, 1));
-      break;
-    }
-    case MeshKind::box: shape.size = to_vec3(reader.numbers<3>("size", sizes, {{1, 1, 1}})); break;
-  }
-  reader.finish();
-  return shape;
-}
-
 Object parse_object(const Document& document, const Member& member, Diagnostics& diagnostics) {
   Object object;
   object.name = member.key;

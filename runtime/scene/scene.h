@@ -123,6 +123,12 @@ struct Scene {
 ///      "objects": {"ball": {
 ///        "mesh": "sphere", or {"type": "sphere", "radius": 1, "segments": 64, "rings": 32},
 ///                {"type": "plane", "size": [1, 1], "segments": 1}, {"type": "box", "size": [1, 1, 1]},
+///                {"type": "icosphere", "radius": 1, "subdivisions": 4},
+///                {"type": "cylinder" or "cone", "radius": 1, "height": 2, "segments": 64, "rings": 1,
+///                 "caps": true},
+///                {"type": "torus", "radius": 1, "tube": 0.25, "segments": 64, "rings": 32},
+///                {"type": "lathe", "smooth": true, "segments": 64,
+///                 "profile": [[radius, height], {"at": [radius, height], "smooth": false}]},
 ///        "effect": "path beside the scene",
 ///        "transform": {"translate": [..], "rotate": [degrees about x, y, z] or a quaternion,
 ///                      "scale": 1 or [..]},

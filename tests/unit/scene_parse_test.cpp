@@ -105,6 +105,55 @@ TEST(ParseScene, SuggestsTheKeyThatWasMeant) {
   EXPECT_TRUE(parse_members(R"("objects": {"b": {"mesh": "shpere", "effect": "e"}})").fails_with("shpere"));
 }
 
+TEST(ParseScene, KnowsEveryMesh) {
+  const auto mesh_of = [](const std::string& mesh) {
+    const ParsedScene parsed = parse_members(R"("objects": {"b": {"mesh": )" + mesh + R"(, "effect": "e"}})");
+    EXPECT_TRUE(parsed.scene) << mesh;
+    return parsed.scene ? parsed.scene->objects[0].mesh : scene::MeshShape{};
+  };
+  using scene::MeshKind;
+  for (const char* name : {"sphere", "plane", "box", "icosphere", "cylinder", "cone", "torus"}) {
+    const std::string word = std::string("\"") + name + "\"";
+    EXPECT_EQ(mesh_of(word), mesh_of(R"({"type": )" + word + "}")) << name;
+  }
+  EXPECT_EQ(mesh_of(R"({"type": "icosphere", "radius": 2, "subdivisions": 3})"),
+            (scene::MeshShape{MeshKind::icosphere, {2, 2, 2}, 1, 3}));
+  EXPECT_EQ(
+      mesh_of(R"({"type": "cylinder", "radius": 2, "height": 3, "segments": 5, "rings": 4, "caps": false})"),
+      (scene::MeshShape{MeshKind::cylinder, {2, 3, 1}, 5, 4, false}));
+  EXPECT_EQ(mesh_of(R"({"type": "cone", "height": 3})"),
+            (scene::MeshShape{MeshKind::cone, {1, 3, 1}, 64, 1}));
+  EXPECT_EQ(mesh_of(R"({"type": "torus", "tube": 0.5, "rings": 7})"),
+            (scene::MeshShape{MeshKind::torus, {1, 0.5f, 1}, 64, 7}));
+  EXPECT_EQ(mesh_of(R"({"type": "lathe", "smooth": false, "segments": 9,
+                        "profile": [[0, -1], {"at": [1, 0], "smooth": true}, [0.5, 1]]})")
+                .profile,
+            (std::vector<scene::ProfilePoint>{{0, -1, false}, {1, 0, true}, {0.5f, 1, false}}));
+}
+
+TEST(ParseScene, RefusesMeshesWithoutASurface) {
+  const auto fails_with = [](const std::string& mesh, const char* text) {
+    return parse_members(R"("objects": {"b": {"mesh": )" + mesh + R"(, "effect": "e"}})").fails_with(text);
+  };
+  const auto profile_fails_with = [&](const std::string& points, const char* text) {
+    return fails_with(R"({"type": "lathe", "profile": [)" + points + "]}", text);
+  };
+  EXPECT_TRUE(fails_with(R"("lathe")", "needs a profile"));
+  EXPECT_TRUE(fails_with(R"({"type": "lathe"})", "missing-key"));
+  EXPECT_TRUE(fails_with(R"({"type": "torus", "tube": 1})", "out-of-range"));
+  EXPECT_TRUE(fails_with(R"({"type": "icosphere", "subdivisions": 9})", "out-of-range"));
+  EXPECT_TRUE(fails_with(R"({"type": "cone", "radius": 0})", "out-of-range"));
+  EXPECT_TRUE(profile_fails_with("[1, 0]", "2 to 256 points"));
+  EXPECT_TRUE(profile_fails_with("[0, 0], [0, 1]", "along the axis"));
+  EXPECT_TRUE(profile_fails_with("[1, 0], [1, 0], [2, 0]", "coincide"));
+  EXPECT_TRUE(profile_fails_with("[1, 0], [0, 1], [1, 2]", "only at its ends"));
+  EXPECT_TRUE(profile_fails_with("[-1, 0], [1, 1]", "out-of-range"));
+  EXPECT_TRUE(profile_fails_with("[1e-9, 0], [1, 1]", "out-of-range"));
+  EXPECT_TRUE(profile_fails_with("[1, 0, 2], [1, 1]", "a point of a profile"));
+  EXPECT_TRUE(profile_fails_with("[1, 0], \"x\"", "a point of a profile"));
+  EXPECT_TRUE(profile_fails_with("[1, 0], {\"smooth\": true}", "missing-key"));
+}
+
 TEST(ParseScene, ReportsSeveralErrorsWithTheirPlaces) {
   const ParsedScene parsed =
       parse_members("\"size\": [0, 1],\n\"background\": [1],\n\"lights\": {\"1x\": {}}");
