@@ -8,6 +8,7 @@ find_package(CLI11 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(tinyexr REQUIRED)
+find_package(TinyGLTF REQUIRED)
 # glslang's package file names these three without finding them.
 find_package(SPIRV-Tools REQUIRED)
 find_package(SPIRV-Tools-opt REQUIRED)

@@ -107,6 +107,7 @@ BROKEN = [
     (SCENE, "objects/o/mesh/rings", 1),
     (SCENE, "objects/o/mesh/caps", True),
     (SCENE, "objects/o/mesh", "lathe"),
+    (SCENE, "objects/o/mesh", {"type": "gltf", "path": "x.glb"}),
     (SCENE, "objects/o/mesh", {"type": "lathe", "profile": [[1, 0]]}),
     (SCENE, "objects/o/mesh", {"type": "lathe", "profile": [[1, 0], {"at": [1]}]}),
     (SCENE, "objects/o/effect", ...),

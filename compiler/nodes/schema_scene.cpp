@@ -56,7 +56,10 @@ SchemaJson mesh_schema() {
        {"lathe",
         {{"profile", described(array_schema(point, 2, 256), "from the bottom up, seen from outside"), true},
          smooth,
-         segments}}});
+         segments}},
+       {"gltf",
+        {{"file", described(string_schema(), "path of a .gltf or .glb file"), true},
+         {"fit", described(boolean_schema(), "centred on the origin, its longest side 1")}}}});
   return any_of({one_of({"sphere", "plane", "box", "icosphere", "cylinder", "cone", "torus"}), kinds});
 }
 

@@ -2,6 +2,8 @@
 #include "runtime/render/parameters.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "compiler/support/check.h"
 #include "compiler/support/parse_number.h"
@@ -92,15 +94,38 @@ void store(Type type, const Literal& literal, float* words) {
   }
 }
 
+/// The first numbers of `factors`, held in the parameter's range, if the effect has a parameter that takes
+/// them.
+void store_factors(const driver::Effect& effect, const std::string& name, std::span<const float> factors,
+                   std::vector<float>& words) {
+  const auto found = find_field(effect, name);
+  if (!found) return;
+  const auto count = static_cast<size_t>(std::max(graph::float_count(found->type), 0));
+  const bool takes_them = factors.size() == 1 ? count == 1 : count == 3 || count == factors.size();
+  if (!takes_them) return;
+  for (size_t i = 0; i < count; ++i) {
+    float value = factors[i];
+    if (found->field->min) value = std::max(value, *found->field->min);
+    if (found->field->max) value = std::min(value, *found->field->max);
+    words[found->first_word + i] = value;
+  }
+}
+
 }  // namespace
 
 std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& object,
                                                           const driver::Effect& effect,
+                                                          const scene::GltfMaterial* material,
                                                           Diagnostics& diagnostics) {
   const size_t errors_before = diagnostics.error_count();
   ObjectParameters result;
   for (const driver::Field& field : effect.parameters)
     result.common_.insert(result.common_.end(), field.value.begin(), field.value.end());
+  if (material != nullptr) {
+    store_factors(effect, "base_color", material->base_color, result.common_);
+    store_factors(effect, "metallic", std::array{material->metallic}, result.common_);
+    store_factors(effect, "roughness", std::array{material->roughness}, result.common_);
+  }
 
   for (const scene::Parameter& parameter : object.parameters) {
     if (diagnostics.full()) break;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/driver/driver.h"
+#include "runtime/scene/gltf.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::render {
@@ -14,7 +15,10 @@ namespace isoshade::render {
 class ObjectParameters {
  public:
   /// Reports parameters that the effect has not, and values that do not fit their type.
+  /// What neither the object gives nor a variation is the material's, if there is one and the effect calls it
+  /// base_color (of 3 or 4 components), metallic or roughness; else the effect's own.
   static std::optional<ObjectParameters> resolve(const scene::Object& object, const driver::Effect& effect,
+                                                 const scene::GltfMaterial* material,
                                                  support::Diagnostics& diagnostics);
 
   /// The words of one copy, from object_word::parameters on. Computed under lanes::FpGuard, which the caller

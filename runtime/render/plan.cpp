@@ -12,6 +12,7 @@
 #include "runtime/render/clock.h"
 #include "runtime/render/parameters.h"
 #include "runtime/render/visibility.h"
+#include "runtime/scene/gltf.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/placement.h"
 
@@ -53,8 +54,8 @@ backends::Cull cull_of(graph::Cull cull, bool mirrored) {
 }
 
 /// A MeshShape, in an order.
-using MeshKey =
-    std::tuple<scene::MeshKind, float, float, float, int, int, bool, std::vector<scene::ProfilePoint>>;
+using MeshKey = std::tuple<scene::MeshKind, float, float, float, int, int, bool,
+                           std::vector<scene::ProfilePoint>, std::string, bool>;
 
 class Planner {
  public:
@@ -71,9 +72,9 @@ class Planner {
   bool compile_effects();
   support::Source read_effect(const scene::Object& object);
   uint32_t add_program(const driver::Program& program);
-  bool resolve_parameters();
-  bool make_meshes();
-  const StoredMesh& make_mesh(const Object& object);
+  bool may_read(const std::string& path, const support::Span& where);
+  bool make_objects();
+  const StoredMesh* make_mesh(const Object& object);
   void place_object(size_t o);
   void store_frame();
   void place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
@@ -119,17 +120,21 @@ bool Planner::compile_effects() {
   return true;
 }
 
-support::Source Planner::read_effect(const scene::Object& object) {
+/// Whether the scene's document may name the file; what the user names has no place in a document.
+bool Planner::may_read(const std::string& path, const support::Span& where) {
   const check::Library* library = options_.compiler.library;
-  const support::Source& scene = object.effect_where.file;
-  if (library != nullptr && scene != nullptr &&
-      !library->files().permits(graph::canonical_path(object.effect), graph::home_of(scene->path()))) {
-    diagnostics_
-        .report(support::Id::outside_reference, object.effect_where,
-                quote(object.effect) + " leads out of the folder tree")
-        .note(std::string(graph::way_inside));
-    return nullptr;
+  const support::Source& scene = where.file;
+  if (library == nullptr || scene == nullptr ||
+      library->files().permits(graph::canonical_path(path), graph::home_of(scene->path()))) {
+    return true;
   }
+  diagnostics_.report(Id::outside_reference, where, quote(path) + " leads out of the folder tree")
+      .note(std::string(graph::way_inside));
+  return false;
+}
+
+support::Source Planner::read_effect(const scene::Object& object) {
+  if (!may_read(object.effect, object.effect_where)) return nullptr;
   return graph::read_source(object.effect, diagnostics_, object.effect_where);
 }
 
@@ -143,19 +148,9 @@ uint32_t Planner::add_program(const driver::Program& program) {
   return found->second;
 }
 
-bool Planner::resolve_parameters() {
-  bool good = true;
-  for (size_t o = 0; o < scene_.objects.size(); ++o) {
-    auto parameters =
-        ObjectParameters::resolve(scene_.objects[o], plan_.effects[effect_of_object_[o]], diagnostics_);
-    good = good && parameters.has_value();
-    if (good) parameters_.push_back(*std::move(parameters));
-  }
-  return good;
-}
-
-/// One object after the other, so that no more is made than fits the limits.
-bool Planner::make_meshes() {
+/// The mesh and the parameters of each object, one after the other, so that no more is made than fits the
+/// limits.
+bool Planner::make_objects() {
   struct Count {
     std::string_view what;
     int64_t limit;
@@ -164,14 +159,24 @@ bool Planner::make_meshes() {
   Count vertices{"vertices", max_drawn_vertices};
   Count triangles{"triangles", max_drawn_triangles};
   Count words{"words of object records", max_object_words};
+  bool good = true;
   for (size_t o = 0; o < scene_.objects.size(); ++o) {
     const Object& object = scene_.objects[o];
-    const StoredMesh& mesh = make_mesh(object);
     const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+    // After an error the rest is read for further ones, but nothing more is made.
+    const StoredMesh* mesh = good ? make_mesh(object) : nullptr;
+    const auto* material = mesh != nullptr && mesh->material ? &*mesh->material : nullptr;
+    auto parameters = ObjectParameters::resolve(object, effect, material, diagnostics_);
+    good = good && mesh != nullptr && parameters.has_value();
+    if (!good) {
+      if (diagnostics_.full()) return false;
+      continue;
+    }
     const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
-    vertices.total += draws * mesh.vertex_count;
-    triangles.total += draws * static_cast<int64_t>(mesh.indices.size() / 3);
-    words.total += draws * (lower::object_word::parameters + parameters_[o].word_count());
+    vertices.total += draws * mesh->vertex_count;
+    triangles.total += draws * static_cast<int64_t>(mesh->indices.size() / 3);
+    words.total += draws * (lower::object_word::parameters + parameters->word_count());
+    parameters_.push_back(*std::move(parameters));
     for (const Count* count : {&vertices, &triangles, &words}) {
       if (count->total <= count->limit) continue;
       diagnostics_
@@ -182,28 +187,39 @@ bool Planner::make_meshes() {
       return false;
     }
   }
-  return true;
+  return good;
 }
 
-/// The mesh of the next object: that of an earlier one of the same shape, or a new one.
-const StoredMesh& Planner::make_mesh(const Object& object) {
+/// The mesh of the next object: that of an earlier one of the same shape, or a new one; null if its file has
+/// none.
+const StoredMesh* Planner::make_mesh(const Object& object) {
   const scene::MeshShape& shape = object.mesh;
   const auto [found, is_new] =
       mesh_by_shape_.try_emplace(MeshKey{shape.kind, shape.size.x, shape.size.y, shape.size.z, shape.segments,
-                                         shape.rings, shape.caps, shape.profile},
+                                         shape.rings, shape.caps, shape.profile, shape.file, shape.fit},
                                  plan_.meshes.size());
   mesh_of_object_.push_back(found->second);
-  if (!is_new) return plan_.meshes[found->second];
+  if (!is_new) return &plan_.meshes[found->second];
+  scene::GltfModel model;
+  if (shape.kind == scene::MeshKind::gltf) {
+    if (!may_read(shape.file, object.mesh_where)) return nullptr;
+    auto loaded = scene::load_gltf(shape.file, object.mesh_where, diagnostics_);
+    if (!loaded) return nullptr;
+    model = *std::move(loaded);
+    if (shape.fit) scene::fit_to_unit_size(model.mesh);
+  } else {
+    model.mesh = scene::make_mesh(shape);
+  }
   std::vector<float>& vertices = plan_.frame.vertices;
-  scene::Mesh mesh = scene::make_mesh(shape);
   StoredMesh& stored = plan_.meshes.emplace_back();
   stored.first_vertex = static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride);
-  stored.vertex_count = static_cast<uint32_t>(mesh.vertices.size() / lower::vertex_word::stride);
-  stored.indices = std::move(mesh.indices);
-  stored.low = mesh.low;
-  stored.high = mesh.high;
-  vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-  return stored;
+  stored.vertex_count = static_cast<uint32_t>(model.mesh.vertices.size() / lower::vertex_word::stride);
+  stored.indices = std::move(model.mesh.indices);
+  stored.low = model.mesh.low;
+  stored.high = model.mesh.high;
+  stored.material = model.material;
+  vertices.insert(vertices.end(), model.mesh.vertices.begin(), model.mesh.vertices.end());
+  return &stored;
 }
 
 void Planner::place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
@@ -282,7 +298,7 @@ std::optional<Plan> Planner::plan() {
   Clock clock;
   if (!compile_effects()) return std::nullopt;
   plan_.stats.compile_seconds = clock.lap();
-  if (!resolve_parameters() || !make_meshes()) return std::nullopt;
+  if (!make_objects()) return std::nullopt;
 
   backends::Frame& frame = plan_.frame;
   frame.width = options_.width > 0 ? options_.width : scene_.width;

@@ -9,6 +9,7 @@
 #include "backends/backend.h"
 #include "compiler/driver/driver.h"
 #include "runtime/render/stats.h"
+#include "runtime/scene/gltf.h"
 #include "runtime/scene/mesh.h"
 #include "runtime/scene/scene.h"
 
@@ -32,6 +33,7 @@ struct StoredMesh {
   uint32_t vertex_count = 0;
   std::vector<uint32_t> indices;
   glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the box around it
+  std::optional<scene::GltfMaterial> material;
 };
 
 /// A frame and all that it points into; made once, drawn by as many backends as are asked. Can be moved: what

@@ -105,6 +105,16 @@ glm::mat4 affine_inverse(const glm::mat4& a) {
   return inverse;
 }
 
+glm::mat3 rotation_of_quaternion(const std::array<float, 4>& quaternion) {
+  const glm::vec4 q = normalize(glm::vec4(quaternion[0], quaternion[1], quaternion[2], quaternion[3]));
+  const float x = q.x, y = q.y, z = q.z, w = q.w;
+  glm::mat3 rotation;
+  rotation[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+  rotation[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+  rotation[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+  return rotation;
+}
+
 float dot(const glm::vec3& a, const glm::vec3& b) { return functions::dot(to_lanes<3>(a), to_lanes<3>(b)); }
 
 glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {

@@ -3,6 +3,7 @@
 // library in place of the C library. Computed under lanes::FpGuard, which the callers hold.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -28,6 +29,9 @@ glm::vec4 multiply(const glm::mat4& a, const glm::vec4& b);
 /// Takes normals where `model` takes points; they want normalising then. Mirrored transforms turn them
 /// outside.
 glm::mat3 normal_matrix(const glm::mat4& model);
+
+/// Of x y z w, which are not all 0; they are normalised.
+glm::mat3 rotation_of_quaternion(const std::array<float, 4>& quaternion);
 
 /// Of a matrix whose last row is 0 0 0 1 and whose first three columns span space.
 glm::mat4 affine_inverse(const glm::mat4& a);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/lower/frame_layout.h"
+#include "compiler/support/check.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/mesh_builder.h"
@@ -99,10 +100,23 @@ Mesh make_mesh(const MeshShape& shape) {
     case MeshKind::cone: make_cone(shape, mesh); break;
     case MeshKind::torus: make_torus(shape, mesh); break;
     case MeshKind::lathe: make_lathe(shape, mesh); break;
+    case MeshKind::gltf: support::bug("a glTF is no mesh made by rule");
   }
   add_outline_normals(mesh);
   find_box(mesh);
   return mesh;
+}
+
+void fit_to_unit_size(Mesh& mesh) {
+  const lanes::FpGuard guard;
+  const glm::vec3 size = mesh.high - mesh.low, middle = mesh.low + size * 0.5f;
+  const float longest = std::max(size.x, std::max(size.y, size.z));
+  if (longest == 0) return;
+  for (size_t i = 0; i < mesh.vertices.size(); i += word::stride) {
+    float* p = &mesh.vertices[i + word::position];
+    for (int axis = 0; axis < 3; ++axis) p[axis] = canonical((p[axis] - middle[axis]) / longest);
+  }
+  find_box(mesh);
 }
 
 }  // namespace isoshade::scene

@@ -5,11 +5,12 @@
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <string>
 #include <vector>
 
 namespace isoshade::scene {
 
-enum class MeshKind : uint8_t { sphere, plane, box, icosphere, cylinder, cone, torus, lathe };
+enum class MeshKind : uint8_t { sphere, plane, box, icosphere, cylinder, cone, torus, lathe, gltf };
 
 inline constexpr int64_t max_segments = 1024;      ///< of a mesh, along each direction
 inline constexpr int64_t max_subdivisions = 8;     ///< of an icosphere
@@ -33,6 +34,8 @@ struct MeshShape {
                       ///< icosphere: how often its triangles are cut into four
   bool caps = true;   ///< cylinder, cone: whether their ends are closed
   std::vector<ProfilePoint> profile{};  ///< lathe: at least 2 points, each apart from the one before
+  std::string file{};                   ///< gltf: its path
+  bool fit = false;                     ///< gltf: centred, and scaled to unit size
   bool operator==(const MeshShape&) const = default;
 };
 
@@ -53,6 +56,11 @@ struct Mesh {
 /// the top, to its middle at the bottom. Torus: v runs around the tube from the inside over the top. Lathe: v
 /// is the part of the profile's length that is left. Tangents run along u, normal x tangent against v; vertices
 /// are white.
+///
+/// `shape` is none of gltf: load_gltf reads those.
 Mesh make_mesh(const MeshShape& shape);
+
+/// Moves the middle of the box around all positions to the origin, and makes its longest edge 1.
+void fit_to_unit_size(Mesh& mesh);
 
 }  // namespace isoshade::scene

@@ -23,8 +23,8 @@ constexpr float most_size = 1e6f;
 constexpr Range sizes{least_size, most_size};
 
 /// The order of MeshKind.
-const std::vector<std::string_view> kinds = {"sphere",   "plane", "box",   "icosphere",
-                                             "cylinder", "cone",  "torus", "lathe"};
+const std::vector<std::string_view> kinds = {"sphere", "plane", "box",   "icosphere", "cylinder",
+                                             "cone",   "torus", "lathe", "gltf"};
 
 MeshShape default_shape(MeshKind kind) {
   switch (kind) {
@@ -141,6 +141,10 @@ MeshShape parse_mesh(const Document& document, const Json& json, Diagnostics& di
           Id::wrong_type, document.span(json),
           "a lathe needs a profile: {\"type\": \"lathe\", \"profile\": [[radius, height], ...]}");
     }
+    if (kind == MeshKind::gltf) {
+      diagnostics.report(Id::wrong_type, document.span(json),
+                         "a glTF is a file: {\"type\": \"gltf\", \"file\": \"model.glb\"}");
+    }
     return default_shape(kind);
   }
   ObjectReader reader(document, json, "a mesh", diagnostics);
@@ -177,6 +181,10 @@ MeshShape parse_mesh(const Document& document, const Json& json, Diagnostics& di
     case MeshKind::lathe:
       shape.profile = parse_profile(document, reader, diagnostics);
       read_count(reader, "segments", around, shape.segments);
+      break;
+    case MeshKind::gltf:
+      shape.file = path_beside(document, reader.string("file"));
+      shape.fit = reader.boolean("fit", false);
       break;
   }
   reader.finish();

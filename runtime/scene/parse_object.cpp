@@ -213,7 +213,10 @@ Object parse_object(const Document& document, const Member& member, Diagnostics&
   object.name_where = document.key_span(member);
   const std::string what = "object " + quote(member.key);
   ObjectReader reader(document, member.value, what, diagnostics);
-  if (const Json* mesh = reader.value("mesh")) object.mesh = parse_mesh(document, *mesh, diagnostics);
+  if (const Json* mesh = reader.value("mesh")) {
+    object.mesh = parse_mesh(document, *mesh, diagnostics);
+    object.mesh_where = document.span(*mesh);
+  }
   object.effect = path_beside(document, reader.string("effect"));
   if (const Json* effect = reader.value("effect", Need::optional))
     object.effect_where = document.span(*effect);

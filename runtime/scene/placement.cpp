@@ -52,16 +52,6 @@ glm::mat3 rotation_about(int axis, float degrees) {
   return rotation;
 }
 
-glm::mat3 rotation_of_quaternion(const std::array<float, 4>& quaternion) {
-  const glm::vec4 q = normalize(glm::vec4(quaternion[0], quaternion[1], quaternion[2], quaternion[3]));
-  const float x = q.x, y = q.y, z = q.z, w = q.w;
-  glm::mat3 rotation;
-  rotation[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
-  rotation[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
-  rotation[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
-  return rotation;
-}
-
 glm::mat3 rotation_of(const Transform& transform) {
   if (transform.rotation) return rotation_of_quaternion(*transform.rotation);
   return multiply(rotation_about(2, transform.rotate.z),

@@ -89,6 +89,7 @@ struct Object {
   std::vector<Parameter> parameters;  ///< no name twice, also not among the variations
   std::vector<Repeat> repeat;         ///< at most 3 axes
   support::Span name_where, effect_where;
+  support::Span mesh_where;  ///< nowhere if the user named its file
 };
 
 struct Output {
@@ -129,6 +130,7 @@ struct Scene {
 ///                {"type": "torus", "radius": 1, "tube": 0.25, "segments": 64, "rings": 32},
 ///                {"type": "lathe", "smooth": true, "segments": 64,
 ///                 "profile": [[radius, height], {"at": [radius, height], "smooth": false}]},
+///                {"type": "gltf", "file": "path beside the scene", "fit": false},
 ///        "effect": "path beside the scene",
 ///        "transform": {"translate": [..], "rotate": [degrees about x, y, z] or a quaternion,
 ///                      "scale": 1 or [..]},

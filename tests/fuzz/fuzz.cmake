@@ -12,3 +12,5 @@ if(ISOSHADE_FUZZ)
   target_link_libraries(fuzz_documents PRIVATE fuzz_feed)
   target_link_options(fuzz_documents PRIVATE -fsanitize=fuzzer)
 endif()
+
+isoshade_test(gltf_fuzz_test SOURCES fuzz/gltf_test.cpp LINKS isoshade_scene TIMEOUT 600)

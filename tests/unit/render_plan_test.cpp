@@ -10,6 +10,7 @@
 #include "runtime/compare/compare.h"
 #include "runtime/render/plan.h"
 #include "runtime/render/render.h"
+#include "tests/unit/gltf_files.h"
 #include "tests/unit/scene_documents.h"
 
 namespace isoshade {
@@ -247,6 +248,37 @@ TEST_F(PlanTest, ASceneWithoutObjectsIsItsBackground) {
   ASSERT_EQ(image.rgba.size(), 24u);
   EXPECT_EQ(image.rgba[4], 0.5f);
   EXPECT_EQ(image.depth, std::vector<float>(6, 0.0f));
+}
+
+TEST_F(PlanTest, GivesTheFactorsOfAModelToParametersThatTheObjectLeaves) {
+  write("model.glb", testing::glb(testing::square_json(), testing::square_data()));
+  write("pbr.json", R"({"isoshade": 1, "effect": "pbr",
+    "parameters": {"base_color": {"type": "color3", "value": [1, 1, 1]},
+                   "metallic": {"type": "float", "value": 0},
+                   "roughness": {"type": "float", "value": 1, "min": 0.5}},
+    "nodes": {"a": {"type": "add", "in1": "metallic", "in2": "roughness"},
+              "color": {"type": "multiply", "in1": "base_color", "in2": "a"}},
+    "passes": [{"name": "base", "color": "color"}]})");
+  const auto made = plan(R"("objects": {
+    "a": {"mesh": {"type": "gltf", "file": "model.glb", "fit": true}, "effect": "pbr.json"},
+    "b": {"mesh": {"type": "gltf", "file": "model.glb", "fit": true}, "effect": "pbr.json",
+          "parameters": {"metallic": 0.125}}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->meshes.size(), 1u);
+  EXPECT_EQ(made->meshes[0].low, glm::vec3(-0.5f, -0.5f, 0));
+  EXPECT_EQ(made->meshes[0].high, glm::vec3(0.5f, 0.5f, 0));
+  const float* given = record(*made, 0) + lower::object_word::parameters;
+  EXPECT_EQ(std::vector<float>(given, given + 5), (std::vector<float>{0.5f, 0.25f, 1, 0.75f, 0.5f}));
+  EXPECT_EQ(record(*made, 1)[lower::object_word::parameters + 3], 0.125f);
+}
+
+TEST_F(PlanTest, ReadsModelsOnlyWhereEffectsMayLie) {
+  EXPECT_TRUE(planning_fails_with(
+      R"("objects": {"a": {"mesh": {"type": "gltf", "file": "../x.glb"}, "effect": "tinted.json"}})",
+      "outside-reference"));
+  EXPECT_TRUE(planning_fails_with(
+      R"("objects": {"a": {"mesh": {"type": "gltf", "file": "x.glb"}, "effect": "tinted.json"}})",
+      "missing-file"));
 }
 
 }  // namespace

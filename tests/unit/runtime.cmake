@@ -1,5 +1,6 @@
 isoshade_test(scene_test
   SOURCES
+    unit/scene_gltf_test.cpp
     unit/scene_image_file_test.cpp
     unit/scene_mesh_test.cpp
     unit/scene_parse_test.cpp

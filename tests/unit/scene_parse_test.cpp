@@ -125,6 +125,7 @@ TEST(ParseScene, KnowsEveryMesh) {
             (scene::MeshShape{MeshKind::cone, {1, 3, 1}, 64, 1}));
   EXPECT_EQ(mesh_of(R"({"type": "torus", "tube": 0.5, "rings": 7})"),
             (scene::MeshShape{MeshKind::torus, {1, 0.5f, 1}, 64, 7}));
+  EXPECT_EQ(mesh_of(R"({"type": "gltf", "file": "/a/x.glb", "fit": true})").file, "/a/x.glb");
   EXPECT_EQ(mesh_of(R"({"type": "lathe", "smooth": false, "segments": 9,
                         "profile": [[0, -1], {"at": [1, 0], "smooth": true}, [0.5, 1]]})")
                 .profile,
@@ -139,6 +140,7 @@ TEST(ParseScene, RefusesMeshesWithoutASurface) {
     return fails_with(R"({"type": "lathe", "profile": [)" + points + "]}", text);
   };
   EXPECT_TRUE(fails_with(R"("lathe")", "needs a profile"));
+  EXPECT_TRUE(fails_with(R"("gltf")", "is a file"));
   EXPECT_TRUE(fails_with(R"({"type": "lathe"})", "missing-key"));
   EXPECT_TRUE(fails_with(R"({"type": "torus", "tube": 1})", "out-of-range"));
   EXPECT_TRUE(fails_with(R"({"type": "icosphere", "subdivisions": 9})", "out-of-range"));

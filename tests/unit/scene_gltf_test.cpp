@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "compiler/lower/frame_layout.h"
+#include "runtime/scene/gltf.h"
+#include "tests/unit/gltf_files.h"
+
+namespace isoshade {
+namespace {
+
+using namespace testing;
+using scene::GltfModel;
+namespace word = lower::vertex_word;
+
+class Gltf : public ::testing::Test {
+ protected:
+  std::optional<GltfModel> load(const std::string& bytes, const std::string& name = "m.glb") {
+    diagnostics_ = support::Diagnostics();
+    return scene::load_gltf(folder_.write(name, bytes), {}, diagnostics_);
+  }
+
+  GltfModel loaded(const std::string& json, const std::string& data = square_data()) {
+    auto model = load(glb(json, data));
+    EXPECT_TRUE(model) << diagnostics_.text();
+    return model ? *std::move(model) : GltfModel{};
+  }
+
+  /// Whether it is refused for this reason.
+  bool refuses(const std::string& bytes, const std::string& reason, const std::string& name = "m.glb") {
+    if (load(bytes, name)) return false;
+    const std::string text = diagnostics_.text();
+    EXPECT_NE(text.find(reason), std::string::npos) << text;
+    return text.find(reason) != std::string::npos;
+  }
+
+  bool refuses_json(const std::string& from, const std::string& to, const std::string& reason) {
+    std::string json = square_json();
+    const size_t at = json.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) json.replace(at, from.size(), to);
+    return refuses(glb(json, square_data()), reason);
+  }
+
+  Folder folder_;
+  support::Diagnostics diagnostics_;
+};
+
+glm::vec3 vector_at(const GltfModel& model, size_t vertex, int at) {
+  const float* v = &model.mesh.vertices[vertex * word::stride + static_cast<size_t>(at)];
+  return {v[0], v[1], v[2]};
+}
+
+TEST_F(Gltf, HasWhatTheFileGives) {
+  const GltfModel model = loaded(square_json());
+  ASSERT_EQ(model.mesh.vertices.size(), 4u * word::stride);
+  EXPECT_EQ(model.mesh.indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(vector_at(model, 2, word::position), glm::vec3(1, 1, 0));
+  EXPECT_EQ(vector_at(model, 2, word::normal), glm::vec3(0, 0, 1));
+  EXPECT_EQ(vector_at(model, 2, word::outline_normal), glm::vec3(0, 0, 1));
+  EXPECT_EQ(model.mesh.vertices[2 * word::stride + word::texcoord], 1.0f);
+  EXPECT_EQ(vector_at(model, 1, word::color), glm::vec3(0, 1, 0));
+  EXPECT_EQ(model.mesh.vertices[3 * word::stride + word::color + 3], 0.2f);
+  EXPECT_EQ(model.mesh.high, glm::vec3(1, 1, 0));
+  ASSERT_TRUE(model.material);
+  EXPECT_EQ(model.material->base_color[1], 0.25f);
+  EXPECT_EQ(model.material->metallic, 0.75f);
+  EXPECT_EQ(model.material->roughness, 0.25f);  // what is perceptual is squared
+}
+
+TEST_F(Gltf, IsTheSameFromTextBesideItsBuffer) {
+  folder_.write("a b.bin", square_data());
+  const auto model = load(square_json(all_attributes, one_node, R"("uri": "a%20b.bin", )"), "m.gltf");
+  ASSERT_TRUE(model) << diagnostics_.text();
+  EXPECT_EQ(model->mesh.vertices, loaded(square_json()).mesh.vertices);
+}
+
+TEST_F(Gltf, FindsTangentsAlongUAndTheWayUpRightHanded) {
+  const GltfModel model = loaded(square_json());
+  for (size_t v = 0; v < 4; ++v) {
+    EXPECT_EQ(vector_at(model, v, word::tangent), glm::vec3(1, 0, 0));
+    EXPECT_EQ(model.mesh.vertices[v * word::stride + word::tangent + 3], 1.0f);
+  }
+}
+
+TEST_F(Gltf, IsFlatWithoutNormals) {
+  const GltfModel model = loaded(square_json(R"("POSITION": 0)"));
+  ASSERT_EQ(model.mesh.vertices.size(), 6u * word::stride);
+  for (size_t v = 0; v < 6; ++v) {
+    EXPECT_EQ(vector_at(model, v, word::normal), glm::vec3(0, 0, 1));
+    EXPECT_NEAR(glm::length(vector_at(model, v, word::tangent)), 1.0f, 1e-6f);  // though it has no texture
+    EXPECT_EQ(vector_at(model, v, word::color), glm::vec3(1));
+  }
+}
+
+TEST_F(Gltf, PlacesNodesInEachOther) {
+  const GltfModel model = loaded(square_json(all_attributes, R"([
+    {"children": [1], "translation": [10, 0, 0], "scale": [2, 2, 2]},
+    {"mesh": 0, "rotation": [0, 0.70710678, 0, 0.70710678]}])"));
+  const glm::vec3 corner = vector_at(model, 1, word::position), normal = vector_at(model, 1, word::normal);
+  EXPECT_LT(glm::length(corner - glm::vec3(10, 0, -2)), 1e-5f);
+  EXPECT_LT(glm::length(normal - glm::vec3(1, 0, 0)), 1e-6f);
+}
+
+TEST_F(Gltf, StaysOutsideOutInAMirror) {
+  const GltfModel model = loaded(square_json(all_attributes, R"([{"mesh": 0, "scale": [-1, 1, 1]}])"));
+  for (size_t t = 0; t < 6; t += 3) {
+    const auto point = [&](size_t i) { return vector_at(model, model.mesh.indices[t + i], word::position); };
+    EXPECT_GT(glm::cross(point(1) - point(0), point(2) - point(0)).z, 0.0f);
+  }
+  EXPECT_EQ(vector_at(model, 0, word::normal), glm::vec3(0, 0, 1));
+  EXPECT_EQ(vector_at(model, 0, word::tangent), glm::vec3(-1, 0, 0));
+  EXPECT_EQ(model.mesh.vertices[word::tangent + 3], -1.0f);
+}
+
+TEST_F(Gltf, HoldsNoDenormals) {
+  const GltfModel model = loaded(square_json(), square_data(1e-40f));
+  EXPECT_EQ(vector_at(model, 2, word::position).x, 0.0f);
+}
+
+TEST_F(Gltf, RefusesNumbersThatAreNone) {
+  for (const float bad : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
+    EXPECT_TRUE(refuses(glb(square_json(), square_data(bad)), "infinite or none"));
+  EXPECT_TRUE(refuses(glb(square_json(), square_data(3e9f)), "beyond 1e9"));
+}
+
+TEST_F(Gltf, RefusesAccessorsThatLeaveTheirBuffer) {
+  EXPECT_TRUE(refuses_json(R"("count": 4, "type": "VEC3", "min")", R"("count": 13, "type": "VEC3", "min")",
+                           "accessor 0 leaves its buffer view"));
+  EXPECT_TRUE(refuses_json(R"("count": 4, "type": "VEC3", "min")",
+                           R"("count": 1537228672809129302, "type": "VEC3", "min")",
+                           "leaves its buffer view"));
+  EXPECT_TRUE(refuses_json(R"("byteOffset": 48)", R"("byteOffset": 18446744073709551615)", "accessor 1"));
+  EXPECT_TRUE(refuses_json(R"("byteLength": 144)", R"("byteLength": 157)", "leaves its buffer"));
+  EXPECT_TRUE(refuses_json(R"("byteOffset": 144)", R"("byteOffset": 18446744073709551600)", "its buffer"));
+  EXPECT_TRUE(refuses_json(R"("bufferView": 1)", R"("bufferView": 2)", "bufferView"));
+  EXPECT_TRUE(refuses_json(R"("POSITION": 0)", R"("POSITION": -7)", "does not exist"));
+  EXPECT_TRUE(refuses_json(R"("POSITION": 0)", R"("POSITION": 4)", "wrong type"));
+  EXPECT_TRUE(
+      refuses_json(R"("count": 4, "type": "VEC2")", R"("count": 3, "type": "VEC2")", "3 vertices, not 4"));
+  EXPECT_TRUE(refuses_json(R"("count": 6)", R"("count": 5)", "three corners"));
+}
+
+TEST_F(Gltf, RefusesIndicesWithoutVertices) {
+  std::string data = square_data();
+  data[144] = 4;
+  EXPECT_TRUE(refuses(glb(square_json(), data), "index 4 points to none of 4 vertices"));
+}
+
+TEST_F(Gltf, RefusesNodesInACircle) {
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"children": [1]}, {"children": [0], "mesh": 0}])",
+                           "two parents, or is below itself"));
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"children": [7]}])", "a node does not exist"));
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"mesh": 9}])", "a mesh does not exist"));
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{}])", "no triangles"));
+}
+
+TEST_F(Gltf, StaysInItsFolder) {
+  folder_.write("secret.bin", square_data());
+  for (const char* uri : {"../secret.bin", "%2e%2e/secret.bin", "../inside/../secret.bin"}) {
+    const std::string json =
+        square_json(all_attributes, one_node, R"("uri": ")" + std::string(uri) + R"(", )");
+    EXPECT_TRUE(refuses(json, "outside-reference", "inside/m.gltf")) << uri;
+  }
+  EXPECT_TRUE(
+      refuses(square_json(all_attributes, one_node, R"("uri": "/etc/passwd", )"), "not found", "m.gltf"));
+}
+
+TEST_F(Gltf, RefusesWhatWouldCrashItsReader) {
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  EXPECT_TRUE(refuses_json(R"("scene": 0)", R"("extras": )" + deep, "too-deep"));
+  EXPECT_TRUE(refuses_json(R"("byteLength": 156)", R"("byteLength": 0)", "no byteLength"));
+  EXPECT_TRUE(refuses_json(R"("byteLength": 156)", R"("byteLength": 400000000)", "more than 256 MiB"));
+}
+
+TEST_F(Gltf, RefusesFilesThatAreNone) {
+  const std::string good = glb(square_json(), square_data());
+  EXPECT_TRUE(refuses("glTF", "first chunk"));
+  EXPECT_TRUE(refuses(good.substr(0, 200), "first chunk"));
+  EXPECT_TRUE(refuses(good.substr(0, good.size() - 1), "bad-mesh"));
+  EXPECT_TRUE(refuses("{}", "bad-mesh", "m.gltf"));
+  EXPECT_TRUE(refuses("no JSON", "syntax", "m.gltf"));
+  EXPECT_TRUE(refuses_json(R"("scene": 0)", R"("extensionsRequired": ["KHR_draco_mesh_compression"])",
+                           "KHR_draco_mesh_compression"));
+  support::Diagnostics diagnostics;
+  EXPECT_FALSE(scene::load_gltf("no such file.glb", {}, diagnostics));
+  EXPECT_NE(diagnostics.text().find("missing-file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isoshade
