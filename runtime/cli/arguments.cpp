@@ -73,6 +73,11 @@ void add_settings(CLI::App& app, std::vector<std::string>& settings) {
       ->take_all();
 }
 
+void add_mesh(CLI::App& app, std::string& mesh) {
+  app.add_option("--mesh", mesh,
+                 "A glTF file (.gltf, .glb) in place of the scene's one, or of its only object's mesh");
+}
+
 std::string subcommand_names(const CLI::App& app) {
   std::string names;
   for (const CLI::App* subcommand : app.get_subcommands(nullptr))
@@ -140,6 +145,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(CLI::Range(-1e9, 1e9));
   render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why");
   add_settings(*render_app, render.settings);
+  add_mesh(*render_app, render.mesh);
   add_choice(*render_app, render.choice);
 
   VerifyArguments verify;
@@ -167,6 +173,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   golden->excludes(verify_app->get_option("--size"));
   verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
   add_settings(*verify_app, verify.settings);
+  add_mesh(*verify_app, verify.mesh);
   add_choice(*verify_app, verify.choice, false);
 
   EvalArguments eval;

@@ -45,6 +45,7 @@ struct RenderArguments {
   std::optional<Size> size;
   std::optional<float> time;          ///< instead of the scene's, in seconds
   std::vector<std::string> settings;  ///< name.parameter=value
+  std::string mesh;                   ///< a glTF file in place of the scene's; empty: none
   bool stats = false;
   BackendChoice choice;
 };
@@ -54,6 +55,7 @@ struct VerifyArguments {
   std::vector<std::string> backends{"cpu", "vulkan"};
   std::vector<Size> sizes;
   std::vector<std::string> settings;
+  std::string mesh;
   std::vector<std::string> lanes;  ///< each makes a cpu backend
   std::string report;
   std::string golden;

@@ -11,14 +11,45 @@
 
 namespace isoshade::cli {
 
+namespace {
+
+/// Reports scenes in which no object, or more than one, is meant by --mesh.
+bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnostics& diagnostics) {
+  scene::Object* only = nullptr;
+  int models = 0;
+  for (scene::Object& object : scene.objects) {
+    if (object.mesh.kind != scene::MeshKind::gltf) continue;
+    only = &object;
+    ++models;
+  }
+  if (models == 0 && scene.objects.size() == 1) only = &scene.objects[0];
+  if (only == nullptr || models > 1) {
+    diagnostics.report(support::Id::unknown_setting,
+                       "--mesh is for scenes with one glTF, or with one object: this one has " +
+                           std::to_string(models) + " glTF and " + std::to_string(scene.objects.size()) +
+                           " objects");
+    return false;
+  }
+  only->mesh = {};
+  only->mesh.kind = scene::MeshKind::gltf;
+  only->mesh.file = file;
+  only->mesh.fit = true;
+  only->mesh_where = {};
+  return true;
+}
+
+}  // namespace
+
 std::optional<scene::Scene> load_scene(const std::string& path, const std::vector<std::string>& settings,
-                                       support::Diagnostics& diagnostics) {
+                                       const std::string& mesh, support::Diagnostics& diagnostics) {
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return std::nullopt;
   auto document = graph::parse_document(source, diagnostics);
   if (document && !settings.empty()) document = scene::apply_settings(*document, settings, diagnostics);
   if (!document) return std::nullopt;
-  return scene::parse_scene(*document, diagnostics);
+  auto scene = scene::parse_scene(*document, diagnostics);
+  if (scene && !mesh.empty() && !replace_mesh(*scene, mesh, diagnostics)) return std::nullopt;
+  return scene;
 }
 
 namespace {
@@ -28,7 +59,7 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
   if (!scene::check_image_path(arguments.output, diagnostics) ||
       !may_write(arguments.output, {arguments.scene}, diagnostics))
     return false;
-  auto scene = load_scene(arguments.scene, arguments.settings, diagnostics);
+  auto scene = load_scene(arguments.scene, arguments.settings, arguments.mesh, diagnostics);
   if (!scene) return false;
   if (arguments.time) scene->time = *arguments.time;
   check::Library library = make_library(common);

@@ -88,7 +88,7 @@ class Verifier {
   }
 
   int verify_scene(const std::string& path) {
-    const auto scene = load_scene(path, arguments_.settings, diagnostics_);
+    const auto scene = load_scene(path, arguments_.settings, arguments_.mesh, diagnostics_);
     if (!scene) return failure;
     int result = success;
     std::vector<Size> sizes = arguments_.sizes;

@@ -8,6 +8,8 @@
 #include <string>
 #include <sys/wait.h>
 
+#include "tests/unit/gltf_files.h"
+
 namespace isoshade {
 namespace {
 
@@ -31,7 +33,7 @@ Outcome run(const std::string& arguments) {
   return run_command(std::string(ISOSHADE_COMMAND) + " " + arguments);
 }
 
-class Cli : public testing::Test {
+class Cli : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "isoshade-cli-XXXXXX").string();
@@ -98,6 +100,29 @@ TEST_F(Cli, SaysOfASettingWhatIsWrongWithIt) {
   EXPECT_EQ(outside.exit, 2);
   EXPECT_NE(outside.text.find("at most 1"), std::string::npos) << outside.text;
   EXPECT_EQ(run(command + " --set balls.base_color=0.1,0.2,0.3").exit, 0);
+}
+
+TEST_F(Cli, ShowsAModelInPlaceOfTheOnlyObject) {
+  std::ofstream(file("model.glb"), std::ios::binary)
+      << testing::glb(testing::square_json(), testing::square_data());
+  std::ofstream(file("plain.json")) << R"({"isoshade": 1, "effect": "plain",
+    "nodes": {"c": {"type": "vertexcolor"}}, "passes": [{"name": "base", "color": "c"}]})";
+  const auto write_scene = [&](const std::string& more) {
+    std::ofstream(file("viewer.json")) << R"({"isoshade": 1, "scene": "viewer", "size": [8, 8],
+      "camera": {"position": [0, 0, 2], "target": [0, 0, 0]},
+      "objects": {"model": {"mesh": "box", "effect": "plain.json"})" +
+                                              more + "}}";
+  };
+  const std::string command =
+      "verify " + file("viewer.json") + " --backends cpu,interpreter --mesh " + file("model.glb");
+  write_scene("");
+  const Outcome shown = run(command);
+  EXPECT_EQ(shown.exit, 0) << shown.text;
+  EXPECT_NE(shown.text, run("verify " + file("viewer.json") + " --backends cpu,interpreter").text);
+  write_scene(R"(, "other": {"mesh": "box", "effect": "plain.json"})");
+  const Outcome which = run(command);
+  EXPECT_EQ(which.exit, 2);
+  EXPECT_NE(which.text.find("2 objects"), std::string::npos) << which.text;
 }
 
 TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
