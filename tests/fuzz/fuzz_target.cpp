@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer's way into the compiler: cmake --preset fuzz && build/fuzz/tests/fuzz_documents graphs/
+// libFuzzer's way into the compiler, with clang and its runtime (Debian: clang, libclang-rt-dev):
+// scripts/build.sh fuzz && build/fuzz/fuzz_documents CORPUS
 #include <cstddef>
 #include <cstdint>
 
