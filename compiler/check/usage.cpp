@@ -57,6 +57,27 @@ void check_lights(Work& work) {
   }
 }
 
+/// Reports derivatives of what depends on a derivative: there are first ones only.
+void check_derivatives(Work& work) {
+  const TypedGraph& typed = work.typed;
+  constexpr uint32_t nothing = ~0u;
+  std::vector<uint32_t> derivative(typed.nodes.size(), nothing);  ///< that each node depends on
+  for (const uint32_t i : typed.order) {
+    const Node& node = typed.nodes[i];
+    const bool takes_one = node.row != nullptr && node.row->is<nodes::Derivative>();
+    for (const Operand& operand : typed.operands_of(node))
+      if (operand.from == From::node && derivative[operand.index] != nothing)
+        derivative[i] = derivative[operand.index];
+    if (takes_one && derivative[i] != nothing) {
+      const graph::Node& source = work.graph().nodes[i];
+      work.report(Id::second_derivative, source.type_place,
+                  quote(source.type) + " of what depends on the derivative " +
+                      quote(work.graph().nodes[derivative[i]].id));
+    }
+    if (takes_one) derivative[i] = i;
+  }
+}
+
 /// How many nodes are computed for each light, over all sums; stops counting beyond the limit.
 uint64_t nodes_under_sums(const TypedGraph& typed) {
   uint64_t total = 0;
@@ -115,6 +136,7 @@ void warn_unused(Work& work) {
 void check_usage(Work& work) {
   mark_per_light(work.typed);
   check_lights(work);
+  check_derivatives(work);
   check_size(work);
   if (!work.is_instance()) warn_unused(work);
 }

@@ -125,16 +125,19 @@ std::vector<ir::ValueId> call_library(ir::Builder& builder, std::string_view row
   return builder.call(declare(builder.module(), *variant), arguments);
 }
 
+const Variant& variant_of(const ir::Function& declaration) {
+  for (const Variant& variant : variants())
+    if (variant.name == declaration.library) return variant;
+  support::bug("a declaration that the library does not have: " + declaration.name);
+}
+
 void expand(ir::Module& module) {
   // Bodies declare further functions at the end of the list.
   for (uint32_t i = 0; i < module.functions.size(); ++i) {
     if (!module.functions[i].is_declaration()) continue;
-    for (const Variant& variant : variants()) {
-      if (variant.name != module.functions[i].library) continue;
-      ir::Builder builder(module, i);
-      variant.build(builder);
-    }
-    support::check(!module.functions[i].is_declaration(), "a declaration that the library does not have");
+    const Variant& variant = variant_of(module.functions[i]);
+    ir::Builder builder(module, i);
+    variant.build(builder);
   }
 }
 

@@ -31,6 +31,9 @@ uint32_t declare(ir::Module& module, const Variant& variant);
 std::vector<ir::ValueId> call_library(ir::Builder& builder, std::string_view row,
                                       std::span<const ir::ValueId> arguments);
 
+/// The variant that a declaration stands for.
+const Variant& variant_of(const ir::Function& declaration);
+
 /// Gives every declaration in the module its body, and those that the bodies call.
 /// Leaves: no declaration in the module.
 void expand(ir::Module& module);

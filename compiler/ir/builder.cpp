@@ -11,6 +11,8 @@ namespace isoshade::ir {
 using support::check;
 
 std::optional<Type> result_type(Opcode op, std::span<const Type> operands) {
+  if (is_derivative(op))
+    return operands.size() == 1 && operands[0].is_float() ? std::optional(operands[0]) : std::nullopt;
   const OpInfo& row = info(op);
   if (operands.size() != static_cast<size_t>(row.arity)) return std::nullopt;
   const auto all = [&](Type type) {
@@ -87,12 +89,12 @@ ValueId Builder::constant(int32_t value) { return constant_bits(int_type, static
 ValueId Builder::constant(bool value) { return constant_bits(bool_type, value ? 1 : 0); }
 
 ValueId Builder::op(Opcode op, std::span<const ValueId> operands) {
-  check(is_primitive(op), "not a primitive op");
+  check(is_primitive(op) || is_derivative(op), "not a primitive op");
   std::array<Type, 3> types;
   check(operands.size() <= types.size(), "too many operands");
   for (size_t i = 0; i < operands.size(); ++i) types[i] = type(operands[i]);
   const auto result = result_type(op, std::span(types).first(operands.size()));
-  check(result.has_value(), info(op).name);
+  check(result.has_value(), ir::name(op));
   const std::array results{*result};
   return function().instructions[append(op, 0, operands, results)].first_result;
 }

@@ -30,7 +30,7 @@ class Builder {
   ValueId constant(bool value);
   ValueId constant_bits(Type type, uint32_t bits);
 
-  /// A primitive op; checks arity and the row's type rule.
+  /// A primitive op, ddx or ddy; checks arity and the row's type rule.
   ValueId op(Opcode op, std::span<const ValueId> operands);
   ValueId op(Opcode o, std::initializer_list<ValueId> operands) { return op(o, std::span(operands)); }
 
@@ -71,7 +71,7 @@ class Builder {
   uint32_t origin_ = 0;
 };
 
-/// The result type of a primitive op, or nothing if the operands do not fit its rule.
+/// The result type of a primitive op, ddx or ddy, or nothing if the operands do not fit its rule.
 std::optional<Type> result_type(Opcode op, std::span<const Type> operands);
 
 }  // namespace isoshade::ir

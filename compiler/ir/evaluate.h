@@ -95,7 +95,9 @@ inline uint32_t evaluate(Opcode op, uint32_t a, uint32_t b, uint32_t c) {
     case Opcode::load:
     case Opcode::call:
     case Opcode::branch:
-    case Opcode::loop: break;
+    case Opcode::loop:
+    case Opcode::ddx:
+    case Opcode::ddy: break;
   }
   return 0;  // not a primitive op
 }

@@ -89,6 +89,7 @@ class Interpreter::Compiler {
   }
 
   void primitive(const Instruction& instruction) {
+    check(is_primitive(instruction.op), "the interpreter met an op that a pass had to replace");
     std::array<uint32_t, 3> from{};
     const auto operands = function_.operands_of(instruction);
     for (size_t i = 0; i < operands.size(); ++i) from[i] = registers_[operands[i]];

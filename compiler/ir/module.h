@@ -117,4 +117,7 @@ struct Module {
   friend bool operator==(const Module&, const Module&) = default;
 };
 
+/// Whether there is any ddx or ddy.
+bool asks_for_derivatives(const Module& module);
+
 }  // namespace isoshade::ir

@@ -13,8 +13,8 @@ constexpr std::array<OpInfo, primitive_count> rows{{
 #include "compiler/ir/ops.def"
 }};
 
-constexpr std::array<std::string_view, 8> structural_names{"constant", "construct", "extract", "hidden_zero",
-                                                           "load",     "call",      "branch",  "loop"};
+constexpr std::array<std::string_view, 10> structural_names{
+    "constant", "construct", "extract", "hidden_zero", "load", "call", "branch", "loop", "ddx", "ddy"};
 
 }  // namespace
 

@@ -20,6 +20,8 @@ enum class Opcode : uint8_t {
   call,         ///< imm: callee (an index into Module::functions)
   branch,       ///< bool; two blocks, each yields the results; only one is run
   loop,         ///< int count, initial values; one block with parameters (index, carried...), yields carried
+  ddx,  ///< float or vector -> what it changes by per pixel to the right; only until passes/derivatives
+  ddy,  ///< likewise, per pixel down
 };
 
 enum class Rule : uint8_t { same, compare, icompare, integer, logic, choose, to_int, to_float };
@@ -38,6 +40,7 @@ struct OpInfo {
 inline constexpr int primitive_count = static_cast<int>(Opcode::constant);
 
 constexpr bool is_primitive(Opcode op) { return op < Opcode::constant; }
+constexpr bool is_derivative(Opcode op) { return op == Opcode::ddx || op == Opcode::ddy; }
 /// The row of a primitive op.
 const OpInfo& info(Opcode op);
 /// Any opcode's name, as text IR has it.

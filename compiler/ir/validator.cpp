@@ -124,7 +124,7 @@ class BodyValidator {
     return {};
   }
 
-  static bool known(Opcode op) { return op <= Opcode::loop; }
+  static bool known(Opcode op) { return op <= Opcode::ddy; }
 
   std::string instruction(const Instruction& made, int depth) {
     if (!known(made.op)) return "no such op";

@@ -19,9 +19,9 @@ using graph::Type;
 using nodes::Value;
 
 /// What the stages around authored functions are called: no document takes these names.
-constexpr std::string_view names_of_stages[] = {shade_name,   light_at_name, "vertex",   "depth",
-                                                "pixel",      "eval",        "edges_at", "attribute2",
-                                                "attribute3", "attribute4"};
+constexpr std::string_view names_of_stages[] = {shade_name,     light_at_name, "vertex",     "depth",
+                                                "pixel",        "eval",        "edges_at",   "edges_at_ddx",
+                                                "edges_at_ddy", "attribute2",  "attribute3", "attribute4"};
 
 /// A name that neither the stages nor library functions have.
 std::string authored_name(const std::string& name) {

@@ -25,6 +25,29 @@ void add_edges(ir::Module& module) {
   k.b.finish(std::array{k.named("edges", edges.value)});
 }
 
+/// edges_at_ddx(x, y, triangle) and edges_at_ddy: what the edge functions change by from a pixel to the next. That is
+/// the same all over the triangle, and exact. They are the source of all derivatives (passes/derivatives.h).
+void add_edge_gradients(ir::Module& module) {
+  for (const int axis : {0, 1}) {
+    Kernel k(module, axis == 0 ? "edges_at_ddx" : "edges_at_ddy",
+             {int_parameter("x"), int_parameter("y"), int_parameter("triangle")},
+             {{"edges", ir::vector_type(3)}});
+    const Int record = k.named("record", k.integer(2) * Int(triangle_word::stride));
+    // The edge function from one vertex to the next grows by its x downwards, and falls by its y to the right.
+    const auto coordinate = [&](int vertex) {
+      const int word = triangle_word::position + 2 * (vertex % 3) + (1 - axis);
+      return k.load_int(FrameBuffer::triangles, record + Int(word));
+    };
+    constexpr float pixel = 256.0f;
+    const auto edge = [&](int from) {
+      const Int along =
+          axis == 0 ? coordinate(from) - coordinate(from + 1) : coordinate(from + 1) - coordinate(from);
+      return to_float(along) * Float(pixel);
+    };
+    k.b.finish(std::array{Vec3(edge(1), edge(2), edge(0)).value});
+  }
+}
+
 Vec4 to_clip(Kernel& k, Int object, Vec3 position) {
   const auto column = [&](int i) {
     return k.load4(FrameBuffer::objects, object, object_word::projected + 4 * i);
@@ -114,6 +137,7 @@ uint32_t add_depth_kernel(ir::Module& module) {
 
 uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, LightKinds lights) {
   add_edges(module);
+  if (ir::asks_for_derivatives(module)) add_edge_gradients(module);
   if (const uint32_t light_at = module.find("light_at"); light_at != ir::none)
     define_light_at(module, light_at, lights);
   const uint32_t shade = module.find("shade");

@@ -67,6 +67,23 @@ std::vector<Row> geometry_rows() {
        Color4,
        Surface::color,
        set_exists<0>},
+      {"ddx",
+       "What `in` changes by from a pixel to the next on its right: its derivative, not a difference, along "
+       "the "
+       "triangle that the pixel shows.",
+       {{"in", AnyFloat, "the value"}},
+       AnyFloat,
+       Derivative::x},
+      {"ddy",
+       "What `in` changes by from a pixel to the next below: its derivative along the triangle.",
+       {{"in", AnyFloat, "the value"}},
+       AnyFloat,
+       Derivative::y},
+      {"fwidth",
+       "The magnitude of `ddx` plus that of `ddy`: about what `in` changes by across a pixel.",
+       {{"in", AnyFloat, "the value"}},
+       AnyFloat,
+       Derivative::width},
       {"time", "Seconds since the beginning: the scene's \"time\".", {}, Float, Time{}},
   };
 }

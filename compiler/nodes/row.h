@@ -100,10 +100,14 @@ enum class Transform : uint8_t { point, vector, normal };
 /// Seconds since the scene began.
 struct Time {};
 
+/// What a value changes by from a pixel to the next: to the right, down, or the sum of both without signs.
+enum class Derivative : uint8_t { x, y, width };
+
 /// Makes the outputs of a Site from its inputs.
 using Custom = void (*)(Site&);
 
-using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Custom>;
+using Lowering =
+    std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative, Custom>;
 
 /// What a row demands of its ports beyond their types, and what is wrong there.
 struct Refusal {
@@ -128,9 +132,10 @@ struct Row {
   bool is() const {
     return std::holds_alternative<Kind>(lowering);
   }
-  /// Whether it speaks of the surface, the scene or its lights: function documents have none of these.
+  /// Whether it speaks of the surface, its pixels, the scene or its lights: function documents have none of these.
   bool belongs_to_effects() const {
-    return is<Surface>() || is<Transform>() || is<Time>() || is<Light>() || is<SumLights>();
+    return is<Surface>() || is<Transform>() || is<Time>() || is<Light>() || is<SumLights>() ||
+           is<Derivative>();
   }
 };
 

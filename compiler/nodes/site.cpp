@@ -89,11 +89,22 @@ Value Site::op_of_columns(ir::Opcode opcode) const {
   return Value(std::span<const ir::ValueId>(columns).first(in[0].count));
 }
 
+namespace {
+Value differentiate(Derivative what, Site& s) {
+  using enum ir::Opcode;
+  if (what == Derivative::x) return s.op(ddx, {s[0]});
+  if (what == Derivative::y) return s.op(ddy, {s[0]});
+  return s.op(fadd, {s.op(fabs, {s.op(ddx, {s[0]})}), s.op(fabs, {s.op(ddy, {s[0]})})});
+}
+}  // namespace
+
 void lower(const Row& row, Site& site) {
   if (const auto* opcode = std::get_if<ir::Opcode>(&row.lowering)) {
     site.out[0] = site.op_of_columns(*opcode);
   } else if (const auto* function = std::get_if<Function>(&row.lowering)) {
     site.out[0] = call_function(site.b, function->row, site.in);
+  } else if (const auto* derivative = std::get_if<Derivative>(&row.lowering)) {
+    site.out[0] = differentiate(*derivative, site);
   } else if (const auto* custom = std::get_if<Custom>(&row.lowering)) {
     (*custom)(site);
   } else {

@@ -8,6 +8,7 @@
 #include "compiler/ir/validator.h"
 #include "compiler/passes/cse.h"
 #include "compiler/passes/dce.h"
+#include "compiler/passes/derivatives.h"
 #include "compiler/passes/exact_division.h"
 #include "compiler/passes/fold.h"
 #include "compiler/passes/hide_foldables.h"
@@ -19,6 +20,7 @@ namespace isoshade::passes {
 
 namespace {
 
+void run_derivatives(ir::Module& m, Entries&) { derivatives(m); }
 void run_renumber(ir::Module& m, Entries&) { renumber(m); }
 void run_fold(ir::Module& m, Entries&) { fold(m, functions::expand); }
 void run_cse(ir::Module& m, Entries&) { cse(m); }
@@ -28,6 +30,8 @@ void run_hide(ir::Module& m, Entries& entries) { hide_foldables(m, entries); }
 void run_exact_division(ir::Module& m, Entries&) { exact_division(m); }
 
 constexpr Pass optimisation_table[] = {
+    {"derivatives", run_derivatives,
+     "no other pass knows of ddx and ddy; functions have rules while calls are calls"},
     {"renumber", run_renumber,
      "lowering leaves the order open; all after it sees one order and nothing dead"},
     {"fold", run_fold, "functions of constants are evaluated whole, while calls are calls"},

@@ -6,3 +6,8 @@ isoshade_test(functions_accuracy_test
   LINKS isoshade_functions
   LABEL accuracy
   TIMEOUT 7200)
+
+isoshade_test(derivatives_accuracy_test
+  SOURCES accuracy/derivatives_accuracy_test.cpp
+  LINKS isoshade_passes
+  LABEL accuracy)

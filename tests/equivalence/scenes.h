@@ -30,15 +30,20 @@ inline std::vector<std::string> shipped_scenes() {
 
 inline std::string scene_path(const std::string& name) { return ISOSHADE_GRAPHS "/scenes/" + name + ".json"; }
 
-inline scene::Scene load(const std::string& path) {
+inline scene::Scene load(const support::Source& source) {
   support::Diagnostics diagnostics;
-  const auto document = graph::parse_document(graph::read_source(path, diagnostics), diagnostics);
+  const auto document = graph::parse_document(source, diagnostics);
   auto scene = document ? scene::parse_scene(*document, diagnostics) : std::nullopt;
   if (!scene) ADD_FAILURE() << diagnostics.text();
   return scene.value_or(scene::Scene());
 }
 
-inline render::Plan plan(const std::string& path, int width = 0, int height = 0, bool skip = true) {
+inline scene::Scene load(const std::string& path) {
+  support::Diagnostics diagnostics;
+  return load(graph::read_source(path, diagnostics));
+}
+
+inline render::Plan plan(const scene::Scene& scene, int width = 0, int height = 0, bool skip = true) {
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
   render::Options options;
@@ -46,9 +51,13 @@ inline render::Plan plan(const std::string& path, int width = 0, int height = 0,
   options.height = height;
   options.skip = skip;
   options.compiler.library = &library;
-  auto made = render::plan_frame(load(path), options, diagnostics);
+  auto made = render::plan_frame(scene, options, diagnostics);
   if (!made) ADD_FAILURE() << diagnostics.text();
   return made ? std::move(*made) : render::Plan();
+}
+
+inline render::Plan plan(const std::string& path, int width = 0, int height = 0, bool skip = true) {
+  return plan(load(path), width, height, skip);
 }
 
 inline backends::Image draw(const render::Plan& plan, backends::Backend& backend) {

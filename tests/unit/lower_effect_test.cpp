@@ -59,6 +59,17 @@ TEST(LowerEffect, TakesWhatItUsesAndNothingElse) {
 )");
 }
 
+TEST(LowerEffect, DerivativesAreOpsThatAPassReplaces) {
+  FrontEnd front_end;
+  const ir::Module module = front_end.lower(effect(R"("uv": {"type": "texcoord"},
+"slope": {"type": "ddy", "in": "uv.x"}, "width": {"type": "fwidth", "in": "uv.y"},
+"color": {"type": "add", "in1": "slope", "in2": "width"})"));
+  const std::string text = ir::print(module);
+  EXPECT_TRUE(ir::asks_for_derivatives(module));
+  for (const char* made : {"%slope = ddy %", " = ddx %", " = ddy %", "%width = fadd %"})
+    EXPECT_NE(text.find(made), std::string::npos) << made << "\n" << text;
+}
+
 TEST(LowerEffect, Color4IsTheResultAndAFloatIsGrey) {
   FrontEnd front_end;
   Program whole(front_end.lower(effect("", "alpha")));

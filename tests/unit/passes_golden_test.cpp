@@ -11,6 +11,7 @@
 #include "compiler/ir/printer.h"
 #include "compiler/passes/cse.h"
 #include "compiler/passes/dce.h"
+#include "compiler/passes/derivatives.h"
 #include "compiler/passes/fold.h"
 #include "compiler/passes/hide_foldables.h"
 #include "compiler/passes/renumber.h"
@@ -34,6 +35,7 @@ void drop_unreached(ir::Module& module) {
 const std::map<std::string, void (*)(ir::Module&)> passes{
     {"renumber", renumber},
     {"dce", drop_unreached},
+    {"derivatives", derivatives},
     {"cse", cse},
     {"fold", [](ir::Module& module) { fold(module); }},
     {"hide_foldables", [](ir::Module& module) { hide_foldables(module, {}); }},

@@ -6,6 +6,7 @@
 #include "compiler/ir/builder.h"
 #include "compiler/ir/printer.h"
 #include "compiler/passes/cse.h"
+#include "compiler/passes/derivatives.h"
 #include "compiler/passes/fold.h"
 #include "compiler/passes/hide_foldables.h"
 #include "compiler/passes/pipeline.h"
@@ -27,6 +28,15 @@ TEST(Renumber, PrintAndParseGiveBackTheSameModule) {
     ASSERT_EQ(reread, module) << print(module);
     renumber(module);
     ASSERT_EQ(reread, module) << "renumbering twice differs";
+  }
+}
+
+TEST(Derivatives, LeaveModulesThatAskForNoneAsTheyAre) {
+  for (uint64_t seed = 0; seed < 100; ++seed) {
+    const Module module = RandomModule(seed).make();
+    Module after = module;
+    derivatives(after);
+    ASSERT_EQ(after, module);
   }
 }
 
