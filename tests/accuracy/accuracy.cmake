@@ -11,3 +11,10 @@ isoshade_test(derivatives_accuracy_test
   SOURCES accuracy/derivatives_accuracy_test.cpp
   LINKS isoshade_passes
   LABEL accuracy)
+
+isoshade_test(pixel_derivatives_test
+  SOURCES accuracy/pixel_derivatives_test.cpp
+  LINKS isoshade_render isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(pixel_derivatives_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

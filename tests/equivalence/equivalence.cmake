@@ -11,13 +11,6 @@ isoshade_test(scenes_test
   DEVICES)
 target_compile_definitions(scenes_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
-isoshade_test(pixel_derivatives_test
-  SOURCES equivalence/pixel_derivatives_test.cpp
-  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
-  LABEL equivalence
-  TIMEOUT 300)
-target_compile_definitions(pixel_derivatives_test PRIVATE ${equivalence_definitions})
-
 isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
 target_compile_definitions(text_test PRIVATE ${equivalence_definitions})
 
