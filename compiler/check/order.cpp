@@ -11,12 +11,20 @@ struct Visit {
   uint32_t next_operand;
 };
 
-/// "a -> b -> a": the nodes that are open from `node` on, in the order in which they read each other.
+/// "a -> b -> a": the nodes that are open from `node` on, in the order in which they read each other. The operations
+/// of an expression are one node to the reader.
 std::string path_of(const Work& work, const std::vector<Visit>& open, uint32_t node) {
   size_t first = open.size();
   while (open[first - 1].node != node) --first;
   --first;
-  const size_t length = open.size() - first;
+  std::vector<std::string_view> ids;
+  for (size_t i = first; i < open.size(); ++i) {
+    const std::string& id = work.graph().nodes[open[i].node].id;
+    if (ids.empty() || ids.back() != id) ids.push_back(id);
+  }
+  const std::string& last = work.graph().nodes[node].id;
+  if (ids.size() > 1 && ids.back() == last) ids.pop_back();
+  const size_t length = ids.size();
   constexpr size_t shown = 8;
   std::string path;
   for (size_t i = 0; i < length; ++i) {
@@ -24,9 +32,9 @@ std::string path_of(const Work& work, const std::vector<Visit>& open, uint32_t n
       path += "... " + std::to_string(length - shown) + " more ... -> ";
       i = length - shown / 2;
     }
-    path += work.graph().nodes[open[first + i].node].id + " -> ";
+    path += std::string(ids[i]) + " -> ";
   }
-  return path + work.graph().nodes[node].id;
+  return path + last;
 }
 
 }  // namespace

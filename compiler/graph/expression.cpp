@@ -109,6 +109,8 @@ class ExpressionParser {
     return true;
   }
   void expect(std::string_view symbol, std::string_view why);
+  /// What to write for a sign of other languages that stands here.
+  std::string_view way_out() const;
   /// Reports the first error only: what follows is read in a wrong light.
   Operand fail(Place place, std::string message, std::string_view fix = {});
   bool too_deep();
@@ -141,11 +143,19 @@ Operand ExpressionParser::fail(Place place, std::string message, std::string_vie
   return {};
 }
 
+std::string_view ExpressionParser::way_out() const {
+  if (token_.text == "%") return "write mod(x, y)";
+  if (token_.text == "^") return "write pow(x, y)";
+  if (token_.text == "=") return "compare with ==";
+  return {};
+}
+
 void ExpressionParser::expect(std::string_view symbol, std::string_view why) {
   if (take(symbol)) return;
   const std::string found =
       token_.kind == CodeText::Kind::end ? "the code ends" : quote(token_.text) + " stands";
-  fail(place_of(token_), found + " where " + quote(symbol) + " " + std::string(why) + " is needed");
+  fail(place_of(token_), found + " where " + quote(symbol) + " " + std::string(why) + " is needed",
+       way_out());
 }
 
 bool ExpressionParser::too_deep() {
@@ -371,7 +381,7 @@ Operand ExpressionParser::type_call(const Token& name, Type type, std::vector<Op
   const std::string type_text(name.text);
   const int count = float_count(type);
   const bool tuple = count >= 2 && count <= 4;
-  if (!tuple && type != Type::floating)
+  if (!tuple && type != Type::floating && type != Type::integer && type != Type::boolean)
     return fail(place_of(name), "an expression makes no " + type_text,
                 "make it by a node and give the expression a port for it");
   if (arguments.size() == 1) {
@@ -381,8 +391,9 @@ Operand ExpressionParser::type_call(const Token& name, Type type, std::vector<Op
     return link_to(node, place);
   }
   if (!tuple || arguments.size() != static_cast<size_t>(count))
-    return fail(place_of(name), type_text + " takes 1 " + (tuple ? "or " + std::to_string(count) + " " : "") +
-                                    "arguments, not " + std::to_string(arguments.size()));
+    return fail(place_of(name), type_text + " takes 1 " +
+                                    (tuple ? "or " + std::to_string(count) + " arguments" : "argument") +
+                                    ", not " + std::to_string(arguments.size()));
   const uint32_t node =
       add("combine" + std::to_string(count), Node::Origin::operation, name.text, place_of(name));
   for (size_t i = 0; i < arguments.size(); ++i) {
@@ -414,11 +425,13 @@ void ExpressionParser::become_root(Operand result) {
 void ExpressionParser::parse() {
   Operand result = choice();
   if (!failed_ && token_.kind != CodeText::Kind::end)
-    fail(place_of(token_), "an operator is needed before " + quote(token_.text));
+    fail(place_of(token_), "an operator is needed before " + quote(token_.text), way_out());
   for (size_t i = 0; i < used_.size() && !failed_; ++i) {
     if (used_[i]) continue;
-    diagnostics_.report(Id::unknown_port, graph_.span(made_.ports[i].name_place),
-                        "the code does not read " + quote(made_.ports[i].name));
+    diagnostics_
+        .report(Id::unknown_port, graph_.span(made_.ports[i].name_place),
+                "the code does not read " + quote(made_.ports[i].name))
+        .suggest("use it in the code, or remove it");
   }
   if (failed_) return;
   become_root(std::move(result));

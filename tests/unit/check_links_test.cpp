@@ -101,13 +101,17 @@ TEST(CheckLinks, CirclesAreNamedByTheirPath) {
   EXPECT_EQ(messages_of("\"a\": {\"type\": \"add\", \"in1\": \"b\", \"in2\": 1},\n"
                         "\"b\": {\"type\": \"floor\", \"in\": \"c\"},\n"
                         "\"c\": {\"type\": \"floor\", \"in\": \"b\"},\n"
-                        "\"d\": {\"type\": \"floor\", \"in\": \"d\"}"),
+                        "\"d\": {\"type\": \"floor\", \"in\": \"d\"},\n"
+                        "\"e\": {\"type\": \"expression\", \"code\": \"y + 1\", \"y\": \"e\"}"),
             R"(test.json:6:30: error[cycle]: nodes read each other in a circle: b -> c -> b
   6 | "c": {"type": "floor", "in": "b"},
     |                              ^^^
 test.json:7:30: error[cycle]: nodes read each other in a circle: d -> d
-  7 | "d": {"type": "floor", "in": "d"}
+  7 | "d": {"type": "floor", "in": "d"},
     |                              ^^^
+test.json:8:51: error[cycle]: nodes read each other in a circle: e -> e
+  8 | "e": {"type": "expression", "code": "y + 1", "y": "e"}
+    |                                                   ^^^
 )");
 }
 
