@@ -111,6 +111,10 @@ std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, c
     support::Diagnostic& report = diagnostics.report(Id::unknown_node_type, where,
                                                      "no node type or library function " + quote(reference));
     if (diagnostics.full()) return nullptr;
+    if (const auto other = nodes::called_elsewhere(reference, referred.rows); !other.empty()) {
+      report.suggest("here it is " + quote(other));
+      return nullptr;
+    }
     const std::vector<std::string> functions = names();
     std::vector<std::string_view> candidates(functions.begin(), functions.end());
     for (const nodes::Row& row : referred.rows) candidates.push_back(row.name);

@@ -17,6 +17,10 @@ const Row* find(std::string_view name);
 const std::vector<Row>& function_table();
 const Row* find_function(std::string_view name);
 
+/// What `word`, a name in other shading languages or on the other side (nodes, expressions), is called in `rows`; empty
+/// if nothing is known of it.
+std::string_view called_elsewhere(std::string_view word, const std::vector<Row>& rows);
+
 // The groups, one file each.
 std::vector<Row> structure_rows();
 std::vector<Row> math_rows();

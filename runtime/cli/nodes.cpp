@@ -51,7 +51,8 @@ int nodes(const NodesArguments& arguments, const Common& common) {
     support::Diagnostics diagnostics = make_diagnostics(common);
     std::vector<std::string_view> names;
     for (const nodes::Row& known : nodes::table()) names.push_back(known.name);
-    const std::string_view near = support::nearest(arguments.name, names);
+    const std::string_view other = nodes::called_elsewhere(arguments.name, nodes::table());
+    const std::string_view near = other.empty() ? support::nearest(arguments.name, names) : other;
     diagnostics.report(support::Id::unknown_node, "the node library has no " + support::quote(arguments.name))
         .suggest(near.empty() ? "`isoshade nodes` lists all" : "did you mean " + support::quote(near) + "?");
     flush(diagnostics, common);

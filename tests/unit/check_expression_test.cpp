@@ -79,6 +79,7 @@ TEST(Expression, VectorsAreMadeTakenApartAndBroadcast) {
   EXPECT_EQ(value_of("vector2(x)"), (Floats{3, 3}));
   EXPECT_EQ(value_of("color4(v.x, v.y, v.z, 1)"), (Floats{1, 2, 5, 1}));
   EXPECT_EQ(value_of("color3(v) * color3(1, 0, 1)"), (Floats{1, 0, 5}));
+  EXPECT_EQ(value_of("boolean(v.x - 1) ? 1 : integer(2.5) / 4"), Floats{0.5f});
 }
 
 TEST(Expression, CallsWhatTheLibraryHas) {
@@ -126,6 +127,22 @@ std::string error_of(const std::string& code, const std::string& ports = R"("x":
          std::string(support::id_text(first.id)) + ": " + first.message;
 }
 
+/// What the first error says to do.
+std::string fix_of(const std::string& code) {
+  FrontEnd front_end;
+  front_end.check(document(code, R"("x": "x", "v": "v")"));
+  return front_end.diagnostics.all().empty() ? "" : front_end.diagnostics.all()[0].fix;
+}
+
+TEST(Expression, WordsOfOtherLanguagesAreTranslated) {
+  EXPECT_EQ(fix_of("lerp(x, 1, v)"), "here it is \"mix\"");
+  EXPECT_EQ(fix_of("power(x, v)"), "here it is \"pow\"");
+  EXPECT_EQ(fix_of("vec3(x) + v"), "here it is \"vector3\"");
+  EXPECT_EQ(fix_of("v * (x % 2)"), "write mod(x, y)");
+  EXPECT_EQ(fix_of("v * x ^ 2"), "write pow(x, y)");
+  EXPECT_EQ(fix_of("x = 1 ? v : 2"), "compare with ==");
+}
+
 TEST(Expression, ErrorsPointIntoTheString) {
   EXPECT_EQ(error_of("x + * y"), "4 bad-expression: a value is needed before \"*\"");
   EXPECT_EQ(error_of("x + (y"),
@@ -139,6 +156,7 @@ TEST(Expression, ErrorsPointIntoTheString) {
             "5 bad-expression: the code ends where \":\" between the two results of \"?\" is needed");
   EXPECT_EQ(error_of("x = y"), "2 bad-expression: an operator is needed before \"=\"");
   EXPECT_EQ(error_of("vector3(x, y)"), "0 bad-expression: vector3 takes 1 or 3 arguments, not 2");
+  EXPECT_EQ(error_of("integer(x, y)"), "0 bad-expression: integer takes 1 argument, not 2");
   EXPECT_EQ(error_of("matrix33(x)"), "0 bad-expression: an expression makes no matrix33");
   EXPECT_EQ(error_of("x + z"), "4 unknown-port: the expression has no port \"z\"");
   EXPECT_EQ(error_of("x.q", R"("x": "x")"), "0 unknown-output: \"x\" has no output \"q\"");
