@@ -59,11 +59,11 @@ void suggest_nearest(support::Diagnostics& diagnostics, support::Diagnostic& rep
   if (!near.empty()) report.suggest("did you mean " + support::quote(near) + "?");
 }
 
-std::string listed(const std::vector<std::string_view>& words) {
+std::string listed(const std::vector<std::string_view>& words, std::string_view last) {
   std::string text;
   constexpr size_t most = 12;
   for (size_t i = 0; i < words.size() && i < most; ++i) {
-    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    if (i > 0) text += i + 1 == words.size() ? " " + std::string(last) + " " : ", ";
     text += support::quote(words[i]);
   }
   return words.size() > most ? text + ", ..." : text;

@@ -171,7 +171,7 @@ void NodeInference::read_text(size_t i) {
   }
   support::Diagnostic& wrong = report(Id::unknown_choice, i, of_node(i) + " cannot be " + quote(text));
   suggest_nearest(work_.diagnostics, wrong, text, choices);
-  wrong.note("it can be " + listed(choices));
+  wrong.note("it can be " + listed(choices, "or"));
 }
 
 void NodeInference::read_type_name(size_t i, std::string_view text) {

@@ -63,7 +63,7 @@ std::shared_ptr<const TypedGraph> check_in(graph::Graph graph, const Scope& scop
 void suggest_nearest(support::Diagnostics& diagnostics, support::Diagnostic& report, std::string_view word,
                      const std::vector<std::string_view>& candidates);
 
-/// `"a", "b" and "c"`
-std::string listed(const std::vector<std::string_view>& words);
+/// `"a", "b" and "c"`; `last` stands in the place of "and".
+std::string listed(const std::vector<std::string_view>& words, std::string_view last = "and");
 
 }  // namespace isoshade::check

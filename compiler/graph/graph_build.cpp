@@ -12,6 +12,16 @@
 namespace isoshade::graph {
 namespace {
 
+std::string types_note() {
+  std::string note = "the types are";
+  for (const std::string_view name : all_type_names()) {
+    const Type type = *find_type(name);
+    if (float_count(type) > 0 || type == Type::boolean || type == Type::integer)
+      note += " " + std::string(name);
+  }
+  return note;
+}
+
 using support::Diagnostics;
 using support::Id;
 using support::quote;
@@ -168,8 +178,10 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
     input.type = found.value_or(Type::floating);
     input.any = !is_parameter && type->string == any_type_name;
     if (!found && !input.any) {
-      diagnostics_.report_unknown(Id::unknown_type, document_.span(*type), "no type " + quote(type->string),
-                                  type->string, all_type_names());
+      diagnostics_
+          .report_unknown(Id::unknown_type, document_.span(*type), "no type " + quote(type->string),
+                          type->string, all_type_names())
+          .note(type->string == any_type_name ? "only inputs of functions are of any type" : types_note());
     }
   }
   if (float_count(input.type) > 0 || input.type == Type::integer) {

@@ -167,6 +167,7 @@ TEST(Build, SeveralErrorsAreReportedInOneRun) {
             R"(a.json:4:32: error[unknown-type]: no type "flaot"
   4 |   "inputs": {"alpha": {"type": "flaot"}},
     |                                ^^^^^^^ did you mean "float"?
+  note: the types are boolean integer float vector2 vector3 vector4 color3 color4 matrix33 matrix44
 a.json:5:13: error[bad-id]: "2d" cannot name a node
   5 |   "nodes": {"2d": {"type": "add", "in1": null}},
     |             ^^^^
