@@ -85,6 +85,18 @@ std::string subcommand_names(const CLI::App& app) {
   return names;
 }
 
+/// A line for a subcommand that is misspelt; empty if none is near.
+std::string near_subcommand(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* subcommand : app.get_subcommands(nullptr)) names.push_back(subcommand->get_name());
+  for (int i = 1; i < argc; ++i) {
+    if (argv[i][0] == '-') continue;
+    const std::string_view near = support::nearest(argv[i], names);
+    return near.empty() ? "" : "Did you mean \"" + std::string(near) + "\"?\n";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
@@ -117,7 +129,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   CLI::App* compile_app =
       app.add_subcommand("compile", "Write the programs of a graph as GLSL, C++ and SPIR-V");
   compile_app->add_option("GRAPH", compile.graph, "A function or effect document")->required();
-  compile_app->add_option("-o,--output", compile.output, "The folder to write to")->required();
+  compile_app->add_option("-o,--output", compile.output,
+                          "The folder to write to; with --dump-after it may be left out");
   compile_app->add_option("--target", compile.targets, "What to write: glsl, cpp, spirv")
       ->delimiter(',')
       ->check(CLI::IsMember({"glsl", "cpp", "spirv"}))
@@ -179,7 +192,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   EvalArguments eval;
   CLI::App* eval_app = app.add_subcommand("eval", "Evaluate a function document over a table");
   eval_app->add_option("FUNCTION", eval.function, "A function document")->required();
-  eval_app->add_option("--inputs", eval.inputs, "A CSV file: a column an input, vectors as l.x l.y l.z")
+  eval_app
+      ->add_option("--inputs", eval.inputs,
+                   "A CSV file: a column an input; of vectors l.x l.y l.z, of colours c.r c.g c.b too")
       ->required();
   eval_app->add_option("-o,--output", eval.output, "The CSV file to write")->capture_default_str();
   eval_app->add_option("--backend", eval.backend, "cpu, vulkan or interpreter")
@@ -217,11 +232,14 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   try {
     app.parse(argc, argv);
+    if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
+      throw CLI::RequiredError("--output");
   } catch (const CLI::ParseError& error) {
     // CLI11's own codes are for its own kinds of error; ours are documented.
     exit = app.exit(error) == 0 ? Exit::success : Exit::failure;
     if (exit == Exit::failure && app.get_subcommands().empty())
-      std::cerr << "The subcommands are: " << subcommand_names(app) << "\n";
+      std::cerr << "The subcommands are: " << subcommand_names(app) << "\n"
+                << near_subcommand(app, argc, argv);
     return std::nullopt;
   }
   if (app.get_subcommands().empty()) {

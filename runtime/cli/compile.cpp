@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "backends/cpu/lanes_headers.h"
 #include "compiler/driver/driver.h"
@@ -45,6 +46,7 @@ class Writer {
   }
 
   bool write(const std::string& name, std::string_view bytes) {
+    if (arguments_.output.empty() || arguments_.dump_after == "help") return true;
     const std::filesystem::path path = std::filesystem::path(arguments_.output) / name;
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(),
@@ -134,9 +136,12 @@ int compile(const CompileArguments& arguments, const Common& common) {
   driver::Options options;
   options.library = &library;
   int dumped = 0;
+  const bool lists_stages = arguments.dump_after == "help";
+  std::set<std::string, std::less<>> listed;  // passes run more than once
   if (!arguments.dump_after.empty())
     options.dump = [&](std::string_view stage, const std::function<std::string()>& text) {
-      if (arguments.dump_after == "help") std::printf("%.*s\n", static_cast<int>(stage.size()), stage.data());
+      if (lists_stages && listed.emplace(stage).second)
+        std::printf("%.*s\n", static_cast<int>(stage.size()), stage.data());
       if (arguments.dump_after != stage) return;
       ++dumped;
       std::printf("# after %.*s\n%s", static_cast<int>(stage.size()), stage.data(), text().c_str());
@@ -154,7 +159,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
     done = effect && write_effect(*effect, writer);
   }
   if (done) done = writer.headers();
-  if (done && !arguments.dump_after.empty() && arguments.dump_after != "help" && dumped == 0)
+  if (done && !arguments.dump_after.empty() && !lists_stages && dumped == 0)
     diagnostics.report(support::Id::unknown_stage, "no stage \"" + arguments.dump_after + "\"")
         .suggest("`--dump-after help` lists the stages of this graph");
   if (flush(diagnostics, common) || !done) return failure;

@@ -96,6 +96,24 @@ std::vector<Column> all_columns(const std::vector<driver::Field>& fields) {
   return columns;
 }
 
+/// The first ones of very many.
+std::string joined(const std::vector<std::string_view>& names) {
+  constexpr size_t most = 16;
+  std::string text;
+  for (size_t i = 0; i < names.size() && i < most; ++i) text += (i == 0 ? "" : ",") + std::string(names[i]);
+  return names.size() > most ? text + ",..." : text;
+}
+
+/// "c.g" as columns have it, "c.y".
+std::string column_name(std::string_view cell) {
+  std::string name(cell);
+  if (name.size() < 3 || name[name.size() - 2] != '.') return name;
+  if (const size_t component = std::string_view("rgba").find(name.back());
+      component != std::string_view::npos)
+    name.back() = "xyzw"[component];
+  return name;
+}
+
 /// Which of `columns` each cell of the heading names.
 std::optional<std::vector<const Column*>> read_heading(Reader& reader, const std::vector<Column>& columns) {
   std::vector<const Column*> heading;
@@ -103,11 +121,13 @@ std::optional<std::vector<const Column*>> read_heading(Reader& reader, const std
   for (const Column& column : columns) names.push_back(column.name);
   bool good = true;
   for (std::string_view cell : reader.cells()) {
-    const auto found = std::ranges::find(columns, cell, &Column::name);
+    const auto found = std::ranges::find(columns, column_name(cell), &Column::name);
     if (found == columns.end()) {
       auto& report = reader.report(cell, "no input has a column \"" + std::string(cell) + "\"");
       if (const auto near = support::nearest(cell, names); !near.empty())
         report.suggest("did you mean \"" + std::string(near) + "\"?");
+      else
+        report.note("the columns are " + joined(names));
       good = false;
     } else if (std::ranges::find(heading, &*found) != heading.end()) {
       reader.report(cell, "the column \"" + std::string(cell) + "\" is there twice");

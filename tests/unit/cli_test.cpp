@@ -160,6 +160,7 @@ TEST_F(Cli, SaysWhereATableIsWrong) {
     return run("eval " + ggx + " --inputs " + file("in.csv", text)).text;
   };
   EXPECT_NE(error("alpha,n_dot_l\n1,1\n").find("did you mean \"n_dot_h\"?"), std::string::npos);
+  EXPECT_NE(error("roughness,n_dot_h\n1,1\n").find("the columns are alpha,n_dot_h"), std::string::npos);
   EXPECT_NE(error("alpha\n1\n").find("there is no column \"n_dot_h\""), std::string::npos);
   EXPECT_NE(error("\xef\xbb\xbf"
                   "alpha,n_dot_h\n1\n")
@@ -250,6 +251,31 @@ TEST_F(Cli, ListsTheNodesAndTellsAllOfOne) {
   const Outcome none = run("nodes nois3d");
   EXPECT_EQ(none.exit, 2);
   EXPECT_NE(none.text.find("did you mean \"noise3d\"?"), std::string::npos) << none.text;
+}
+
+TEST_F(Cli, NamesNodesByWhatOthersCallThem) {
+  EXPECT_NE(run("nodes lerp").text.find("did you mean \"mix\"?"), std::string::npos);
+  EXPECT_NE(run("nodes dot").text.find("did you mean \"dotproduct\"?"), std::string::npos);
+  EXPECT_NE(run("rendr a.json").text.find("Did you mean \"render\"?"), std::string::npos);
+}
+
+TEST_F(Cli, ListsStagesAndDumpsThemWithoutAFolder) {
+  const Outcome stages = run("compile " + ggx + " --dump-after help");
+  EXPECT_EQ(stages.exit, 0) << stages.text;
+  EXPECT_EQ(stages.text.find("\nfold\n"), stages.text.rfind("\nfold\n")) << stages.text;
+  EXPECT_EQ(run("compile " + ggx + " --dump-after typed").exit, 0);
+  EXPECT_EQ(run("compile " + ggx + " -o " + file("out") + " --dump-after help").text, stages.text);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_EQ(run("compile " + ggx).exit, 2);
+}
+
+TEST_F(Cli, TablesNameComponentsOfColoursAsColours) {
+  const std::string function = file(
+      "f.json",
+      R"({"isoshade": 1, "function": "f", "inputs": {"c": {"type": "color3"}}, "outputs": {"out": "c"}})");
+  const std::string table = file("in.csv", "c.b,c.r,c.g\n4,1,2\n");
+  EXPECT_EQ(run("eval " + function + " --inputs " + table + " --backend interpreter").text,
+            "out.x,out.y,out.z\n0x1p+0,0x1p+1,0x1p+2\n");
 }
 
 TEST_F(Cli, DumpsEveryStage) {
