@@ -24,6 +24,8 @@
 namespace isoshade::graph {
 
 inline constexpr std::string_view expression_type = "expression";
+inline constexpr std::string_view expression_doc =
+    "A formula: its `code` is arithmetic over values that the other keys name.";
 /// Limits that keep hostile code harmless: parentheses and signs inside each other, and nodes a document.
 inline constexpr int max_expression_depth = 100;
 inline constexpr size_t max_expression_nodes = 200'000;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/graph/expression.h"
 #include "compiler/nodes/example.h"
 #include "compiler/support/parse_number.h"
 
@@ -63,6 +64,10 @@ std::string_view first_sentence(std::string_view doc) {
   return end == std::string_view::npos ? doc : doc.substr(0, end + 1);
 }
 
+std::string line_text(std::string_view name, std::string_view doc) {
+  return "  " + padded(std::string(name), 18) + std::string(first_sentence(doc)) + "\n";
+}
+
 /// A cell of a table: no bars.
 std::string cell(std::string text) {
   for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.replace(at, 1, "\\|");
@@ -106,9 +111,16 @@ std::string table_text() {
   for (const Row& row : table()) {
     if (row.group != group) text += (group.empty() ? "" : "\n") + std::string(row.group) + "\n";
     group = row.group;
-    text += "  " + padded(std::string(row.name), 18) + std::string(first_sentence(row.doc)) + "\n";
+    text += line_text(row.name, row.doc);
   }
-  return text;
+  return text + "\nformulas\n" + line_text(graph::expression_type, graph::expression_doc);
+}
+
+std::string expression_text() {
+  return std::string(graph::expression_type) + " (formulas)\n  " + std::string(graph::expression_doc) +
+         "\nports\n  code  the formula, written in place: \"a*a / (pi * t*t)\"; required\n"
+         "  ...   each name in it that is neither a function nor a number: a literal or a link\n"
+         "outputs\n  out   what the formula gives\n";
 }
 
 std::string row_text(const Row& row) {

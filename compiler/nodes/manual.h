@@ -17,6 +17,8 @@ std::string default_text(const Port& port);
 std::string table_text();
 /// What a row does, its ports and outputs.
 std::string row_text(const Row& row);
+/// The same of the nodes that hold a formula, which are no rows.
+std::string expression_text();
 
 /// The tables of graphs/README.md, one a group: node, ports with defaults, what it does.
 std::string table_markdown();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/nodes/schema.h"
 
+#include "compiler/graph/expression.h"
 #include "compiler/nodes/example.h"
 #include "compiler/nodes/manual.h"
 #include "compiler/nodes/schema_json.h"
@@ -104,8 +105,7 @@ SchemaJson node_schema() {
                         {"then", std::move(schema)}});
   };
   for (const Row& row : table()) add(row.name, row.doc, row_schema(row));
-  constexpr std::string_view expression = "Arithmetic as text, over ports that it names.";
-  add("expression", expression,
+  add(graph::expression_type, graph::expression_doc,
       {{"required", {"code"}},
        {"properties",
         {{"code", {{"description", "such as \"a*a / (pi * t*t)\""}, {"type", "string"}}},

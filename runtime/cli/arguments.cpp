@@ -67,15 +67,14 @@ void add_choice(CLI::App& app, BackendChoice& choice, bool lanes = true) {
                  "Compiler of generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
 }
 
-void add_settings(CLI::App& app, std::vector<std::string>& settings) {
-  app.add_option("--set", settings,
+void add_changes(CLI::App& app, SceneChanges& changes) {
+  app.add_option("--set", changes.settings,
                  "Override a parameter: NAME.PARAMETER=VALUE, or PARAMETER=VALUE if only one has it")
       ->take_all();
-}
-
-void add_mesh(CLI::App& app, std::string& mesh) {
-  app.add_option("--mesh", mesh,
+  app.add_option("--mesh", changes.mesh,
                  "A glTF file (.gltf, .glb) in place of the scene's one, or of its only object's mesh");
+  app.add_option("--time", changes.time, "Seconds for the node `time` instead of the scene's")
+      ->check(CLI::Range(-1e9, 1e9));
 }
 
 std::string subcommand_names(const CLI::App& app) {
@@ -154,11 +153,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(backend_names)
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
-  render_app->add_option("--time", render.time, "Seconds for the node `time` instead of the scene's")
-      ->check(CLI::Range(-1e9, 1e9));
   render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why");
-  add_settings(*render_app, render.settings);
-  add_mesh(*render_app, render.mesh);
+  add_changes(*render_app, render.changes);
   add_choice(*render_app, render.choice);
 
   VerifyArguments verify;
@@ -185,8 +181,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                                                "A file of recorded hashes, of each scene at its own size");
   golden->excludes(verify_app->get_option("--size"));
   verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
-  add_settings(*verify_app, verify.settings);
-  add_mesh(*verify_app, verify.mesh);
+  add_changes(*verify_app, verify.changes);
   add_choice(*verify_app, verify.choice, false);
 
   EvalArguments eval;

@@ -30,6 +30,13 @@ struct BackendChoice {
   std::string division;  ///< "", "native" or "exact": overrides what the probe chose
 };
 
+/// What a command shows otherwise than a scene's document says.
+struct SceneChanges {
+  std::vector<std::string> settings;  ///< name.parameter=value
+  std::string mesh;                   ///< a glTF file in place of the scene's; empty: none
+  std::optional<float> time;          ///< in seconds
+};
+
 struct CompileArguments {
   std::string graph;
   std::string output;
@@ -43,9 +50,7 @@ struct RenderArguments {
   std::string output;
   std::string backend = "cpu";
   std::optional<Size> size;
-  std::optional<float> time;          ///< instead of the scene's, in seconds
-  std::vector<std::string> settings;  ///< name.parameter=value
-  std::string mesh;                   ///< a glTF file in place of the scene's; empty: none
+  SceneChanges changes;
   bool stats = false;
   BackendChoice choice;
 };
@@ -54,8 +59,7 @@ struct VerifyArguments {
   std::vector<std::string> scenes;
   std::vector<std::string> backends{"cpu", "vulkan"};
   std::vector<Size> sizes;
-  std::vector<std::string> settings;
-  std::string mesh;
+  SceneChanges changes;
   std::vector<std::string> lanes;  ///< each makes a cpu backend
   std::string report;
   std::string golden;

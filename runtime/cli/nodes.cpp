@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "compiler/driver/node_cost.h"
+#include "compiler/graph/expression.h"
 #include "compiler/nodes/manual.h"
 #include "compiler/nodes/schema.h"
 #include "compiler/support/visible.h"
@@ -44,6 +45,10 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   if (arguments.name.empty()) {
     const std::string text = arguments.markdown ? nodes::table_markdown() : nodes::table_text();
     std::fputs(text.c_str(), stdout);
+    return success;
+  }
+  if (arguments.name == graph::expression_type) {
+    std::fputs(nodes::expression_text().c_str(), stdout);
     return success;
   }
   const nodes::Row* row = nodes::find(arguments.name);

@@ -40,15 +40,18 @@ bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnos
 
 }  // namespace
 
-std::optional<scene::Scene> load_scene(const std::string& path, const std::vector<std::string>& settings,
-                                       const std::string& mesh, support::Diagnostics& diagnostics) {
+std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
+                                       support::Diagnostics& diagnostics) {
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return std::nullopt;
   auto document = graph::parse_document(source, diagnostics);
-  if (document && !settings.empty()) document = scene::apply_settings(*document, settings, diagnostics);
+  if (document && !changes.settings.empty())
+    document = scene::apply_settings(*document, changes.settings, diagnostics);
   if (!document) return std::nullopt;
   auto scene = scene::parse_scene(*document, diagnostics);
-  if (scene && !mesh.empty() && !replace_mesh(*scene, mesh, diagnostics)) return std::nullopt;
+  if (!scene) return std::nullopt;
+  if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
+  if (changes.time) scene->time = *changes.time;
   return scene;
 }
 
@@ -59,9 +62,8 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
   if (!scene::check_image_path(arguments.output, diagnostics) ||
       !may_write(arguments.output, {arguments.scene}, diagnostics))
     return false;
-  auto scene = load_scene(arguments.scene, arguments.settings, arguments.mesh, diagnostics);
+  auto scene = load_scene(arguments.scene, arguments.changes, diagnostics);
   if (!scene) return false;
-  if (arguments.time) scene->time = *arguments.time;
   check::Library library = make_library(common);
   render::Options options;
   if (arguments.size) {

@@ -80,6 +80,11 @@ class Verifier {
         backends_.push_back({label(name, count), std::move(backend)});
       }
     }
+    if (backends_.size() < 2 && arguments_.golden.empty()) {
+      diagnostics_.report(support::Id::missing_argument, "one backend alone has nothing to be compared with")
+          .suggest("name a second one in --backends, several --lanes, or recorded hashes by --golden FILE");
+      return false;
+    }
     return true;
   }
 
@@ -88,7 +93,7 @@ class Verifier {
   }
 
   int verify_scene(const std::string& path) {
-    const auto scene = load_scene(path, arguments_.settings, arguments_.mesh, diagnostics_);
+    const auto scene = load_scene(path, arguments_.changes, diagnostics_);
     if (!scene) return failure;
     int result = success;
     std::vector<Size> sizes = arguments_.sizes;

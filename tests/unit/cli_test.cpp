@@ -130,6 +130,9 @@ TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
   EXPECT_EQ(same.exit, 0) << same.text;
   EXPECT_NE(same.text.find("identical: 0 of 576 pixels differ"), std::string::npos) << same.text;
 
+  EXPECT_EQ(run("verify " + scene + " --backends cpu --size 32x18").exit, 2)
+      << "there is nothing to compare with";
+
   const std::string golden = file("hashes.json");
   const std::string command = "verify " + scene + " --backends cpu --golden " + golden;
   EXPECT_EQ(run(command).exit, 2) << "there is no such file yet";
@@ -144,6 +147,19 @@ TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
                 .exit,
             0)
       << "the file is the same from wherever it is used";
+}
+
+TEST_F(Cli, ShowsAnotherTime) {
+  const auto hash_of = [](const std::string& time) {
+    const Outcome outcome = run("verify " + graphs + "/scenes/surface_attributes.json --size 64x36 " +
+                                "--backends cpu,interpreter " + time);
+    EXPECT_EQ(outcome.exit, 0) << outcome.text;
+    const size_t at = outcome.text.find("sha256 ");
+    return outcome.text.substr(at, at == std::string::npos ? at : 71);
+  };
+  EXPECT_EQ(hash_of(""), hash_of("--time 2.125")) << "the scene's own";
+  EXPECT_NE(hash_of(""), hash_of("--time 2.5"));
+  EXPECT_EQ(run("render " + scene + " -o " + file("a.png") + " --time soon").exit, 2);
 }
 
 TEST_F(Cli, EvaluatesATable) {
@@ -217,7 +233,8 @@ TEST_F(Cli, ReadsStandardInputForOneThingOnly) {
 }
 
 TEST_F(Cli, FailsWhereNobodyCanReadWhatItSays) {
-  const std::string verify = "verify " + scene + " --backends interpreter --size 8x8";
+  const std::string verify = "verify " + scene + " --backends interpreter,interpreter --size 8x8";
+  EXPECT_EQ(run(verify).exit, 0);
   EXPECT_EQ(run(verify + " 2>&1 >/dev/full").exit, 2);
   EXPECT_EQ(run(verify + " 2>&1 >&-").exit, 2);
   EXPECT_EQ(
