@@ -22,9 +22,8 @@ void check_supported(Work& work) {
                     std::string(graph::type_name(input.type)) + " cannot be compiled yet");
   }
   for (const graph::Pass& pass : graph.passes) {
-    if (!pass.position) continue;
-    work.report(Id::unsupported, pass.position->place, "a pass that moves vertices cannot be compiled yet")
-        .suggest("leave out \"position\": vertices then stay where the mesh has them");
+    if (pass.depth == graph::DepthTest::nearer) continue;
+    work.report(Id::unsupported, pass.place, "a pass with the depth test \"always\" cannot be drawn yet");
   }
 }
 

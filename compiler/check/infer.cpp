@@ -379,7 +379,13 @@ void infer_output(Work& work, size_t i) {
   const Link& link = *work.roots[i];
   if (!select(work, link, output)) return;
   output.needed = output.type;
-  if (work.graph().kind == graph::DocumentKind::function || nodes::color_types.has(output.type)) return;
+  if (work.graph().kind == graph::DocumentKind::function) return;
+  if (i >= work.graph().passes.size()) {
+    if (output.type == Type::vector3) return;
+    work.report(Id::type_mismatch, link.place, "\"position\" is a vector3, not " + name_of(output.type));
+    return;
+  }
+  if (nodes::color_types.has(output.type)) return;
   output.needed = Type::color3;
   if (converts(output.type, Type::color3)) return;
   work.report(Id::type_mismatch, link.place, "\"color\" is color3 or color4, not " + name_of(output.type))

@@ -219,6 +219,8 @@ void resolve(Work& work) {
 
   for (const graph::Output& output : graph.outputs) work.roots.push_back(&output.link);
   for (const graph::Pass& pass : graph.passes) work.roots.push_back(&pass.color);
+  for (const graph::Pass& pass : graph.passes)
+    if (pass.position) work.roots.push_back(&*pass.position);
   work.typed.outputs.resize(work.roots.size());
   for (size_t i = 0; i < work.roots.size(); ++i) resolve_link(work, *work.roots[i], work.typed.outputs[i]);
 }

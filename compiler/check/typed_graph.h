@@ -56,11 +56,23 @@ struct TypedGraph {
   std::vector<Operand> operands;  ///< of all nodes
   std::vector<Type> types;        ///< of all nodes' outputs
   std::vector<uint32_t> words;    ///< of literals: bits of floats, booleans, integers
-  std::vector<Operand> outputs;   ///< of a function's Graph::outputs; or the color of each pass
-  uint64_t expanded_nodes = 0;    ///< with those of called functions, once for each call
+  /// Of a function's Graph::outputs; or the color of each pass, and then the position of each that has one.
+  std::vector<Operand> outputs;
+  uint64_t expanded_nodes = 0;  ///< with those of called functions, once for each call
 
   std::span<const Operand> operands_of(const Node& node) const {
     return {operands.data() + node.first_operand, node.operand_count};
+  }
+  /// Those that a function gives, or that pixels are made of: without the positions of passes.
+  std::span<const Operand> values() const {
+    return std::span(outputs).first(graph.passes.empty() ? outputs.size() : graph.passes.size());
+  }
+  /// Where a pass moves vertices to; null if it leaves them where they are.
+  const Operand* position_of(size_t pass) const {
+    if (!graph.passes[pass].position) return nullptr;
+    size_t index = graph.passes.size();
+    for (size_t i = 0; i < pass; ++i) index += graph.passes[i].position ? 1 : 0;
+    return &outputs[index];
   }
   std::span<const Type> types_of(const Node& node) const {
     return {types.data() + node.first_type, node.output_count};

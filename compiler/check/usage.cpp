@@ -32,7 +32,7 @@ void check_lights(Work& work) {
   constexpr uint32_t not_reached = ~0u;
   constexpr uint32_t output = not_reached - 1;
   std::vector<uint32_t> reader(typed.nodes.size(), not_reached);
-  for (const Operand& root : typed.outputs)
+  for (const Operand& root : typed.values())
     if (root.from == From::node) reader[root.index] = output;
   for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
     const Node& node = typed.nodes[*it];
@@ -54,6 +54,35 @@ void check_lights(Work& work) {
     if (is_sum(node)) continue;
     for (const Operand& operand : typed.operands_of(node))
       if (operand.from == From::node) reader[operand.index] = *it;
+  }
+}
+
+/// What a row speaks of that vertices do not have; nullptr if it has a meaning there.
+const char* missing_at_vertices(const nodes::Row& row) {
+  if (row.is<nodes::Derivative>()) return "derivatives are those of pixels";
+  if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "light falls on pixels";
+  return nullptr;
+}
+
+/// Reports nodes that positions of passes depend on, but that have no meaning at vertices.
+void check_positions(Work& work) {
+  const TypedGraph& typed = work.typed;
+  const graph::Graph& graph = work.graph();
+  std::vector<bool> reached(typed.nodes.size());
+  const auto reach = [&](const Operand& operand) {
+    if (operand.from == From::node) reached[operand.index] = true;
+  };
+  std::ranges::for_each(std::span(typed.outputs).subspan(typed.values().size()), reach);
+  for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
+    if (!reached[*it]) continue;
+    const Node& node = typed.nodes[*it];
+    std::ranges::for_each(typed.operands_of(node), reach);
+    const char* reason = node.row != nullptr ? missing_at_vertices(*node.row) : nullptr;
+    if (reason == nullptr) continue;
+    work.report(Id::misplaced_node, graph.nodes[*it].type_place,
+                "the \"position\" of a pass cannot depend on " + quote(graph.nodes[*it].label()))
+        .note(std::string("it is computed for each vertex: ") + reason)
+        .suggest("compute \"position\" without it; \"color\" may depend on it");
   }
 }
 
@@ -136,6 +165,7 @@ void warn_unused(Work& work) {
 void check_usage(Work& work) {
   mark_per_light(work.typed);
   check_lights(work);
+  check_positions(work);
   check_derivatives(work);
   check_size(work);
   if (!work.is_instance()) warn_unused(work);

@@ -70,10 +70,13 @@ class Picture {
     for (const graph::Input& input : graph.graph.inputs)
       inputs.push_back(input_box(input, input.value ? " = " + literal_text(*input.value) : ""));
     const Drawn drawn = body(graph, inputs, 0);
+    Names names_of_passes;  // in the order of TypedGraph::outputs
+    for (const graph::Pass& pass : graph.graph.passes) names_of_passes.push_back(pass.name + " color");
+    for (const graph::Pass& pass : graph.graph.passes)
+      if (pass.position) names_of_passes.push_back(pass.name + " position");
     for (size_t i = 0; i < graph.outputs.size(); ++i) {
       const bool is_function = graph.graph.kind == graph::DocumentKind::function;
-      const std::string name =
-          is_function ? graph.graph.outputs[i].name : graph.graph.passes[i].name + " color";
+      const std::string name = is_function ? graph.graph.outputs[i].name : names_of_passes[i];
       edge(source_of(graph.outputs[i], drawn, inputs), output_box(name, graph.outputs[i].needed),
            graph.outputs[i]);
     }

@@ -95,9 +95,19 @@ lower::FieldOffsets offsets_of(const std::vector<Field>& parameters) {
   return offsets;
 }
 
-Program vertex_program(const check::TypedGraph& typed, const Options& options) {
+Program vertex_program(const check::TypedGraph& typed, size_t pass, const std::vector<Field>& parameters,
+                       const Options& options) {
   Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
-  program.entry = finish(program.module, lower::add_vertex_kernel(program.module), options);
+  uint32_t kernel = 0;
+  if (typed.position_of(pass) == nullptr) {
+    kernel = lower::add_vertex_kernel(program.module);
+  } else {
+    program.module = lower::lower(typed, {pass, lower::PassPart::position});
+    program.module.buffers = lower::frame_module().buffers;
+    kernel = lower::add_moving_vertex_kernel(program.module, offsets_of(parameters),
+                                             typed.graph.passes[pass].position_space);
+  }
+  program.entry = finish(program.module, kernel, options);
   return program;
 }
 
@@ -130,7 +140,8 @@ std::optional<Effect> compile_effect(const support::Source& source, const Option
   Effect effect{typed->graph.name, typed->document, parameters_of(*typed), {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    effect.passes.push_back({pass.name, pass.cull, vertex_program(*typed, options),
+    effect.passes.push_back({pass.name, pass.cull, pass.position.has_value(), pass.enabled,
+                             vertex_program(*typed, i, effect.parameters, options),
                              pixel_program(*typed, i, effect.parameters, options)});
   }
   return effect;

@@ -29,6 +29,8 @@ struct Options {
 struct Pass {
   std::string name;
   graph::Cull cull = graph::Cull::back;
+  bool moves_vertices = false;
+  std::optional<size_t> enabled;  ///< in Effect::parameters: it is drawn where that is not 0
   Program vertex;
   Program pixel;
 };

@@ -97,7 +97,8 @@ std::string dump_graph(const graph::Graph& graph) {
   for (const graph::Output& output : graph.outputs)
     out += fmt::format("  output {} {}\n", output.name, text(output.link));
   for (const graph::Pass& pass : graph.passes)
-    out += fmt::format("  pass {} {}\n", pass.name, text(pass.color));
+    out += fmt::format("  pass {} {}{}\n", pass.name, text(pass.color),
+                       pass.position ? " position " + text(*pass.position) : "");
   return out;
 }
 

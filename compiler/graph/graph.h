@@ -129,6 +129,8 @@ struct Output {
 
 enum class Cull : uint8_t { none, back, front };
 enum class DepthTest : uint8_t { nearer, always };
+/// What the coordinates of a pass's `position` count from.
+enum class PositionSpace : uint8_t { world, object, view };
 
 /// One drawing of the mesh by an effect.
 struct Pass {
@@ -136,7 +138,9 @@ struct Pass {
   Cull cull = Cull::back;
   DepthTest depth = DepthTest::nearer;
   std::optional<Link> position;  ///< vertex output; without it the mesh's own position
-  Link color;                    ///< surface output
+  PositionSpace position_space = PositionSpace::world;
+  std::optional<uint32_t> enabled;  ///< in Graph::inputs: it is drawn where that parameter is not 0
+  Link color;                       ///< surface output
   Place place;
 };
 

@@ -4,14 +4,18 @@
 #include <utility>
 
 #include "compiler/graph/expression.h"
-#include "compiler/graph/graph.h"
-#include "compiler/graph/reader.h"
+#include "compiler/graph/graph_builder.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
-namespace {
 
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+using Need = ObjectReader::Need;
+
+namespace {
 std::string types_note() {
   std::string note = "the types are";
   for (const std::string_view name : all_type_names()) {
@@ -21,46 +25,7 @@ std::string types_note() {
   }
   return note;
 }
-
-using support::Diagnostics;
-using support::Id;
-using support::quote;
-using Need = ObjectReader::Need;
-
-Place place_of(const Json& json) { return {json.begin, json.end}; }
-Place key_place(const Member& member) { return {member.key_begin, member.key_end}; }
-
-class GraphBuilder {
- public:
-  GraphBuilder(const Document& document, Diagnostics& diagnostics)
-      : document_(document), diagnostics_(diagnostics) {
-    graph_.source = document.source;
-  }
-
-  std::optional<Graph> build(DocumentKind kind);
-
- private:
-  void check_id(std::string_view id, Place place, std::string_view what);
-  /// Enters an input or a node under its name.
-  void enter(const Member& member, std::string_view what, Graph::Name name);
-
-  std::optional<Literal> literal(const Json& json, std::string_view key);
-  std::optional<Link> link(const Json& json, std::string_view key);
-
-  void read_inputs(const Json& inputs, bool are_parameters);
-  void read_input(const Member& member, bool is_parameter);
-  void check_value(const Input& input, const Json& json);
-  void read_nodes(const Json& nodes);
-  void read_node(const Member& member);
-  void read_code(const Member& member, const Json* code);
-  void read_outputs(const Json& outputs);
-  void read_passes(const Json& passes);
-  void read_pass(const Json& json);
-
-  const Document& document_;
-  Diagnostics& diagnostics_;
-  Graph graph_;
-};
+}  // namespace
 
 void GraphBuilder::check_id(std::string_view id, Place place, std::string_view what) {
   if (is_id(id)) return;
@@ -301,47 +266,6 @@ void GraphBuilder::read_outputs(const Json& outputs) {
   }
 }
 
-void GraphBuilder::read_pass(const Json& json) {
-  Pass pass;
-  pass.place = place_of(json);
-  ObjectReader reader(document_, json, "a pass", diagnostics_);
-  pass.name = reader.string("name");
-  pass.cull =
-      static_cast<Cull>(reader.choice("cull", {"none", "back", "front"}, static_cast<size_t>(Cull::back)));
-  pass.depth = static_cast<DepthTest>(reader.choice("depth", {"nearer", "always"}, 0));
-  if (const Json* position = reader.value("position", Need::optional))
-    pass.position = link(*position, "position");
-  if (const Json* color = reader.value("color")) {
-    if (std::optional<Link> found = link(*color, "color")) pass.color = std::move(*found);
-  }
-  reader.finish();
-  const Json* name = json.find("name");
-  if (name != nullptr && name->kind == Json::Kind::string) {
-    check_id(pass.name, place_of(*name), "a pass");
-    for (const Pass& other : graph_.passes) {
-      if (other.name != pass.name) continue;
-      diagnostics_
-          .report(Id::duplicate_name, document_.span(*name), "two passes are called " + quote(pass.name))
-          .note(graph_.span(other.place), "the other one");
-      break;
-    }
-  }
-  graph_.passes.push_back(std::move(pass));
-}
-
-void GraphBuilder::read_passes(const Json& passes) {
-  // Few enough to compare each with each; nobody draws a mesh so often.
-  constexpr size_t most = 64;
-  if (passes.items.empty()) {
-    diagnostics_.report(Id::missing_key, document_.span(passes), "an effect needs at least one pass");
-  } else if (passes.items.size() > most) {
-    diagnostics_.report(Id::too_large, document_.span(passes),
-                        "an effect has at most " + std::to_string(most) + " passes");
-  } else {
-    for (const Json& pass : passes.items) read_pass(pass);
-  }
-}
-
 std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
   const size_t errors_before = diagnostics_.error_count();
   const Json& root = document_.root;
@@ -372,8 +296,6 @@ std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
   if (diagnostics_.error_count() != errors_before) return std::nullopt;
   return std::move(graph_);
 }
-
-}  // namespace
 
 std::optional<Graph> build_graph(const Document& document, Diagnostics& diagnostics) {
   const std::optional<DocumentKind> kind = document_kind(document, diagnostics);

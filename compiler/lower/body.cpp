@@ -20,7 +20,7 @@ constexpr nodes::SurfaceValue world_position{nodes::Surface::position};
 /// What a node of a surface attribute gives. Its port "space", if it has one, is the first.
 nodes::SurfaceValue surface_value(const check::TypedGraph& graph, const Node& node) {
   const auto attribute = std::get<nodes::Surface>(node.row->lowering);
-  const bool has_space = node.row->ports[0].name == "space";
+  const bool has_space = !node.row->ports.empty() && node.row->ports[0].name == "space";
   return {attribute, has_space ? nodes::space_of(graph.operands_of(node)[0].index) : nodes::Space::world};
 }
 

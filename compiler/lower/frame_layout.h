@@ -81,7 +81,11 @@ inline constexpr int eye =
 inline constexpr int view = 4;           ///< 4 columns of 3: world space -> view space
 inline constexpr int inverse_view = 16;  ///< 4 columns of 3: view space -> world space
 inline constexpr int time = 28;          ///< seconds
-inline constexpr int count = 29;
+inline constexpr int projection = 29;    ///< 4 columns of 4: view space -> clip space
+/// What a pixel covers vertically, in world units: a constant, and what is added for each unit of distance along the
+/// view. One of them is 0.
+inline constexpr int pixel_size = 45;
+inline constexpr int count = 47;
 }  // namespace frame_word
 
 }  // namespace isoshade::lower

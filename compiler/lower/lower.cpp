@@ -19,9 +19,9 @@ using graph::Type;
 using nodes::Value;
 
 /// What the stages around authored functions are called: no document takes these names.
-constexpr std::string_view names_of_stages[] = {shade_name,     light_at_name, "vertex",     "depth",
-                                                "pixel",        "eval",        "edges_at",   "edges_at_ddx",
-                                                "edges_at_ddy", "attribute2",  "attribute3", "attribute4"};
+constexpr std::string_view names_of_stages[] = {
+    shade_name, move_vertex_name, light_at_name,  "vertex",     "depth",      "pixel",     "eval",
+    "edges_at", "edges_at_ddx",   "edges_at_ddy", "attribute2", "attribute3", "attribute4"};
 
 /// A name that neither the stages nor library functions have.
 std::string authored_name(const std::string& name) {
@@ -36,7 +36,8 @@ class ModuleLowering {
     add_function(graph, entry_name(graph));
     return std::move(module_);
   }
-  ir::Module lower_pass(const TypedGraph& graph, size_t pass);
+  /// `name`: of the function that gives `root`.
+  ir::Module lower_pass(const TypedGraph& graph, const Operand& root, const char* name, ir::Result result);
 
  private:
   struct Parameters {
@@ -150,10 +151,11 @@ uint32_t ModuleLowering::declare_light_at() {
   return static_cast<uint32_t>(module_.functions.size() - 1);
 }
 
-ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
-  const std::span<const Operand> color = std::span(graph.outputs).subspan(pass, 1);
-  const Needs needs(graph, color);
-  names_.insert(shade_name);
+ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& root, const char* name,
+                                      ir::Result wanted) {
+  const std::span<const Operand> roots(&root, 1);
+  const Needs needs(graph, roots);
+  names_.insert(name);
   add_callees(graph, needs);
   Environment environment;
   environment.function_of = function_of();
@@ -161,9 +163,9 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
 
   const auto index = static_cast<uint32_t>(module_.functions.size());
   ir::Function& function = module_.functions.emplace_back();
-  function.name = shade_name;
+  function.name = name;
   function.document = graph.document;
-  function.results = {{"color", ir::vector_type(4)}};
+  function.results = {wanted};
   for (const SurfaceField& field : surface_fields())
     if (needs.surface[field.value.index()])
       function.parameters.push_back({field.name, field.type, "surface", false});
@@ -194,8 +196,8 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, size_t pass) {
                                                  : Value());
   }
   if (needs.lights) environment.light_count = b.parameter(last);
-  ir::ValueId result = build_body(b, graph, needs, environment, color)[0].id();
-  if (color[0].needed == Type::color3) {
+  ir::ValueId result = build_body(b, graph, needs, environment, roots)[0].id();
+  if (root.needed == Type::color3) {
     const std::array rgba{b.extract(result, 0), b.extract(result, 1), b.extract(result, 2), b.constant(1.0f)};
     result = b.construct(rgba);
   }
@@ -222,7 +224,9 @@ const std::vector<SurfaceField>& surface_fields() {
                                        {"view_direction", Surface::view_direction, 3, true},
                                        {"tangent", Surface::tangent, 3, true},
                                        {"bitangent", Surface::bitangent, 3, true},
-                                       {"color", Surface::color, 4, false}}) {
+                                       {"color", Surface::color, 4, false},
+                                       {"outline_normal", Surface::outline_normal, 3, true},
+                                       {"pixel_size", Surface::pixel_size, 1, false}}) {
       const ir::Type type = ir::vector_type(attribute.width);
       const std::string name(attribute.name);
       all.push_back({name, {attribute.what}, type});
@@ -242,7 +246,13 @@ std::string entry_name(const TypedGraph& graph) {
 ir::Module lower(const TypedGraph& graph, const LowerOptions& options) {
   if (graph.graph.kind == DocumentKind::function) return ModuleLowering().lower_function(graph);
   support::check(options.pass < graph.graph.passes.size(), "the effect has no such pass");
-  return ModuleLowering().lower_pass(graph, options.pass);
+  const Operand* position = graph.position_of(options.pass);
+  if (options.part == PassPart::color) {
+    return ModuleLowering().lower_pass(graph, graph.outputs[options.pass], shade_name,
+                                       {"color", ir::vector_type(4)});
+  }
+  support::check(position != nullptr, "the pass moves no vertices");
+  return ModuleLowering().lower_pass(graph, *position, move_vertex_name, {"position", ir::vector_type(3)});
 }
 
 }  // namespace isoshade::lower

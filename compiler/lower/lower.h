@@ -13,12 +13,17 @@
 
 namespace isoshade::lower {
 
+/// What is lowered of a pass of an effect: the colour of its pixels, or where its vertices go.
+enum class PassPart : uint8_t { color, position };
+
 struct LowerOptions {
   size_t pass = 0;  ///< of an effect
+  PassPart part = PassPart::color;
 };
 
-/// The name of an effect's function; it is the same for every effect.
+/// The names of an effect's functions; they are the same for every effect.
 inline constexpr const char* shade_name = "shade";
+inline constexpr const char* move_vertex_name = "move_vertex";
 inline constexpr const char* light_at_name = "light_at";
 
 /// The module of a function document or of one pass of an effect: the functions that it uses, one a document,
@@ -30,7 +35,7 @@ inline constexpr const char* light_at_name = "light_at";
 ///
 /// A pass becomes `shade` -> (color: vec4) with these parameters, as far as they are used:
 ///   surface.position vec3, .normal vec3, .texcoord vec2, .view_direction vec3, .tangent vec3,
-///     .bitangent vec3, .color vec4; directions have length 1. In world space; in others .position_object,
+///     .bitangent vec3, .color vec4, .outline_normal vec3, .pixel_size float; directions have length 1. In world space; in others .position_object,
 ///     .normal_view ...
 ///   spaces.world_from_object_0 ...  uniform; columns of the matrices between world, object and view space,
 ///     of which the fourth is the translation
@@ -39,9 +44,12 @@ inline constexpr const char* light_at_name = "light_at";
 ///   light_count      int, uniform: where there is a sum over lights
 /// What a light gives comes from light_at(index: int uniform, position: vec3) -> (direction: vec3, color:
 /// vec3), which is declared without a body where it is needed (see add_pixel_kernel).
+///
+/// Its position, if the pass has one, becomes `move_vertex` -> (position: vec3), with the same parameters but for
+/// light_count; the surface is that of the mesh at a vertex.
 ir::Module lower(const check::TypedGraph& graph, const LowerOptions& options = {});
 
-/// A name that the kernel around `shade` understands.
+/// A name that the kernels around `shade` and `move_vertex` understand.
 struct SurfaceField {
   std::string name;  ///< "normal_object"
   nodes::SurfaceValue value;

@@ -48,11 +48,13 @@ void add_edge_gradients(ir::Module& module) {
   }
 }
 
-Vec4 to_clip(Kernel& k, Int object, Vec3 position) {
-  const auto column = [&](int i) {
-    return k.load4(FrameBuffer::objects, object, object_word::projected + 4 * i);
-  };
+/// By the matrix of 4 columns of 4 that stands in a record.
+Vec4 to_clip(Kernel& k, FrameBuffer buffer, Int record, int word, Vec3 position) {
+  const auto column = [&](int i) { return k.load4(buffer, record, word + 4 * i); };
   return weighted<Vec4>({column(0), column(1), column(2)}, position) + column(3);
+}
+Vec4 object_to_clip(Kernel& k, Int object, Vec3 position) {
+  return to_clip(k, FrameBuffer::objects, object, object_word::projected, position);
 }
 
 ir::ValueId load_typed(Kernel& k, ir::Type type, Int object, int offset) {
@@ -62,6 +64,24 @@ ir::ValueId load_typed(Kernel& k, ir::Type type, Int object, int offset) {
   std::vector<ir::ValueId> components;
   for (int i = 0; i < type.width; ++i) components.push_back(word(i).value);
   return k.b.construct(components);
+}
+
+/// What a kernel passes to an authored function for one of its parameters, but for light_count.
+/// `parameters`: where each effect parameter lies in the record.
+ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& surface, Int object,
+                     const FieldOffsets& parameters) {
+  if (parameter.group == "surface") return surface.field(parameter.name);
+  if (parameter.group == "spaces") return surface.column(parameter.name);
+  if (parameter.group == "frame") {
+    const Int time(k.b, k.b.constant(frame_word::time));
+    return k.named(parameter.name, k.load(FrameBuffer::frame, time)).value;
+  }
+  support::check(parameter.group == "parameters", parameter.name);
+  int offset = -1;
+  for (const auto& [name, word] : parameters)
+    if (name == parameter.name) offset = word;
+  support::check(offset >= 0, parameter.name);
+  return k.named(parameter.name, load_typed(k, parameter.type, object, offset));
 }
 
 /// glTF KHR_lights_punctual: inverse square, windowed by the range if there is one.
@@ -118,7 +138,31 @@ uint32_t add_vertex_kernel(ir::Module& module) {
            {{"clip", ir::vector_type(4)}});
   const Int first = k.integer(0) * Int(vertex_word::stride);
   const Vec3 position = k.load3(FrameBuffer::vertices, first, vertex_word::position);
-  k.b.finish(std::array{to_clip(k, k.integer(1), position).value});
+  k.b.finish(std::array{object_to_clip(k, k.integer(1), position).value});
+  return k.index;
+}
+
+uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parameters,
+                                  graph::PositionSpace space) {
+  const uint32_t move_vertex = module.find(move_vertex_name);
+  support::check(move_vertex != ir::none, "no move_vertex");
+  Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
+           {{"clip", ir::vector_type(4)}});
+  const Int object = k.integer(1);
+  SurfacePoint surface(k, object, attributes_of_vertex(k, k.integer(0)));
+  std::vector<ir::ValueId> arguments;
+  for (const ir::Parameter& parameter : std::vector(module.functions[move_vertex].parameters))
+    arguments.push_back(argument(k, parameter, surface, object, parameters));
+  Vec3 position(k.b, k.b.call(move_vertex, arguments)[0]);
+  k.named("position", position);
+  if (space == graph::PositionSpace::object) {
+    k.b.finish(std::array{object_to_clip(k, object, position).value});
+    return k.index;
+  }
+  if (space == graph::PositionSpace::world) position = k.named("view_position", surface.to_view(position));
+  const Int frame(k.b, k.b.constant(0));
+  const Vec4 clip = to_clip(k, FrameBuffer::frame, frame, frame_word::projection, position);
+  k.b.finish(std::array{clip.value});
   return k.index;
 }
 
@@ -147,27 +191,13 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
             uniform_int("light_count")},
            {{"color", ir::vector_type(4)}});
   const Int object = k.integer(3);
-  SurfacePoint surface(k, k.integer(0), k.integer(1), k.integer(2), object);
+  SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
   const std::vector<ir::Parameter> wanted = module.functions[shade].parameters;
   std::vector<ir::ValueId> arguments;
   for (const ir::Parameter& parameter : wanted) {
-    if (parameter.group == "surface") {
-      arguments.push_back(surface.field(parameter.name));
-    } else if (parameter.group == "spaces") {
-      arguments.push_back(surface.column(parameter.name));
-    } else if (parameter.group == "frame") {
-      const Int time(k.b, k.b.constant(frame_word::time));
-      arguments.push_back(k.named(parameter.name, k.load(FrameBuffer::frame, time)).value);
-    } else if (parameter.group == "parameters") {
-      int offset = -1;
-      for (const auto& [name, word] : parameters)
-        if (name == parameter.name) offset = word;
-      support::check(offset >= 0, parameter.name);
-      arguments.push_back(k.named(parameter.name, load_typed(k, parameter.type, object, offset)));
-    } else {
-      support::check(parameter.name == "light_count", parameter.name);
-      arguments.push_back(k.b.parameter(4));
-    }
+    const bool is_count = parameter.group.empty();
+    support::check(!is_count || parameter.name == "light_count", parameter.name);
+    arguments.push_back(is_count ? k.b.parameter(4) : argument(k, parameter, surface, object, parameters));
   }
   k.b.finish(k.b.call(shade, arguments));
   return k.index;

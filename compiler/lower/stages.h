@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/graph/graph.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::lower {
@@ -37,6 +38,10 @@ ir::Module frame_module();
 
 /// Object space to clip space by the object's matrix. Adds `vertex`; returns its index.
 uint32_t add_vertex_kernel(ir::Module& module);
+
+/// Adds `vertex` around the module's `move_vertex`, which gives positions in `space`. `parameters` as below.
+uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parameters,
+                                  graph::PositionSpace space);
 
 /// Adds `depth`; returns its index.
 uint32_t add_depth_kernel(ir::Module& module);

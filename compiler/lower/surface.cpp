@@ -27,21 +27,35 @@ void add_attribute(ir::Module& module, int width) {
 
 }  // namespace
 
-SurfacePoint::SurfacePoint(Kernel& kernel, Int x, Int y, Int triangle, Int object)
-    : k_(kernel), object_(object) {
-  const ir::ValueId edges = k_.call("edges_at", {x.id(k_.b), y.id(k_.b), triangle.id(k_.b)})[0];
-  k_.named("edges", edges);
-  const Int record = k_.named("record", triangle * Int(triangle_word::stride));
+Attributes attributes_of_pixel(Kernel& k, Int x, Int y, Int triangle) {
+  const ir::ValueId edges = k.call("edges_at", {x.id(k.b), y.id(k.b), triangle.id(k.b)})[0];
+  k.named("edges", edges);
+  const Int record = k.named("record", triangle * Int(triangle_word::stride));
   std::vector<Float> inverse_w;
+  std::vector<Int> first;  // word of each vertex's record
   for (int i = 0; i < 3; ++i) {
-    const auto word = [&](int at) { return k_.load_int(FrameBuffer::triangles, record + Int(at + i)); };
+    const auto word = [&](int at) { return k.load_int(FrameBuffer::triangles, record + Int(at + i)); };
     const std::string digit = std::to_string(i);
-    inverse_w.push_back(k_.named("inverse_w" + digit, from_bits_normal(word(triangle_word::inverse_w))));
-    first_.push_back(k_.named("first" + digit, word(triangle_word::vertex) * Int(vertex_word::stride)));
+    inverse_w.push_back(k.named("inverse_w" + digit, from_bits_normal(word(triangle_word::inverse_w))));
+    first.push_back(k.named("first" + digit, word(triangle_word::vertex) * Int(vertex_word::stride)));
   }
-  weights_ = k_.named("weights", functions::attribute_weights<Float>(Vec3(k_.b, edges), inverse_w[0],
-                                                                     inverse_w[1], inverse_w[2]))
-                 .value;
+  const Vec3 weights = k.named("weights", functions::attribute_weights<Float>(Vec3(k.b, edges), inverse_w[0],
+                                                                              inverse_w[1], inverse_w[2]));
+  return [&k, weights, first](int width, int word) {
+    add_attribute(k.b.module(), width);
+    const auto at = [&](size_t vertex) { return (first[vertex] + Int(word)).id(k.b); };
+    return k.call("attribute" + std::to_string(width), {weights.value, at(0), at(1), at(2)})[0];
+  };
+}
+
+Attributes attributes_of_vertex(Kernel& k, Int vertex) {
+  const Int first = k.named("first", vertex * Int(vertex_word::stride));
+  return [&k, first](int width, int word) {
+    std::vector<ir::ValueId> components;
+    for (int i = 0; i < width; ++i)
+      components.push_back(k.load(FrameBuffer::vertices, first + Int(word + i)).value);
+    return k.b.construct(components);
+  };
 }
 
 ir::ValueId SurfacePoint::field(std::string_view name) {
@@ -58,14 +72,8 @@ ir::ValueId SurfacePoint::column(std::string_view name) {
   support::bug("there is no matrix " + std::string(name));
 }
 
-ir::ValueId SurfacePoint::attribute(int width, int word) {
-  add_attribute(k_.b.module(), width);
-  const auto first = [&](int vertex) { return (first_[static_cast<size_t>(vertex)] + Int(word)).id(k_.b); };
-  return k_.call("attribute" + std::to_string(width), {weights_, first(0), first(1), first(2)})[0];
-}
-
 ir::ValueId SurfacePoint::once(ir::ValueId& value, int width, int word) {
-  if (value == ir::none) value = attribute(width, word);
+  if (value == ir::none) value = attributes_(width, word);
   return value;
 }
 
@@ -90,13 +98,12 @@ std::array<Vec3, 3> SurfacePoint::linear(SpaceMatrix matrix) {
 ir::ValueId SurfacePoint::value_of(nodes::SurfaceValue value) {
   const bool in_object = value.space == nodes::Space::object;
   const bool in_view = value.space == nodes::Space::view;
-  if (value.attribute == nodes::Surface::texcoord) return attribute(2, vertex_word::texcoord);
-  if (value.attribute == nodes::Surface::color) return attribute(4, vertex_word::color);
+  if (value.attribute == nodes::Surface::texcoord) return attributes_(2, vertex_word::texcoord);
+  if (value.attribute == nodes::Surface::color) return attributes_(4, vertex_word::color);
+  if (value.attribute == nodes::Surface::pixel_size) return pixel_size().value;
   if (value.attribute == nodes::Surface::position) {
     if (in_object) return local_position().value;
-    if (!in_view) return position().value;
-    const Vec3 origin = column(SpaceMatrix::view_from_world, 3);
-    return (weighted(linear(SpaceMatrix::view_from_world), position()) + origin).value;
+    return (in_view ? to_view(position()) : position()).value;
   }
   const Vec3 direction = in_object ? object_direction(value.attribute) : world_direction(value.attribute);
   if (!in_view) return direction.value;
@@ -111,6 +118,18 @@ Vec3 SurfacePoint::position() {
         k_.named("position", (weighted(linear(SpaceMatrix::world_from_object), local) + origin).value);
   }
   return Vec3(k_.b, position_);
+}
+
+Vec3 SurfacePoint::to_view(Vec3 point) {
+  const Vec3 origin = column(SpaceMatrix::view_from_world, 3);
+  return weighted(linear(SpaceMatrix::view_from_world), point) + origin;
+}
+
+Float SurfacePoint::pixel_size() {
+  const Int frame(k_.b, k_.b.constant(frame_word::pixel_size));
+  const Float constant = k_.load(FrameBuffer::frame, frame);
+  const Float growth = k_.load(FrameBuffer::frame, frame + Int(1));
+  return constant - growth * to_view(position())[2];
 }
 
 Vec3 SurfacePoint::tangent() {
@@ -131,20 +150,23 @@ Vec3 SurfacePoint::towards_eye() {
 Vec3 SurfacePoint::object_direction(nodes::Surface attribute) {
   switch (attribute) {
     case nodes::Surface::normal: return normalize(local_normal());
+    case nodes::Surface::outline_normal: return normalize(local_outline_normal());
     case nodes::Surface::tangent: return normalize(tangent());
     case nodes::Surface::bitangent: return normalize(bitangent());
     default: return normalize(weighted(linear(SpaceMatrix::object_from_world), towards_eye()));
   }
 }
 
+Vec3 SurfacePoint::world_normal(Vec3 local) {
+  const auto cofactors = [&](int i) {
+    return k_.load3(FrameBuffer::objects, object_, object_word::normal + 3 * i);
+  };
+  return normalize(weighted<Vec3>({cofactors(0), cofactors(1), cofactors(2)}, local));
+}
+
 Vec3 SurfacePoint::world_direction(nodes::Surface attribute) {
-  if (attribute == nodes::Surface::normal) {
-    const Vec3 local = local_normal();
-    const auto cofactors = [&](int i) {
-      return k_.load3(FrameBuffer::objects, object_, object_word::normal + 3 * i);
-    };
-    return normalize(weighted<Vec3>({cofactors(0), cofactors(1), cofactors(2)}, local));
-  }
+  if (attribute == nodes::Surface::normal) return world_normal(local_normal());
+  if (attribute == nodes::Surface::outline_normal) return world_normal(local_outline_normal());
   if (attribute == nodes::Surface::view_direction) return normalize(towards_eye());
   const Vec3 local = attribute == nodes::Surface::tangent ? tangent() : bitangent();
   return normalize(weighted(linear(SpaceMatrix::world_from_object), local));

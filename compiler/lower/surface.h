@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface point that a pixel shows: what `shade` may ask for, each made once and only if it does.
+// A point of the surface: what `shade` and `move_vertex` may ask for, each made once and only if they do.
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -11,22 +12,34 @@
 
 namespace isoshade::lower {
 
+/// Where a point has its attributes from: gives `width` words of the mesh there, from `word` of a vertex record on.
+using Attributes = std::function<ir::ValueId(int width, int word)>;
+/// Of the pixel (x, y), where it shows the triangle.
+Attributes attributes_of_pixel(Kernel& kernel, Int x, Int y, Int triangle);
+/// Of the vertex with this number.
+Attributes attributes_of_vertex(Kernel& kernel, Int vertex);
+
 class SurfacePoint {
  public:
-  /// Of the pixel (x, y), where it shows the triangle, which is the object's.
-  SurfacePoint(Kernel& kernel, Int x, Int y, Int triangle, Int object);
+  /// Of the object whose record begins at `object`.
+  SurfacePoint(Kernel& kernel, Int object, Attributes attributes)
+      : k_(kernel), object_(object), attributes_(std::move(attributes)) {}
 
   /// A field of the group "surface".
   ir::ValueId field(std::string_view name);
   /// A field of the group "spaces": a column of a matrix.
   ir::ValueId column(std::string_view name);
+  /// A point of world space in view space.
+  Vec3 to_view(Vec3 point);
 
  private:
-  ir::ValueId attribute(int width, int word);
   /// An attribute of the mesh, made when it is first asked for.
   ir::ValueId once(ir::ValueId& value, int width, int word);
   Vec3 local_position() { return Vec3(k_.b, once(local_position_, 3, vertex_word::position)); }
   Vec3 local_normal() { return Vec3(k_.b, once(local_normal_, 3, vertex_word::normal)); }
+  Vec3 local_outline_normal() {
+    return Vec3(k_.b, once(local_outline_normal_, 3, vertex_word::outline_normal));
+  }
   Vec4 local_tangent() { return Vec4(k_.b, once(local_tangent_, 4, vertex_word::tangent)); }
 
   Vec3 column(SpaceMatrix matrix, int number);
@@ -35,6 +48,8 @@ class SurfacePoint {
 
   ir::ValueId value_of(nodes::SurfaceValue value);
   Vec3 position();
+  Float pixel_size();
+  Vec3 world_normal(Vec3 local);
   // Of any length, in object space.
   Vec3 tangent();
   Vec3 bitangent();
@@ -44,10 +59,10 @@ class SurfacePoint {
 
   Kernel& k_;
   Int object_;
-  ir::ValueId weights_ = ir::none;
-  std::vector<Int> first_;  ///< of each vertex: the first word of its record
+  Attributes attributes_;
   ir::ValueId local_position_ = ir::none;
   ir::ValueId local_normal_ = ir::none;
+  ir::ValueId local_outline_normal_ = ir::none;
   ir::ValueId local_tangent_ = ir::none;
   ir::ValueId position_ = ir::none;
 };

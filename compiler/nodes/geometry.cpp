@@ -30,6 +30,13 @@ std::vector<Row> geometry_rows() {
   return {
       {"position", "Where the point is.", {space}, Vector3, Surface::position},
       {"normal", "The unit normal of the surface.", {space}, Vector3, Surface::normal},
+      {"outlinenormal",
+       "The unit normal that leads out of the mesh, one for all vertices at a place: edges of a mesh that "
+       "have "
+       "two normals do not come apart when it moves along this one.",
+       {space},
+       Vector3,
+       Surface::outline_normal},
       {"tangent",
        "The unit vector along u on the surface.",
        {space, set},
@@ -67,6 +74,13 @@ std::vector<Row> geometry_rows() {
        Color4,
        Surface::color,
        set_exists<0>},
+      {"pixelsize",
+       "How many units of world space a pixel covers at the point, from top to bottom. In perspective it "
+       "grows "
+       "with the distance along the view.",
+       {},
+       Float,
+       Surface::pixel_size},
       {"ddx",
        "What `in` changes by from a pixel to the next on its right: its derivative, not a difference, along "
        "the "

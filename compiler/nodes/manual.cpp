@@ -40,8 +40,9 @@ std::string types_text(TypeSet types) {
 }
 
 std::string surface_text(SurfaceValue value) {
-  constexpr std::string_view names[] = {
-      "position", "normal", "texture coordinates", "view direction", "tangent", "bitangent", "colour"};
+  constexpr std::string_view names[] = {"position",       "normal",         "texture coordinates",
+                                        "view direction", "tangent",        "bitangent",
+                                        "colour",         "outline normal", "pixel size"};
   const bool object = value.space == Space::object;
   return "the surface's " + std::string(names[static_cast<size_t>(value.attribute)]) +
          (object ? " in object space" : "");

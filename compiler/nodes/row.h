@@ -28,7 +28,9 @@ enum class Surface : uint8_t {
   view_direction,  ///< vec3, unit, towards the viewer
   tangent,         ///< vec3, unit, along the texture's u
   bitangent,       ///< vec3, unit, up in the texture: against its v
-  color            ///< vec4, linear: what the mesh has, else 1; has no space
+  color,           ///< vec4, linear: what the mesh has, else 1; has no space
+  outline_normal,  ///< vec3, unit: one for all vertices at a place
+  pixel_size       ///< float, world units; has no space
 };
 
 /// Where coordinates count from.
@@ -49,7 +51,7 @@ struct SurfaceValue {
 
   constexpr size_t index() const { return 3 * static_cast<size_t>(attribute) + static_cast<size_t>(space); }
 };
-inline constexpr size_t surface_value_count = 3 * 7;  ///< of SurfaceValue::index
+inline constexpr size_t surface_value_count = 3 * 9;  ///< of SurfaceValue::index
 
 /// What a port has that is neither linked nor given: nothing (then it must be), a number in every component
 /// (of a matrix: of the diagonal), a boolean (0 where another type is needed), three numbers, a text, or an

@@ -133,11 +133,14 @@ SchemaJson input_schema(bool is_parameter) {
 }
 
 SchemaJson pass_schema() {
-  return object_schema({{"name", reference("id"), true},
-                        {"cull", one_of({"none", "back", "front"})},
-                        {"depth", one_of({"nearer", "always"})},
-                        {"position", reference("link")},
-                        {"color", reference("link"), true}});
+  return object_schema(
+      {{"name", reference("id"), true},
+       {"cull", one_of({"none", "back", "front"})},
+       {"depth", one_of({"nearer", "always"})},
+       {"position", described(reference("link"), "where vertices go; else they stay")},
+       {"position_space", one_of({"world", "object", "view"})},
+       {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
+       {"color", reference("link"), true}});
 }
 
 SchemaJson with_one_key(SchemaJson map) {

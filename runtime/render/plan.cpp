@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/render/plan.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -53,6 +54,13 @@ backends::Cull cull_of(graph::Cull cull, bool mirrored) {
   return backends::Cull::none;
 }
 
+/// Where a parameter begins, in words.
+size_t word_of(const driver::Effect& effect, size_t parameter) {
+  size_t word = 0;
+  for (size_t i = 0; i < parameter; ++i) word += static_cast<size_t>(effect.parameters[i].words);
+  return word;
+}
+
 /// A MeshShape, in an order.
 using MeshKey = std::tuple<scene::MeshKind, float, float, float, int, int, bool,
                            std::vector<scene::ProfilePoint>, std::string, bool>;
@@ -77,8 +85,19 @@ class Planner {
   const StoredMesh* make_mesh(const Object& object);
   void place_object(size_t o);
   void store_frame();
-  void place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
-                  const glm::mat4& projected);
+  /// One copy of an object and where it stands.
+  struct Copy {
+    Instance instance;
+    glm::mat4 model;
+    glm::mat4 projected;
+    bool outside;  ///< of the view: passes that leave vertices in their place draw nothing
+  };
+  /// How many copies a pass left out.
+  struct Skipped {
+    int64_t unseen = 0, disabled = 0;
+  };
+  void place_copy(size_t o, const Copy& copy, std::vector<Skipped>& skipped);
+  void report_skips(size_t o, const std::vector<Skipped>& skipped);
 
   const Scene& scene_;
   const Options& options_;
@@ -222,27 +241,35 @@ const StoredMesh* Planner::make_mesh(const Object& object) {
   return &stored;
 }
 
-void Planner::place_copy(const Object& object, size_t o, const Instance& instance, const glm::mat4& model,
-                         const glm::mat4& projected) {
+void Planner::place_copy(size_t o, const Copy& copy, std::vector<Skipped>& skipped) {
   namespace word = lower::object_word;
-  const glm::mat3 normal = scene::normal_matrix(model);
-  const glm::mat4 inverse = scene::affine_inverse(model);
-  const std::vector<float> parameters = parameters_[o].words(object, instance);
+  const Object& object = scene_.objects[o];
+  const glm::mat3 normal = scene::normal_matrix(copy.model);
+  const glm::mat4 inverse = scene::affine_inverse(copy.model);
+  const std::vector<float> parameters = parameters_[o].words(object, copy.instance);
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
   const glm::vec3& scale = object.transform.scale;
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
   for (size_t p = 0; p < effect.passes.size(); ++p) {
+    const driver::Pass& pass = effect.passes[p];
+    const bool disabled = pass.enabled && parameters[word_of(effect, *pass.enabled)] == 0;
+    const bool unseen = copy.outside && !pass.moves_vertices;
+    if (disabled || unseen) {
+      ++(disabled ? skipped[p].disabled : skipped[p].unseen);
+      continue;
+    }
     const PassPrograms& programs = programs_of_effect_[effect_of_object_[o]][p];
     const size_t first = plan_.frame.objects.size();
     plan_.frame.objects.resize(first + word::parameters);
     float* record = &plan_.frame.objects[first];
-    store_affine(model, record + word::model);
+    store_affine(copy.model, record + word::model);
     store_affine(inverse, record + word::inverse);
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) record[word::normal + 3 * c + r] = scene::canonical(normal[c][r]);
     for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r) record[word::projected + 4 * c + r] = scene::canonical(projected[c][r]);
+      for (int r = 0; r < 4; ++r)
+        record[word::projected + 4 * c + r] = scene::canonical(copy.projected[c][r]);
     record[word::program] = static_cast<float>(programs.pixel);
     plan_.frame.objects.insert(plan_.frame.objects.end(), parameters.begin(), parameters.end());
 
@@ -253,7 +280,7 @@ void Planner::place_copy(const Object& object, size_t o, const Instance& instanc
     draw.first_vertex = mesh.first_vertex;
     draw.vertex_count = mesh.vertex_count;
     draw.indices = mesh.indices;
-    draw.cull = cull_of(effect.passes[p].cull, mirrored);
+    draw.cull = cull_of(pass.cull, mirrored);
     plan_.frame.draws.push_back(draw);
     plan_.stats.vertices += draw.vertex_count;
     plan_.stats.triangles += static_cast<int64_t>(mesh.indices.size() / 3);
@@ -268,30 +295,51 @@ void Planner::store_frame() {
   store_affine(view_.view, &words[word::view]);
   store_affine(view_.inverse, &words[word::inverse_view]);
   words[word::time] = scene::canonical(scene_.time);
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      words[static_cast<size_t>(word::projection + 4 * c + r)] = scene::canonical(view_.clip_from_view[c][r]);
+  for (int i = 0; i < 2; ++i)
+    words[static_cast<size_t>(word::pixel_size + i)] = scene::canonical(view_.pixel_size[i]);
 }
 
 void Planner::place_object(size_t o) {
   const Object& object = scene_.objects[o];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
   const int64_t count = scene::instance_count(object);
-  int64_t unseen = 0;
+  std::vector<Skipped> skipped(plan_.effects[effect_of_object_[o]].passes.size());
   for (int64_t i = 0; i < count; ++i) {
-    const Instance instance = scene::instance(object, i);
-    const glm::mat4 model = scene::model_matrix(object, instance);
-    const glm::mat4 projected = scene::multiply(view_.projection, model);
-    if (options_.skip &&
-        outside_view(mesh.low, mesh.high, projected, plan_.frame.width, plan_.frame.height)) {
-      ++unseen;
-    } else {
-      place_copy(object, o, instance, model, projected);
-    }
+    Copy copy{scene::instance(object, i), {}, {}, false};
+    copy.model = scene::model_matrix(object, copy.instance);
+    copy.projected = scene::multiply(view_.projection, copy.model);
+    copy.outside = options_.skip &&
+                   outside_view(mesh.low, mesh.high, copy.projected, plan_.frame.width, plan_.frame.height);
+    place_copy(o, copy, skipped);
   }
   plan_.stats.copies += count;
-  if (unseen == 0) return;
-  const std::string what =
-      count == 1 ? object.name
-                 : std::to_string(unseen) + " of " + std::to_string(count) + " copies of " + object.name;
-  plan_.stats.skips.push_back({what, "outside of the view"});
+  report_skips(o, skipped);
+}
+
+void Planner::report_skips(size_t o, const std::vector<Skipped>& skipped) {
+  const Object& object = scene_.objects[o];
+  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+  const int64_t total = scene::instance_count(object);
+  const auto report = [&](int64_t count, const std::string& pass, std::string reason) {
+    if (count == 0) return;
+    const std::string copies =
+        total == 1 ? object.name
+                   : std::to_string(count) + " of " + std::to_string(total) + " copies of " + object.name;
+    plan_.stats.skips.push_back({pass.empty() ? copies : pass + " of " + copies, std::move(reason)});
+  };
+  const bool alike = std::ranges::all_of(
+      skipped, [&](const Skipped& pass) { return pass.unseen == skipped.front().unseen; });
+  if (alike) report(skipped.front().unseen, "", "outside of the view");
+  for (size_t p = 0; p < skipped.size(); ++p) {
+    const driver::Pass& pass = effect.passes[p];
+    if (!alike) report(skipped[p].unseen, pass.name, "outside of the view");
+    if (!pass.enabled) continue;
+    const driver::Field& field = effect.parameters[*pass.enabled];
+    report(skipped[p].disabled, pass.name, field.name + " is " + (field.type == "boolean" ? "false" : "0"));
+  }
 }
 
 std::optional<Plan> Planner::plan() {

@@ -69,9 +69,13 @@ View make_view(const Camera& camera, int width, int height) {
   view.view = view_matrix(right, up, back, camera.position);
   view.inverse =
       glm::mat4(glm::vec4(right, 0), glm::vec4(up, 0), glm::vec4(back, 0), glm::vec4(camera.position, 1));
-  view.projection = multiply(projection_matrix(camera, aspect), view.view);
-  view.eye =
-      camera.projection == Projection::perspective ? glm::vec4(camera.position, 1) : glm::vec4(back, 0);
+  view.clip_from_view = projection_matrix(camera, aspect);
+  view.projection = multiply(view.clip_from_view, view.view);
+  const bool perspective = camera.projection == Projection::perspective;
+  view.eye = perspective ? glm::vec4(camera.position, 1) : glm::vec4(back, 0);
+  // Clip space is 2 high.
+  const float pixel = 2.0f / (view.clip_from_view[1][1] * static_cast<float>(height));
+  view.pixel_size = perspective ? glm::vec2(0, pixel) : glm::vec2(pixel, 0);
   return view;
 }
 

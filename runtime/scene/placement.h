@@ -18,7 +18,9 @@ struct View {
   glm::mat4 view;        ///< world space -> view space: the camera at the origin, looking along -z, y up
   glm::mat4 inverse;     ///< view space -> world space
   glm::mat4 projection;  ///< world space -> clip space
+  glm::mat4 clip_from_view;
   glm::vec4 eye;         ///< frame_word::eye
+  glm::vec2 pixel_size;  ///< frame_word::pixel_size
 };
 View make_view(const Camera& camera, int width, int height);
 

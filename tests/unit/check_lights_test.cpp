@@ -49,8 +49,8 @@ TEST(CheckLights, SpacesAreChosenFromThoseThatThereAre) {
 
 TEST(CheckLights, WhatCannotBeCompiledYetIsSaid) {
   EXPECT_NE(messages_of(effect(R"("color": {"type": "normal"})",
-                               R"({"name": "p", "color": "color.x", "position": "color"})"))
-                .find("error[unsupported]: a pass that moves vertices"),
+                               R"({"name": "p", "color": "color.x", "depth": "always"})"))
+                .find("error[unsupported]: a pass with the depth test \"always\""),
             std::string::npos);
   EXPECT_NE(
       messages_of(R"({"isoshade": 1, "post": "p", "parameters": {"c": {"type": "color3", "value": [1, 1, 1]}},

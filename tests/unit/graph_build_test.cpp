@@ -100,7 +100,8 @@ TEST(Build, EffectHasParametersAndPasses) {
                  "on": {"type": "boolean", "value": true}},
   "nodes": {"lit": {"type": "image", "file": {"link": "map"}}},
   "passes": [{"name": "base", "color": "lit"},
-             {"name": "shell", "cull": "front", "depth": "always", "position": "lit.xyz", "color": "tint"}]})");
+             {"name": "shell", "cull": "front", "depth": "always", "position": "lit.xyz", "color": "tint",
+              "position_space": "view", "enabled": "outline"}]})");
   ASSERT_EQ(graph.inputs.size(), 5u);
   EXPECT_EQ(graph.inputs[1].value->numbers.size(), 3u);
   EXPECT_EQ(graph.inputs[2].value->string, "a.png");
@@ -116,6 +117,8 @@ TEST(Build, EffectHasParametersAndPasses) {
   EXPECT_EQ(graph.passes[1].cull, Cull::front);
   EXPECT_EQ(graph.passes[1].depth, DepthTest::always);
   EXPECT_EQ(graph.passes[1].position->selectors, std::vector<std::string>{"xyz"});
+  EXPECT_EQ(graph.passes[1].position_space, PositionSpace::view);
+  EXPECT_EQ(graph.passes[1].enabled, 0u);
 }
 
 TEST(Build, PostHasOutputs) {
@@ -276,6 +279,21 @@ TEST(Build, PassesMustMakeSense) {
             "wrong-type: \"color\" is a link, not a number | 1");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x"}, {"name": "b", "color": "y"})")),
             "duplicate-name: two passes are called \"b\" | \"b\"");
+  EXPECT_EQ(
+      first(with_pass(R"({"name": "b", "color": "x", "position_space": "view"})")),
+      "missing-key: \"position_space\" says nothing without \"position\" | \"view\" | link \"position\" to "
+      "where vertices go, or leave this out");
+  EXPECT_EQ(
+      first(with_pass(R"({"name": "b", "color": "x", "position": "x", "position_space": "clip"})")),
+      "unknown-choice: \"position_space\" of a pass is one of world, object, view, not \"clip\" | \"clip\"");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "enabled": true})")),
+            "wrong-type: \"enabled\" is the name of a parameter, not a boolean | true");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "enabled": "hull"})")),
+            "unknown-parameter: the effect has no parameter \"hull\" | \"hull\"");
+  EXPECT_EQ(
+      first(R"({"isoshade": 1, "effect": "e", "parameters": {"tint": {"type": "color3", "value": [1, 1, 1]}},
+              "passes": [{"name": "b", "color": "tint", "enabled": "tint"}]})"),
+      "type-mismatch: a pass is switched by a boolean, an integer or a float, not by a color3 | \"tint\"");
   EXPECT_EQ(first(R"({"isoshade": 1, "effect": "e", "outputs": {}})"),
             "missing-key: an effect document needs the key \"passes\" | {");
 }

@@ -137,5 +137,27 @@ TEST(LowerEffect, PassesAreLoweredOneByOne) {
   EXPECT_EQ(lower::lower(*graph, {.pass = 1}).functions[0].parameters[0].name, "b");
 }
 
+TEST(LowerEffect, APositionIsAFunctionOfItsOwnThatAsksForNoMore) {
+  FrontEnd front_end;
+  const auto graph = front_end.check(R"({"isoshade": 1, "effect": "e", "parameters": {
+    "tint": {"type": "color3", "value": [1, 1, 1]}, "width": {"type": "float", "value": 1}},
+    "nodes": {"p": {"type": "position"}, "n": {"type": "outlinenormal"}, "s": {"type": "pixelsize"},
+              "far": {"type": "multiply", "in1": "width", "in2": "s"},
+              "way": {"type": "multiply", "in1": "n", "in2": "far"}, "moved": {"type": "add", "in1": "p", "in2": "way"}},
+    "passes": [{"name": "p", "color": "tint"}, {"name": "q", "color": "tint", "position": "moved"}]})");
+  ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
+  EXPECT_EQ(graph->position_of(0), nullptr);
+  const ir::Module module = lower::lower(*graph, {.pass = 1, .part = lower::PassPart::position});
+  const ir::Function& move_vertex = module.functions.at(module.find(lower::move_vertex_name));
+  std::string parameters;
+  for (const ir::Parameter& parameter : move_vertex.parameters)
+    parameters += parameter.group + "." + parameter.name + " ";
+  EXPECT_EQ(parameters, "surface.position surface.outline_normal surface.pixel_size parameters.width ");
+  Program program(module);
+  EXPECT_EQ(program({1, 2, 3, /* normal */ 0, 1, 0, /* pixel */ 0.5, /* width */ 4}),
+            (std::vector<float>{1, 4, 3}));
+  EXPECT_EQ(lower::lower(*graph, {.pass = 1}).functions[0].parameters.size(), 1u);
+}
+
 }  // namespace
 }  // namespace isoshade

@@ -176,6 +176,46 @@ TEST_F(PlanTest, BoundsWhatIsDrawn) {
       "too-large"));
 }
 
+/// Pulls its vertices up by two, in the pass "lifted".
+constexpr const char* lifted = R"({"isoshade": 1, "effect": "lifted",
+  "parameters": {"on": {"type": "float", "value": 1}, "tint": {"type": "color3", "value": [1, 1, 1]}},
+  "nodes": {"p": {"type": "position"}, "up": {"type": "constant", "value": [0, 2, 0]},
+            "moved": {"type": "add", "in1": "p", "in2": "up"}},
+  "passes": [{"name": "base", "color": "tint"},
+             {"name": "lifted", "color": "tint", "position": "moved", "enabled": "on"}]})";
+
+TEST_F(PlanTest, PassesAreLeftOutWhereTheirParameterIsZero) {
+  write("lifted.json", lifted);
+  const auto made = plan(R"("objects": {
+    "row": {"mesh": "box", "effect": "lifted.json",
+            "repeat": [{"count": 4, "step": [0.1, 0, 0], "parameters": {"on": {"values": [0, 0.5, -0.0, -1]}}}]},
+    "one": {"mesh": "box", "effect": "lifted.json", "parameters": {"on": 0}}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->stats.draws, 4 + 2 + 1);
+  ASSERT_EQ(made->stats.skips.size(), 2u);
+  EXPECT_EQ(made->stats.skips[0].what, "lifted of 2 of 4 copies of row");
+  EXPECT_EQ(made->stats.skips[0].reason, "on is 0");
+  EXPECT_EQ(made->stats.skips[1].what, "lifted of one");
+}
+
+TEST_F(PlanTest, PassesThatMoveVerticesAreNotSkippedByTheMeshsPlace) {
+  write("lifted.json", lifted);
+  const std::string members = R"("size": [32, 32], "objects": {
+    "below": {"mesh": "box", "effect": "lifted.json", "transform": {"translate": [0, -4, 0]}},
+    "far": {"mesh": "box", "effect": "tinted.json", "transform": {"translate": [0, -40, 0]}}})";
+  const auto made = plan(members);
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->stats.draws, 1);
+  ASSERT_EQ(made->stats.skips.size(), 2u);
+  EXPECT_EQ(made->stats.skips[0].what, "base of below");
+  EXPECT_EQ(made->stats.skips[1].what, "far");
+  backends::Image image;
+  render::DrawStats stats;
+  ASSERT_TRUE(render::render(*made, *interpreter::create(), image, stats, diagnostics_));
+  const auto seen = std::ranges::count_if(image.depth, [](float depth) { return depth > 0; });
+  EXPECT_GT(seen, 10);
+}
+
 TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   const auto made = plan(R"("background": [0.1, 0.2, 0.3, 0.4], "size": [17, 9], "time": 2.5,
     "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]},
@@ -195,6 +235,12 @@ TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   EXPECT_EQ(words(lower::frame_word::inverse_view, 12),
             (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 5}));
   EXPECT_EQ(words(lower::frame_word::time, 1), std::vector<float>{2.5f});
+  const std::vector<float> projection = words(lower::frame_word::projection, 16);
+  EXPECT_EQ(projection[11], -1.0f);  // w is the distance along the view
+  EXPECT_EQ(projection[10], 0.0f);
+  const std::vector<float> pixel = words(lower::frame_word::pixel_size, 2);
+  EXPECT_EQ(pixel[0], 0.0f);
+  EXPECT_FLOAT_EQ(pixel[1] * projection[5] * 9, 2.0f);  // nine pixels are the height of clip space
   EXPECT_EQ(made->frame.background[3], 0.4f);
   options_.width = 5;
   options_.height = 7;
