@@ -76,6 +76,7 @@ std::vector<Field> parameters_of(const check::TypedGraph& typed) {
     fields.push_back(field(input.name, input.type));
     fields.back().min = input.min;
     fields.back().max = input.max;
+    fields.back().names = input.names;
     fields.back().value = record_words(*input.value, fields.back().words);
   }
   return fields;
@@ -161,6 +162,7 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
     program.inputs.push_back(field(input.name, input.type));
     program.inputs.back().min = input.min;
     program.inputs.back().max = input.max;
+    program.inputs.back().names = input.names;
   }
   for (size_t i = 0; i < typed->graph.outputs.size(); ++i)
     program.results.push_back(field(typed->graph.outputs[i].name, typed->outputs[i].type));

@@ -20,8 +20,9 @@ struct Field {
   std::string name;
   std::string type;  ///< as documents spell it: "float", "color3", ...
   int words = 1;
-  std::vector<float> value;       ///< the default, `words` long; empty for eval columns
-  std::optional<float> min, max;  ///< of each component
+  std::vector<float> value;             ///< the default, `words` long; empty for eval columns
+  std::optional<float> min, max;        ///< of each component
+  std::vector<std::string> names = {};  ///< of the values 0, 1, ... of an integer, if they have names
 };
 
 struct Program {

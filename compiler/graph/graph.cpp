@@ -138,6 +138,16 @@ std::optional<Link> parse_link(const support::Source& source, std::string_view t
   return std::nullopt;
 }
 
+std::optional<Literal> named_value(const std::vector<std::string>& names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  Literal literal;
+  literal.integral = true;
+  literal.integer = found - names.begin();
+  literal.number = static_cast<float>(literal.integer);
+  return literal;
+}
+
 bool fits(Type type, const Literal& literal) {
   switch (type) {
     case Type::boolean: return literal.kind == Literal::Kind::boolean;

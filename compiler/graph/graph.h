@@ -117,6 +117,8 @@ struct Input {
   bool any = false;               ///< of a function: float, a vector or a colour, as the call has it
   std::optional<Literal> value;   ///< always there in a parameter; fits the type and the range
   std::optional<float> min, max;  ///< of each component
+  std::vector<std::string>
+      names;  ///< of the values 0, 1, ... of an integer, which has no others then; or none
   Place name_place, place, value_place;
 };
 
@@ -174,6 +176,9 @@ std::optional<Graph> build_graph(const Document& document, support::Diagnostics&
 /// Takes a string apart as a link; reports one that has not the form of a link.
 std::optional<Link> parse_link(const support::Source& source, std::string_view text, Place place,
                                support::Diagnostics& diagnostics);
+
+/// The number that is meant by the name of one of an input's values, as a literal; nothing for other names.
+std::optional<Literal> named_value(const std::vector<std::string>& names, std::string_view name);
 
 /// Whether a literal is a value of the type as it stands: a boolean, an integer in 32 bits, a number, an
 /// array of as many numbers as the type has floats, a string.

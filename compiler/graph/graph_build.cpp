@@ -15,18 +15,6 @@ using support::Id;
 using support::quote;
 using Need = ObjectReader::Need;
 
-namespace {
-std::string types_note() {
-  std::string note = "the types are";
-  for (const std::string_view name : all_type_names()) {
-    const Type type = *find_type(name);
-    if (float_count(type) > 0 || type == Type::boolean || type == Type::integer)
-      note += " " + std::string(name);
-  }
-  return note;
-}
-}  // namespace
-
 void GraphBuilder::check_id(std::string_view id, Place place, std::string_view what) {
   if (is_id(id)) return;
   diagnostics_.report(Id::bad_id, graph_.span(place), quote(id) + " cannot name " + std::string(what))
@@ -108,71 +96,6 @@ std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
   diagnostics_.report(Id::wrong_type, document_.span(json),
                       quote(key) + " is a link, not " + std::string(kind_name(json.kind)));
   return std::nullopt;
-}
-
-void GraphBuilder::check_value(const Input& input, const Json& json) {
-  if (!fits(input.type, *input.value)) {
-    diagnostics_.report(Id::wrong_type, document_.span(json),
-                        "the value of " + quote(input.name) + " is no " + std::string(type_name(input.type)));
-    return;
-  }
-  const auto check = [&](float value, const Json& at) {
-    const bool low = input.min && value < *input.min;
-    if (!low && !(input.max && value > *input.max)) return;
-    diagnostics_.report(Id::out_of_range, document_.span(at),
-                        "the value of " + quote(input.name) +
-                            (low ? " is less than its min " + support::format_float(*input.min)
-                                 : " is greater than its max " + support::format_float(*input.max)));
-  };
-  if (input.value->kind == Literal::Kind::number) check(input.value->number, json);
-  for (size_t i = 0; i < input.value->numbers.size(); ++i) check(input.value->numbers[i], json.items[i]);
-}
-
-void GraphBuilder::read_input(const Member& member, bool is_parameter) {
-  Input input;
-  input.name = member.key;
-  input.name_place = key_place(member);
-  input.place = place_of(member.value);
-  const std::string what = (is_parameter ? "parameter " : "input ") + quote(member.key);
-  ObjectReader reader(document_, member.value, what, diagnostics_);
-  const Json* type = reader.value("type");
-  if (type != nullptr && type->kind != Json::Kind::string) {
-    reader.report_wrong("type", *type, "a string");
-  } else if (type != nullptr) {
-    const std::optional<Type> found = find_type(type->string);
-    input.type = found.value_or(Type::floating);
-    input.any = !is_parameter && type->string == any_type_name;
-    if (!found && !input.any) {
-      diagnostics_
-          .report_unknown(Id::unknown_type, document_.span(*type), "no type " + quote(type->string),
-                          type->string, all_type_names())
-          .note(type->string == any_type_name ? "only inputs of functions are of any type" : types_note());
-    }
-  }
-  if (float_count(input.type) > 0 || input.type == Type::integer) {
-    input.min = reader.optional_number("min");
-    input.max = reader.optional_number("max");
-    if (input.min && input.max && *input.min > *input.max) {
-      diagnostics_.report(Id::out_of_range, document_.span(*reader.value("max")),
-                          "the max of " + what + " is less than its min");
-    }
-  }
-  const Json* value = reader.value("value", is_parameter ? Need::required : Need::optional);
-  if (value != nullptr) {
-    input.value = literal(*value, "value");
-    input.value_place = place_of(*value);
-  }
-  input.doc = reader.string("doc", "");
-  if (reader.finish() && input.value) check_value(input, *value);
-  graph_.inputs.push_back(std::move(input));
-}
-
-void GraphBuilder::read_inputs(const Json& inputs, bool are_parameters) {
-  for (const Member& member : inputs.members) {
-    enter(member, are_parameters ? "a parameter" : "an input",
-          {true, static_cast<uint32_t>(graph_.inputs.size())});
-    read_input(member, are_parameters);
-  }
 }
 
 void GraphBuilder::read_node(const Member& member) {

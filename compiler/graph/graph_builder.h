@@ -32,6 +32,7 @@ class GraphBuilder {
 
   void read_inputs(const Json& inputs, bool are_parameters);
   void read_input(const Member& member, bool is_parameter);
+  void read_names(const Json& json, Input& input);
   void check_value(const Input& input, const Json& json);
   void read_nodes(const Json& nodes);
   void read_node(const Member& member);

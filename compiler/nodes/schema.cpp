@@ -128,6 +128,8 @@ SchemaJson input_schema(bool is_parameter) {
   return object_schema({{"type", one_of(types), true},
                         {"min", described(number_schema(), "the least that a component may be")},
                         {"max", described(number_schema(), "the greatest that a component may be")},
+                        {"enum", described(array_schema(reference("id"), 1, 64),
+                                           "what the values 0, 1, ... of an integer are called")},
                         {"value", reference("literal"), is_parameter},
                         {"doc", string_schema()}});
 }

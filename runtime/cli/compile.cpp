@@ -99,6 +99,7 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
     if (!field.value.empty()) row["value"] = field.value;
     if (field.min) row["min"] = *field.min;
     if (field.max) row["max"] = *field.max;
+    if (!field.names.empty()) row["enum"] = field.names;
     list.push_back(row);
   }
   return list;
@@ -110,8 +111,12 @@ bool write_effect(const driver::Effect& effect, Writer& writer) {
   reflection["parameters"] = reflect(effect.parameters);
   for (const driver::Pass& pass : effect.passes) {
     const std::string stem = effect.name + "." + pass.name;
-    reflection["passes"].push_back(
-        {{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}});
+    constexpr const char* culls[] = {"none", "back", "front"};
+    ordered_json row{{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}};
+    row["cull"] = culls[static_cast<size_t>(pass.cull)];
+    row["moves_vertices"] = pass.moves_vertices;
+    if (pass.enabled) row["enabled"] = effect.parameters[*pass.enabled].name;
+    reflection["passes"].push_back(row);
   }
   if (!writer.write(effect.name + ".json", reflection.dump(2) + "\n")) return false;
   return std::ranges::all_of(effect.passes, [&](const driver::Pass& pass) {

@@ -70,23 +70,46 @@ bool check_range(const driver::Field& field, const Literal& literal, const suppo
   return true;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
+  return list;
+}
+
 bool check_fit(const Found& found, const Literal& literal, const support::Span& where,
                Diagnostics& diagnostics) {
   const Type type = found.type;
   const std::string& name = found.field->name;
+  const std::vector<std::string>& values = found.field->names;
+  if (literal.kind == Literal::Kind::string && !values.empty()) {
+    if (graph::named_value(values, literal.string)) return true;
+    std::vector<std::string_view> names(values.begin(), values.end());
+    support::Diagnostic& report = diagnostics.report_unknown(
+        Id::unknown_choice, where,
+        "no value of the parameter " + quote(name) + " is called " + quote(literal.string), literal.string,
+        names);
+    if (report.fix.empty()) report.note("they are called " + listed(values));
+    return false;
+  }
   if (graph::fits(type, literal)) return check_range(*found.field, literal, where, diagnostics);
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
   if (floats == 1) expected += ", a number";
+  if (!values.empty()) expected += ", or one of " + listed(values);
   if (floats > 1) expected += ", an array of " + std::to_string(floats) + " numbers";
   diagnostics.report(Id::wrong_type, where, "the parameter " + quote(name) + " is of type " + expected);
   return false;
 }
 
-void store(Type type, const Literal& literal, float* words) {
+/// `names`: of an integer's values.
+void store(Type type, const std::vector<std::string>& names, const Literal& literal, float* words) {
   switch (type) {
     case Type::boolean: words[0] = literal.boolean ? 1.0f : 0.0f; break;
-    case Type::integer: words[0] = static_cast<float>(literal.integer); break;
+    case Type::integer: {
+      const auto named = graph::named_value(names, literal.string);
+      words[0] = static_cast<float>(named ? named->integer : literal.integer);
+      break;
+    }
     case Type::floating: words[0] = literal.number; break;
     case Type::filename:
     case Type::string: break;  // not in the record
@@ -133,7 +156,7 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
     if (!found) {
       report_unknown(object, effect, parameter.name, parameter.name_where, diagnostics);
     } else if (check_fit(*found, parameter.value, parameter.value_where, diagnostics)) {
-      store(found->type, parameter.value, result.common_.data() + found->first_word);
+      store(found->type, found->field->names, parameter.value, result.common_.data() + found->first_word);
     }
   }
   for (size_t axis = 0; axis < object.repeat.size(); ++axis) {
@@ -151,7 +174,7 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
         diagnostics.report(Id::wrong_type, variation.value_where,
                            "the parameter " + quote(variation.name) + " is an integer: list its values");
       }
-      result.varying_.push_back({axis, i, found->type, found->first_word});
+      result.varying_.push_back({axis, i, found->type, found->field->names, found->first_word});
     }
   }
   if (diagnostics.error_count() != errors_before) return std::nullopt;
@@ -165,7 +188,7 @@ std::vector<float> ObjectParameters::words(const scene::Object& object,
     const scene::Repeat& repeat = object.repeat[varying.axis];
     const Literal value = scene::variation_value(repeat.variations[varying.variation],
                                                  instance.place[varying.axis], repeat.count);
-    store(varying.type, value, words.data() + varying.first_word);
+    store(varying.type, varying.names, value, words.data() + varying.first_word);
   }
   for (float& word : words) word = scene::canonical(word);
   return words;

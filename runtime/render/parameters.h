@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "compiler/driver/driver.h"
@@ -32,6 +33,7 @@ class ObjectParameters {
   struct Varying {
     size_t axis, variation;
     graph::Type type;
+    std::vector<std::string> names;  ///< of an integer's values
     size_t first_word;
   };
   std::vector<float> common_;  ///< of all copies

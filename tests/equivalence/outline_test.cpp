@@ -129,7 +129,7 @@ TEST(Outline, OfWidthZeroIsNotDrawn) {
 }
 
 TEST(Outline, IsSoManyPixelsWideAtAnyDistanceIfTheWidthIsOfTheScreen) {
-  const std::string parameters = R"("outline": 6, "outline_width_mode": 1)";
+  const std::string parameters = R"("outline": 6, "outline_width_mode": "screen")";
   const std::string mesh = R"({"type": "icosphere", "radius": 1, "subdivisions": 6})";
   for (const char* camera :
        {R"("position": [0, 0, 4], "target": [0, 0, 0], "fov": 60)",
@@ -164,8 +164,8 @@ TEST(Outline, NarrowsWithTheDistanceIfTheWidthIsOfTheWorld) {
 TEST(Outline, OfAMirroredMeshIsThatOfTheMeshItIsTheImageOf) {
   const std::string camera = R"("position": [1, 2, 5], "target": [0, 0, 0], "fov": 40)";
   const std::string place = R"("transform": {"rotate": [0, 20, 10], "scale": )";
-  for (const char* normals : {"0", "1"}) {
-    const std::string parameters = "\"outline\": 0.1, \"outline_normals\": " + std::string(normals);
+  for (const char* normals : {"smooth", "shading"}) {
+    const std::string parameters = "\"outline\": 0.1, \"outline_normals\": \"" + std::string(normals) + "\"";
     // A box is its own mirror image.
     const Picture plain = picture(scene_of(camera, "\"box\"", place + "[1, 1.2, 0.8]}, ", parameters));
     const Picture mirrored = picture(scene_of(camera, "\"box\"", place + "[-1, 1.2, 0.8]}, ", parameters));

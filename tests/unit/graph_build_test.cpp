@@ -245,6 +245,33 @@ TEST(Build, InputsMustMakeSense) {
       "missing-key: parameter \"x\" needs the key \"value\" | {");
 }
 
+TEST(Build, ValuesOfIntegersMayHaveNames) {
+  const Graph graph = graph_of(R"({"isoshade": 1, "effect": "e", "parameters": {
+    "mode": {"type": "integer", "enum": ["one", "two", "three"], "value": "two"},
+    "other": {"type": "integer", "enum": ["one", "two"], "value": 0}},
+    "passes": [{"name": "b", "color": "mode"}]})");
+  EXPECT_EQ(graph.inputs[0].value->kind, Literal::Kind::number);
+  EXPECT_EQ(graph.inputs[0].value->integer, 1);
+  EXPECT_EQ(graph.inputs[0].value->number, 1.0f);
+  EXPECT_EQ(graph.inputs[0].max, 2.0f);
+  EXPECT_EQ(graph.inputs[1].value->integer, 0);
+  EXPECT_EQ(
+      first(with_inputs(R"("x": {"type": "integer", "enum": ["smooth", "shading"], "value": "smoth"})")),
+      "unknown-choice: no value of \"x\" is called \"smoth\" | \"smoth\" | did you mean \"smooth\"?");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "b"], "value": 2})")),
+            "out-of-range: the value of \"x\" is greater than its max 1.0 | 2");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "float", "enum": ["a", "b"]})")),
+            "wrong-type: \"enum\" names the values of an integer, not of a float | [\"a\", \"b\"]");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": []})")),
+            "wrong-type: \"enum\" is an array of 1 to 64 names, not of 0 | []");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", 1]})")),
+            "wrong-type: \"enum\" is an array of names, not with a number | 1");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "b c"]})")),
+            "bad-id: \"b c\" cannot name a value | \"b c\"");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "a"]})")),
+            "duplicate-name: two values of \"x\" are called \"a\" | \"a\"");
+}
+
 TEST(Build, NodesMustMakeSense) {
   EXPECT_EQ(first(with_nodes(R"("a": "add")")),
             "wrong-type: node \"a\" is an object, not a string | \"add\"");

@@ -162,6 +162,32 @@ TEST_F(PlanTest, ReportsParametersThatAnEffectHasNotOrThatDoNotFit) {
                                   "list its values"));
 }
 
+TEST_F(PlanTest, ValuesGoByTheirNamesOrNumbers) {
+  write("named.json", R"({"isoshade": 1, "effect": "named",
+    "parameters": {"mode": {"type": "integer", "enum": ["plain", "odd", "wide"], "value": "odd"}},
+    "nodes": {"f": {"type": "convert", "in": "mode", "to": "color3"}}, "passes": [{"name": "p", "color": "f"}]})");
+  const auto made = plan(R"("objects": {
+    "a": {"mesh": "box", "effect": "named.json"},
+    "b": {"mesh": "box", "effect": "named.json", "parameters": {"mode": "wide"}},
+    "c": {"mesh": "box", "effect": "named.json", "parameters": {"mode": 0}},
+    "d": {"mesh": "box", "effect": "named.json",
+          "repeat": [{"count": 2, "step": [0.1, 0, 0], "parameters": {"mode": {"values": ["wide", 1]}}}]}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  const std::vector<float> expected{1, 2, 0, 2, 1};
+  for (size_t draw = 0; draw < expected.size(); ++draw)
+    EXPECT_EQ(record(*made, draw)[word::parameters], expected[draw]) << draw;
+  const auto object = [](const std::string& value) {
+    return R"("objects": {"a": {"mesh": "box", "effect": "named.json", "parameters": {"mode": )" + value +
+           "}}}";
+  };
+  EXPECT_TRUE(
+      planning_fails_with(object("\"wid\""), "error[unknown-choice]: no value of the parameter \"mode\""));
+  EXPECT_NE(diagnostics_.text().find("did you mean \"wide\"?"), std::string::npos);
+  EXPECT_TRUE(planning_fails_with(object("\"zzzzzz\""), "they are called plain, odd, wide"));
+  EXPECT_TRUE(planning_fails_with(object("3"), "error[out-of-range]"));
+  EXPECT_TRUE(planning_fails_with(object("0.5"), "of type integer, or one of plain, odd, wide"));
+}
+
 TEST_F(PlanTest, ReportsWhoNeedsAnEffectThatDoesNotCompile) {
   EXPECT_TRUE(planning_fails_with(R"("objects": {"ball": {"mesh": "box", "effect": "none.json"}})",
                                   "the effect of \"ball\""))
