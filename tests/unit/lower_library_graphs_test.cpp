@@ -49,7 +49,7 @@ double schlick(double f0, double c) { return f0 + (1 - f0) * std::pow(1 - c, 5);
 
 TEST(LibraryGraphs, EveryShippedGraphIsCheckedWithoutAWord) {
   int count = 0;
-  for (const char* folder : {"library", "source_forms", "materials"}) {
+  for (const char* folder : {"library", "source_forms", "materials", "effects"}) {
     for (const auto& file :
          std::filesystem::recursive_directory_iterator(ISOSHADE_GRAPHS "/" + std::string(folder))) {
       if (file.path().extension() != ".json") continue;
@@ -60,6 +60,30 @@ TEST(LibraryGraphs, EveryShippedGraphIsCheckedWithoutAWord) {
     }
   }
   EXPECT_GE(count, 12);
+}
+
+TEST(LibraryGraphs, HullsMoveOutwardsAndAwayFromTheViewerWhereverTheNormalPoints) {
+  Program hull = load("library/outline/hull_position");
+  const auto moved = [&](std::vector<float> normal, int mode) {
+    std::vector<float> arguments{1, 2, -10};
+    arguments.insert(arguments.end(), normal.begin(), normal.end());
+    const std::vector<float> rest{0, 0, 1, /* outline */ 4, /* pixel */ 0.5, std::bit_cast<float>(mode)};
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
+    return hull(arguments);
+  };
+  for (const float z : {1.0f, -1.0f}) {
+    EXPECT_EQ(moved({0, 0, z}, 0), (std::vector<float>{1, 2, -14}));
+    EXPECT_EQ(moved({0, 0, z}, 1), (std::vector<float>{1, 2, -12}));
+  }
+  const float step = 4 / std::sqrt(2.0f);
+  const std::vector<float> aside = moved({1, 0, 0}, 0);
+  EXPECT_FLOAT_EQ(aside[0], 1 + step);
+  EXPECT_FLOAT_EQ(aside[2], -10 - step);
+  // Four pixels of half a unit, however much of the normal is seen.
+  const std::vector<float> on_screen = moved({0, 0.25f, 0.8f}, 1);
+  EXPECT_FLOAT_EQ(on_screen[0], 1);
+  EXPECT_FLOAT_EQ(on_screen[1], 4);
+  EXPECT_FLOAT_EQ(on_screen[2], -12);
 }
 
 TEST(LibraryGraphs, GgxIsWithin9UlpDownToAlpha1e_4) {

@@ -242,6 +242,26 @@ TEST_F(PlanTest, PassesThatMoveVerticesAreNotSkippedByTheMeshsPlace) {
   EXPECT_GT(seen, 10);
 }
 
+TEST_F(PlanTest, PixelsKnowTheirSizeAndTheMeshAsItWasBeforeItMoved) {
+  write("sizes.json", R"({"isoshade": 1, "effect": "sizes", "nodes": {
+    "s": {"type": "pixelsize"}, "p": {"type": "position"}, "up": {"type": "constant", "value": [0, 2, 0]},
+    "c": {"type": "combine3", "in1": "s", "in2": "p.y", "to": "color3"}, "moved": {"type": "add", "in1": "p", "in2": "up"}},
+    "passes": [{"name": "base", "color": "c", "position": "moved"}]})");
+  for (const char* camera : {R"("fov": 90)", R"("type": "orthographic", "height": 4, "far": 9)"}) {
+    const auto made =
+        plan(R"("size": [9, 8], "camera": {"position": [0, 0, 2], "target": [0, 0, 0], )" +
+             std::string(camera) + R"(}, "objects": {"wall": {"mesh": {"type": "plane", "size": [9, 9]},
+      "effect": "sizes.json", "transform": {"translate": [0, -2, 0], "rotate": [90, 0, 0]}}})");
+    ASSERT_TRUE(made) << diagnostics_.text();
+    backends::Image image;
+    render::DrawStats stats;
+    ASSERT_TRUE(render::render(*made, *interpreter::create(), image, stats, diagnostics_));
+    const float* middle = &image.rgba[static_cast<size_t>(4 * (4 * 9 + 4))];
+    EXPECT_NEAR(middle[0], 0.5, 1e-5) << camera;    // 4 units are 8 pixels
+    EXPECT_NEAR(middle[1], -2.25, 1e-5) << camera;  // half a pixel below the middle, and two units
+  }
+}
+
 TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   const auto made = plan(R"("background": [0.1, 0.2, 0.3, 0.4], "size": [17, 9], "time": 2.5,
     "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]},
