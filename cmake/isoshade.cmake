@@ -15,6 +15,7 @@ find_package(SPIRV-Tools-opt REQUIRED)
 find_package(glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
+pkg_check_modules(mpfr REQUIRED IMPORTED_TARGET mpfr gmp)
 
 # What a float is (docs: "The contract"): no contraction, and no constant folded in another rounding or
 # denormal mode than the one at run time. Every object of ours is compiled so, generated code too.

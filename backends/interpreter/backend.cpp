@@ -44,29 +44,44 @@ class Buffers {
   std::array<std::vector<uint32_t>, std::size(lower::frame_buffers)> words_;
 };
 
-/// A program that is ready to run.
-class Runner {
+class InterpretingMachine final : public Machine {
  public:
-  Runner(const Program& program, const Buffers& buffers)
-      : interpreter_(program.module), entry_(program.entry) {
-    for (uint32_t i = 0; i < program.module.buffers.size(); ++i) interpreter_.bind(i, buffers[i]);
-  }
-  void run(std::initializer_list<int> arguments, std::span<uint32_t> results) {
-    std::array<uint32_t, 5> words;
-    std::ranges::transform(arguments, words.begin(), [](int a) { return static_cast<uint32_t>(a); });
-    const bool finished = interpreter_.run(entry_, std::span(words).first(arguments.size()), results);
+  explicit InterpretingMachine(const ir::Module& module) : interpreter_(module) {}
+  void bind(uint32_t buffer, std::span<const uint32_t> words) override { interpreter_.bind(buffer, words); }
+  void run(uint32_t function, std::span<const uint32_t> arguments, std::span<uint32_t> results) override {
+    const bool finished = interpreter_.run(function, arguments, results);
     support::check(finished, "an interpreter without a limit stopped early");
   }
 
  private:
   ir::Interpreter interpreter_;
+};
+
+/// A program that is ready to run.
+class Runner {
+ public:
+  Runner(const MakeMachine& make, const Program& program, const Buffers& buffers)
+      : machine_(make(program)), entry_(program.entry) {
+    for (uint32_t i = 0; i < program.module.buffers.size(); ++i) machine_->bind(i, buffers[i]);
+  }
+  void run(std::initializer_list<int> arguments, std::span<uint32_t> results) {
+    std::array<uint32_t, 5> words;
+    std::ranges::transform(arguments, words.begin(), [](int a) { return static_cast<uint32_t>(a); });
+    machine_->run(entry_, std::span(words).first(arguments.size()), results);
+  }
+
+ private:
+  std::unique_ptr<Machine> machine_;
   uint32_t entry_;
 };
 
 class InterpreterBackend final : public backends::Backend {
  public:
-  std::string_view name() const override { return "interpreter"; }
-  std::string description() const override { return "interpreter, 1 lane, 1 thread, native division"; }
+  InterpreterBackend(std::string name, std::string description, MakeMachine make)
+      : name_(std::move(name)), description_(std::move(description)), make_(std::move(make)) {}
+
+  std::string_view name() const override { return name_; }
+  std::string description() const override { return description_; }
 
   bool transform(const Frame& frame, std::vector<std::vector<float>>& clip, Diagnostics&) override {
     Buffers buffers;
@@ -74,7 +89,7 @@ class InterpreterBackend final : public backends::Backend {
     clip.resize(frame.draws.size());
     for (size_t d = 0; d < frame.draws.size(); ++d) {
       const Draw& draw = frame.draws[d];
-      Runner vertex(*frame.programs[draw.vertex_program], buffers);
+      Runner vertex(make_, *frame.programs[draw.vertex_program], buffers);
       clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
       for (uint32_t i = 0; i < draw.vertex_count; ++i) {
         std::array<uint32_t, 4> position;
@@ -105,7 +120,7 @@ class InterpreterBackend final : public backends::Backend {
       const auto program =
           static_cast<size_t>(frame.objects[static_cast<size_t>(object) + lower::object_word::program]);
       support::check(program < frame.programs.size(), "an object has a program that the frame lacks");
-      Runner& pixel = pixels.try_emplace(program, *frame.programs[program], buffers).first->second;
+      Runner& pixel = pixels.try_emplace(program, make_, *frame.programs[program], buffers).first->second;
       const int at = static_cast<int>(i);
       std::array<uint32_t, 4> result;
       pixel.run({at % frame.width, at / frame.width, visible[i], object, frame.light_count}, result);
@@ -121,7 +136,7 @@ class InterpreterBackend final : public backends::Backend {
     size_t width = 0;
     for (const driver::Field& field : program.results) width += static_cast<size_t>(field.words);
     outputs.resize(rows * width);
-    Runner eval(program, buffers);
+    Runner eval(make_, program, buffers);
     std::vector<uint32_t> results(width);
     for (size_t row = 0; row < rows; ++row) {
       eval.run({static_cast<int>(row)}, results);
@@ -130,10 +145,24 @@ class InterpreterBackend final : public backends::Backend {
     }
     return true;
   }
+
+ private:
+  std::string name_, description_;
+  MakeMachine make_;
 };
 
 }  // namespace
 
-std::unique_ptr<backends::Backend> create() { return std::make_unique<InterpreterBackend>(); }
+std::unique_ptr<Machine> make_machine(const driver::Program& program) {
+  return std::make_unique<InterpretingMachine>(program.module);
+}
+
+std::unique_ptr<backends::Backend> create(std::string name, std::string description, MakeMachine make) {
+  return std::make_unique<InterpreterBackend>(std::move(name), std::move(description), std::move(make));
+}
+
+std::unique_ptr<backends::Backend> create() {
+  return create("interpreter", "interpreter, 1 lane, 1 thread, native division", make_machine);
+}
 
 }  // namespace isoshade::interpreter

@@ -5,6 +5,7 @@
 #include "compiler/driver/dumps.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/lower.h"
+#include "compiler/passes/derivatives.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/check.h"
 
@@ -36,15 +37,19 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
   return typed;
 }
 
-/// What lowering made, through all passes; returns where the kernel is then.
-uint32_t finish(ir::Module& module, uint32_t entry, const Options& options) {
-  passes::Entries entries{entry};
+/// What lowering made, through all passes. The reference takes it as authored, but for the positions of vertices: these
+/// are what every backend has.
+void finish(Program& program, uint32_t kernel, const Options& options) {
+  program.entry = kernel;
+  if (options.reference && program.stage != Stage::vertex) return passes::derivatives(program.module);
+  passes::Entries entries{kernel};
   const auto dump = [&](std::string_view pass, const ir::Module& after) {
     options.dump(pass, [&] { return dump_module(after); });
   };
-  if (options.dump) dump("lower", module);
-  passes::run(passes::optimisations(), module, entries, options.dump ? passes::Dump(dump) : passes::Dump());
-  return entries[0];
+  if (options.dump) dump("lower", program.module);
+  passes::run(passes::optimisations(), program.module, entries,
+              options.dump ? passes::Dump(dump) : passes::Dump());
+  program.entry = entries[0];
 }
 
 int words_of(graph::Type type) {
@@ -108,7 +113,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const std::v
     kernel = lower::add_moving_vertex_kernel(program.module, offsets_of(parameters),
                                              typed.graph.passes[pass].position_space);
   }
-  program.entry = finish(program.module, kernel, options);
+  finish(program, kernel, options);
   return program;
 }
 
@@ -118,7 +123,7 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const std::ve
   program.module = lower::lower(typed, {pass});
   program.module.buffers = lower::frame_module().buffers;
   const uint32_t kernel = lower::add_pixel_kernel(program.module, offsets_of(parameters), options.lights);
-  program.entry = finish(program.module, kernel, options);
+  finish(program, kernel, options);
   return program;
 }
 
@@ -157,7 +162,7 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
   const uint32_t function = module.find(lower::entry_name(*typed));
   support::check(function != ir::none, "lowering made no function");
   Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {}};
-  program.entry = finish(program.module, lower::add_eval_kernel(program.module, function), options);
+  finish(program, lower::add_eval_kernel(program.module, function), options);
   for (const graph::Input& input : typed->graph.inputs) {
     program.inputs.push_back(field(input.name, input.type));
     program.inputs.back().min = input.min;
@@ -172,7 +177,7 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
 const Program& depth_program() {
   static const Program program = [] {
     Program made{lower::Stage::depth, "depth", "", lower::frame_module(), 0, {}, {}};
-    made.entry = finish(made.module, lower::add_depth_kernel(made.module), {});
+    finish(made, lower::add_depth_kernel(made.module), {});
     return made;
   }();
   return program;
@@ -184,7 +189,7 @@ Program finish_eval(ir::Module module, uint32_t function, std::string name) {
     program.inputs.push_back(field(parameter.name, graph_type(parameter.type)));
   for (const ir::Result& result : program.module.functions[function].results)
     program.results.push_back(field(result.name, graph_type(result.type)));
-  program.entry = finish(program.module, lower::add_eval_kernel(program.module, function), {});
+  finish(program, lower::add_eval_kernel(program.module, function), {});
   return program;
 }
 

@@ -23,6 +23,9 @@ struct Options {
   check::Library* library = nullptr;  ///< where sub-graphs come from; required
   lower::LightKinds lights;           ///< the kinds that the scene has
   Dump dump;                          ///< empty: nothing is dumped
+  /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and no optimisation;
+  /// only ddx and ddy are gone.
+  bool reference = false;
 };
 
 /// One pass of an effect.

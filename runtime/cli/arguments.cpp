@@ -49,7 +49,14 @@ const CLI::Validator warning_text(
     },
     "error|no-ID");
 
-const CLI::IsMember backend_names({"cpu", "vulkan", "interpreter"});
+const CLI::IsMember backend_names({"cpu", "vulkan", "interpreter", "reference"});
+/// Of backends that must agree in every bit.
+const CLI::Validator compared_names(
+    [](std::string& name) -> std::string {
+      if (name != "reference") return backend_names(name);
+      return "the reference does not round, and so is identical to nothing; it is for `render` and `eval`";
+    },
+    "cpu,vulkan,interpreter");
 const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
 const CLI::IsMember division_names({"native", "exact"});
 
@@ -149,7 +156,10 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->add_option("-o,--output", render.output,
                    "FILE.png (encoded, 8 bits) or FILE.exr (linear, with depth)")
       ->required();
-  render_app->add_option("--backend", render.backend, "cpu, vulkan or interpreter")
+  render_app
+      ->add_option(
+          "--backend", render.backend,
+          "cpu, vulkan, interpreter or reference (the graph as authored, in high precision, up to 256x256)")
       ->check(backend_names)
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
@@ -165,7 +175,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   verify_app
       ->add_option("--backends", verify.backends, "Backends to compare with the first, separated by commas")
       ->delimiter(',')
-      ->check(backend_names)
+      ->check(compared_names)
       ->capture_default_str();
   verify_app->add_option("--size", verify_sizes, "Sizes instead of the scene's, separated by commas")
       ->delimiter(',')
@@ -192,7 +202,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                    "A CSV file: a column an input; of vectors l.x l.y l.z, of colours c.r c.g c.b too")
       ->required();
   eval_app->add_option("-o,--output", eval.output, "The CSV file to write")->capture_default_str();
-  eval_app->add_option("--backend", eval.backend, "cpu, vulkan or interpreter")
+  eval_app
+      ->add_option("--backend", eval.backend,
+                   "cpu, vulkan, interpreter (hex floats) or reference (the graph as authored: 40 digits)")
       ->check(backend_names)
       ->capture_default_str();
   add_choice(*eval_app, eval.choice);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade eval: a function document over a table.
+#include "backends/reference/backend.h"
 #include "compiler/driver/driver.h"
 #include "runtime/cli/session.h"
 #include "runtime/cli/table.h"
@@ -16,6 +17,7 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   check::Library library = make_library(common);
   driver::Options options;
   options.library = &library;
+  options.reference = arguments.backend == "reference";
   const support::Source function = graph::read_source(arguments.function, diagnostics);
   if (function == nullptr) return false;
   const auto program = driver::compile_function(function, options, diagnostics);
@@ -27,6 +29,11 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
   if (backend == nullptr) return false;
   progress(common, "evaluating " + std::to_string(inputs->rows) + " rows on " + backend->description());
+  if (options.reference) {
+    const auto numbers = reference::evaluate(*program, inputs->words, inputs->rows);
+    return scene::write_file(arguments.output, write_table(numbers, inputs->rows, program->results),
+                             diagnostics);
+  }
   Table results;
   results.rows = inputs->rows;
   if (!backend->evaluate(*program, inputs->words, inputs->rows, results.words, diagnostics)) return false;

@@ -10,6 +10,7 @@
 
 #include "backends/cpu/backend.h"
 #include "backends/interpreter/backend.h"
+#include "backends/reference/backend.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/places.h"
 #ifdef ISOSHADE_VULKAN
@@ -91,6 +92,7 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
                                                 const Common& common, support::Diagnostics& diagnostics,
                                                 StandIn stand_in) {
   if (name == "interpreter") return interpreter::create();
+  if (name == "reference") return reference::create();
   if (name == "vulkan") {
 #ifdef ISOSHADE_VULKAN
     vulkan::Options options;

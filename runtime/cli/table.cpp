@@ -190,21 +190,35 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
   return table;
 }
 
-std::string write_table(const Table& table, const std::vector<driver::Field>& fields) {
-  const std::vector<Column> columns = all_columns(fields);
+namespace {
+
+/// `cell` tells the text of a word of the table.
+template <class CellText>
+std::string write_cells(size_t rows, const std::vector<Column>& columns, CellText cell) {
   std::string text;
   for (const Column& column : columns) text += (column.word == 0 ? "" : ",") + column.name;
   text += "\n";
-  for (size_t row = 0; row < table.rows; ++row) {
-    for (const Column& column : columns) {
-      const int32_t word = table.words[row * columns.size() + column.word];
-      if (column.word != 0) text += ",";
-      text += column.cell == Cell::floating ? support::format_hex_float(std::bit_cast<float>(word))
-                                            : std::to_string(word);
-    }
+  for (size_t row = 0; row < rows; ++row) {
+    for (const Column& column : columns)
+      text += (column.word == 0 ? "" : ",") + cell(row * columns.size() + column.word, column.cell);
     text += "\n";
   }
   return text;
+}
+
+}  // namespace
+
+std::string write_table(const Table& table, const std::vector<driver::Field>& fields) {
+  return write_cells(table.rows, all_columns(fields), [&](size_t at, Cell cell) {
+    const int32_t word = table.words[at];
+    return cell == Cell::floating ? support::format_hex_float(std::bit_cast<float>(word))
+                                  : std::to_string(word);
+  });
+}
+
+std::string write_table(std::span<const reference::Real> numbers, size_t rows,
+                        const std::vector<driver::Field>& fields) {
+  return write_cells(rows, all_columns(fields), [&](size_t at, Cell) { return numbers[at].text(40); });
 }
 
 }  // namespace isoshade::cli

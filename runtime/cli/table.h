@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "backends/reference/real.h"
 #include "compiler/driver/program.h"
 #include "compiler/support/diagnostics.h"
 
@@ -28,5 +30,9 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
 
 /// Floats as hex, so that every bit is there.
 std::string write_table(const Table& table, const std::vector<driver::Field>& fields);
+
+/// What the reference gives, in decimal: 40 significant digits, fewer where the number has no more.
+std::string write_table(std::span<const reference::Real> numbers, size_t rows,
+                        const std::vector<driver::Field>& fields);
 
 }  // namespace isoshade::cli

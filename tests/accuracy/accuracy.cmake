@@ -3,13 +3,13 @@ isoshade_test(functions_accuracy_test
   SOURCES
     accuracy/functions_accuracy_test.cpp
     accuracy/monotone_test.cpp
-  LINKS isoshade_functions
+  LINKS isoshade_functions isoshade_reference
   LABEL accuracy
   TIMEOUT 7200)
 
 isoshade_test(derivatives_accuracy_test
   SOURCES accuracy/derivatives_accuracy_test.cpp
-  LINKS isoshade_passes
+  LINKS isoshade_passes isoshade_reference
   LABEL accuracy)
 
 isoshade_test(pixel_derivatives_test

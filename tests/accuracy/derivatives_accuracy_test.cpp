@@ -24,34 +24,16 @@ std::string text(float x) { return std::to_string(x); }
 
 namespace {
 
-struct Absent {};
 using Reals = std::vector<Real>;
 
-// Rows as types, as in functions_accuracy_test.cpp.
 namespace rows {
-
-using namespace reference;
 
 #define D(...) \
   { __VA_ARGS__ }
-inline Real promoted(Real x) { return x; }
-template <int N>
-Vector<N> promoted(Vector<N> v) {
-  return v;
-}
-template <int N>
-Matrix<N> promoted(Matrix<N> m) {
-  return m;
-}
-#define FUNCTION(row, signature, ulp, ranges, reference_, unit_)                                  \
-  struct row##_row {                                                                              \
-    using Variants = functions::Signatures<float>::signature;                                     \
-    static std::vector<Range> domain() { return ranges; }                                         \
-    template <class X, class Y = Absent, class Z = Absent, class U = Absent, class V = Absent>    \
-    static auto exact([[maybe_unused]] X x, [[maybe_unused]] Y y = {}, [[maybe_unused]] Z z = {}, \
-                      [[maybe_unused]] U u = {}, [[maybe_unused]] V v = {}) {                     \
-      return promoted(reference_);                                                                \
-    }                                                                                             \
+#define FUNCTION(row, signature, ulp, ranges, reference_, unit_) \
+  struct row##_row : reference::rows::row##_row {                \
+    using Variants = functions::Signatures<float>::signature;    \
+    static std::vector<Range> domain() { return ranges; }        \
   };
 #include "compiler/functions/functions.def"
 
@@ -66,23 +48,23 @@ struct Exact<float> {
 };
 template <int N>
 struct Exact<lanes::vec<float, N>> {
-  static reference::Vector<N> take(const Real*& from) {
+  static Vector<N> take(const Real*& from) {
     return reference::vector<N>([&](int) { return *from++; });
   }
 };
 template <int N>
 struct Exact<functions::mat<float, N>> {
-  static reference::Matrix<N> take(const Real*& from) {
+  static Matrix<N> take(const Real*& from) {
     return reference::columns<N>([&](int) { return Exact<lanes::vec<float, N>>::take(from); });
   }
 };
 void flatten(Real x, Reals& out) { out.push_back(x); }
 template <int N>
-void flatten(const reference::Vector<N>& v, Reals& out) {
+void flatten(const Vector<N>& v, Reals& out) {
   for (int i = 0; i < N; ++i) out.push_back(v[i]);
 }
 template <int N>
-void flatten(const reference::Matrix<N>& m, Reals& out) {
+void flatten(const Matrix<N>& m, Reals& out) {
   for (int i = 0; i < N; ++i) flatten(m[i], out);
 }
 

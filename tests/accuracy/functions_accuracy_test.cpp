@@ -19,17 +19,16 @@ std::string text(float x) {
 
 namespace {
 
-struct Absent {};
-
-// Rows as types. The reference column speaks of x, y, z, u and v, of which a row may lack the last.
+// Rows as types: what reference::rows tells of each, and what is measured.
 namespace rows {
 
 using namespace reference;
+using reference::rows::Absent;
 
 #define D(...) \
   { __VA_ARGS__ }
 #define FUNCTION(row, signature, ulp, ranges, reference_, unit_)                                        \
-  struct row##_row {                                                                                    \
+  struct row##_row : reference::rows::row##_row {                                                       \
     using Variants = functions::Signatures<float>::signature;                                           \
     static constexpr double bound = ulp;                                                                \
     static constexpr bool cancels = std::string_view(#unit_) != "result";                               \
@@ -38,26 +37,12 @@ using namespace reference;
     static auto body(T... arguments) {                                                                  \
       return functions::row(arguments...);                                                              \
     }                                                                                                   \
-    template <class X, class Y = Absent, class Z = Absent, class U = Absent, class V = Absent>          \
-    static auto exact([[maybe_unused]] X x, [[maybe_unused]] Y y = {}, [[maybe_unused]] Z z = {},       \
-                      [[maybe_unused]] U u = {}, [[maybe_unused]] V v = {}) {                           \
-      return promoted(reference_);                                                                      \
-    }                                                                                                   \
     template <class R, class X, class Y = Absent, class Z = Absent, class U = Absent, class V = Absent> \
     static auto unit([[maybe_unused]] R result, [[maybe_unused]] X x, [[maybe_unused]] Y y = {},        \
                      [[maybe_unused]] Z z = {}, [[maybe_unused]] U u = {}, [[maybe_unused]] V v = {}) { \
       return unit_;                                                                                     \
     }                                                                                                   \
   };
-inline Real promoted(Real x) { return x; }
-template <int N>
-Vector<N> promoted(Vector<N> v) {
-  return v;
-}
-template <int N>
-Matrix<N> promoted(Matrix<N> m) {
-  return m;
-}
 #include "compiler/functions/functions.def"
 
 }  // namespace rows

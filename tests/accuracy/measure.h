@@ -8,16 +8,21 @@
 #include <utility>
 #include <vector>
 
+#include "backends/reference/rows.h"
 #include "compiler/functions/all.h"
 #include "compiler/functions/signatures.h"
 #include "runtime/lanes/lanes.h"
-#include "tests/accuracy/reference.h"
-#include "tests/accuracy/reference_noise.h"
 #include "tests/accuracy/samples.h"
 
 namespace isoshade::accuracy {
 
-using reference::Real;
+/// With 64 bits of significand and 15 of exponent, and unaffected by FTZ and DAZ.
+using Real = long double;
+static_assert(std::numeric_limits<Real>::digits >= 64);
+template <int N>
+using Vector = reference::Vector<Real, N>;
+template <int N>
+using Matrix = reference::Matrix<Real, N>;
 
 /// The worst case found.
 struct Error {
@@ -47,11 +52,11 @@ inline double error(float result, Real exact, Real unit, double bound) {
 // Floats and compounds of them, as reference values and as lists.
 inline Real precise(float x) { return x; }
 template <int N>
-reference::Vector<N> precise(const lanes::vec<float, N>& v) {
+Vector<N> precise(const lanes::vec<float, N>& v) {
   return reference::vector<N>([&](int i) { return precise(v[i]); });
 }
 template <int N>
-reference::Matrix<N> precise(const functions::mat<float, N>& m) {
+Matrix<N> precise(const functions::mat<float, N>& m) {
   return reference::columns<N>([&](int i) { return precise(m[i]); });
 }
 
@@ -60,13 +65,12 @@ void each(Visit visit, float result, Real exact, Real unit) {
   visit(result, exact, unit);
 }
 template <class Visit, int N>
-void each(Visit visit, const lanes::vec<float, N>& result, const reference::Vector<N>& exact,
-          const reference::Vector<N>& unit) {
+void each(Visit visit, const lanes::vec<float, N>& result, const Vector<N>& exact, const Vector<N>& unit) {
   for (int i = 0; i < N; ++i) visit(result[i], exact[i], unit[i]);
 }
 template <class Visit, int N>
-void each(Visit visit, const functions::mat<float, N>& result, const reference::Matrix<N>& exact,
-          const reference::Matrix<N>& unit) {
+void each(Visit visit, const functions::mat<float, N>& result, const Matrix<N>& exact,
+          const Matrix<N>& unit) {
   for (int i = 0; i < N; ++i) each(visit, result[i], exact[i], unit[i]);
 }
 

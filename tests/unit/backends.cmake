@@ -17,3 +17,10 @@ target_compile_definitions(cpu_test PRIVATE ISOSHADE_SOURCE_DIR="${PROJECT_SOURC
 isoshade_test(interpreter_test
   SOURCES unit/interpreter_backend_test.cpp
   LINKS isoshade_cpu isoshade_interpreter)
+
+isoshade_test(reference_test
+  SOURCES
+    unit/reference_backend_test.cpp
+    unit/reference_functions_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter isoshade_reference)
+target_compile_definitions(reference_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

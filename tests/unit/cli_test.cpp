@@ -90,6 +90,22 @@ TEST_F(Cli, RendersPngAndExrAndRefusesOtherEndings) {
   EXPECT_NE(outcome.text.find(".png"), std::string::npos) << outcome.text;
 }
 
+TEST_F(Cli, HasAReferenceThatDrawsSmallImagesAndPrintsManyDigits) {
+  const std::string out = " --backend reference -o " + file("a.exr");
+  EXPECT_EQ(run("render " + scene + " --size 16x9" + out).exit, 0);
+  const Outcome large = run("render " + scene + " --size 16x300" + out);
+  EXPECT_EQ(large.exit, 2);
+  EXPECT_NE(large.text.find("at most 256x256"), std::string::npos) << large.text;
+  const Outcome compared = run("verify " + scene + " --backends cpu,reference");
+  EXPECT_EQ(compared.exit, 2);
+  EXPECT_NE(compared.text.find("does not round"), std::string::npos) << compared.text;
+  const std::string table = file("third.csv", "base_color.r,base_color.g,base_color.b\n1,0.5,inf\n");
+  EXPECT_EQ(
+      run("eval " + graphs + "/library/brdf/lambert.json --inputs " + table + " --backend reference").text,
+      "out.x,out.y,out.z\n0.3183098773260113707468318358143994802985,"
+      "0.1591549386630056853734159179071997401493,inf\n");
+}
+
 TEST_F(Cli, SaysOfASettingWhatIsWrongWithIt) {
   const std::string command =
       "render " + graphs + "/scenes/material_balls.json --size 8x8 -o " + file("a.png");

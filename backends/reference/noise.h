@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noises as their sources define them, with 64 bits of significand: hashes over words, sums over corners.
+// Noises as their sources define them, over any kind of number: hashes over words, sums over corners.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "tests/accuracy/reference.h"
+#include "backends/reference/geometry.h"
 
 namespace isoshade::reference {
 
@@ -24,15 +24,28 @@ uint32_t hash_words(std::array<int64_t, N> words) {
   return c;
 }
 
-inline int64_t cell_of(Real x) { return static_cast<int64_t>(floor(x)); }
-inline Real unit_of(uint32_t bits) { return static_cast<Real>(bits >> 8) * 0x1p-24L; }
-
-inline Real cellnoise2d(Vector<2> p) { return unit_of(hash_words<2>({cell_of(p[0]), cell_of(p[1])})); }
-inline Real cellnoise3d(Vector<3> p) {
-  return unit_of(hash_words<3>({cell_of(p[0]), cell_of(p[1]), cell_of(p[2])}));
+template <class R>
+int64_t cell_of(R x) {
+  return static_cast<int64_t>(floor(x));
+}
+template <class R>
+R unit_of(uint32_t bits) {
+  return R(bits >> 8) * 0x1p-24;
 }
 
-inline Real fade(Real t) { return t * t * t * (t * (t * 6 - 15) + 10); }
+template <class R>
+R cellnoise2d(Vector<R, 2> p) {
+  return unit_of<R>(hash_words<2>({cell_of(p[0]), cell_of(p[1])}));
+}
+template <class R>
+R cellnoise3d(Vector<R, 3> p) {
+  return unit_of<R>(hash_words<3>({cell_of(p[0]), cell_of(p[1]), cell_of(p[2])}));
+}
+
+template <class R>
+R fade(R t) {
+  return t * t * t * (t * (t * 6 - 15) + 10);
+}
 
 constexpr int plane_gradients[8][2] = {{1, 2}, {-1, 2}, {1, -2}, {-1, -2},
                                        {2, 1}, {2, -1}, {-2, 1}, {-2, -1}};
@@ -41,22 +54,22 @@ constexpr int space_gradients[16][3] = {
     {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1}};
 
 /// Perlin's noise in three channels: the sum over the corners of the point's cell.
-template <int N>
-Vector<3> gradient_noise(Vector<N> p, Real scale) {
-  Vector<3> sum{};
+template <class R, int N>
+Vector<R, 3> gradient_noise(Vector<R, N> p, R scale) {
+  Vector<R, 3> sum{};
   for (int corner = 0; corner < 1 << N; ++corner) {
     std::array<int64_t, N> at;
-    Vector<N> offset;
-    Real weight = scale;
+    Vector<R, N> offset;
+    R weight = scale;
     for (int i = 0; i < N; ++i) {
       at[i] = cell_of(p[i]) + (corner >> i & 1);
-      offset.c[i] = p[i] - static_cast<Real>(at[i]);
-      weight *= fade(1 - abs(offset[i]));
+      offset.c[i] = p[i] - R(at[i]);
+      weight *= fade(R(1 - abs(offset[i])));
     }
     const uint32_t hash = hash_words<N>(at);
     for (int channel = 0; channel < 3; ++channel) {
       const uint32_t bits = hash >> 8 * channel;
-      Real product = 0;
+      R product = 0;
       for (int i = 0; i < N; ++i)
         product += offset[i] * (N == 2 ? plane_gradients[bits & 7][i % 2] : space_gradients[bits & 15][i]);
       sum.c[channel] += weight * product;
@@ -64,46 +77,62 @@ Vector<3> gradient_noise(Vector<N> p, Real scale) {
   }
   return sum;
 }
-inline Vector<3> noise2d(Vector<2> p) { return gradient_noise(p, 0.6616L); }
-inline Vector<3> noise3d(Vector<3> p) { return gradient_noise(p, 0.982L); }
+template <class R>
+Vector<R, 3> noise2d(Vector<R, 2> p) {
+  return gradient_noise(p, R(6616) / 10000);
+}
+template <class R>
+Vector<R, 3> noise3d(Vector<R, 3> p) {
+  return gradient_noise(p, R(982) / 1000);
+}
 
 /// The sum of term(point, amplitude, index) over the octaves.
-template <class Term>
-Vector<3> sum_octaves(Vector<3> p, Real octaves, Real lacunarity, Real diminish, Term term) {
-  Vector<3> sum{};
-  Real amplitude = 1;
-  for (int i = 0; i < std::min<Real>(octaves, 16); ++i) {
+template <class R, class Term>
+Vector<R, 3> sum_octaves(Vector<R, 3> p, R octaves, R lacunarity, R diminish, Term term) {
+  Vector<R, 3> sum{};
+  R amplitude = 1;
+  for (int i = 0; i < 16 && i < octaves; ++i) {
     sum = sum + term(p, amplitude, i);
     amplitude *= diminish;
     p = p * lacunarity;
   }
   return sum;
 }
-inline Vector<3> fractal3d(Vector<3> p, Real octaves, Real lacunarity, Real diminish) {
+template <class R>
+Vector<R, 3> fractal3d(Vector<R, 3> p, R octaves, R lacunarity, R diminish) {
   return sum_octaves(p, octaves, lacunarity, diminish,
-                     [](Vector<3> at, Real amplitude, int) { return noise3d(at) * amplitude; });
+                     [](Vector<R, 3> at, R amplitude, int) { return noise3d(at) * amplitude; });
 }
-inline Vector<3> fractal3d_magnitude(Vector<3> p, Real octaves, Real lacunarity, Real diminish) {
-  return sum_octaves(p, octaves, lacunarity, diminish, [](Vector<3> at, Real amplitude, int i) {
-    return Vector<3>{{1, 1, 1}} * (amplitude * (1 + i * length(at)));
+template <class R>
+Vector<R, 3> fractal3d_magnitude(Vector<R, 3> p, R octaves, R lacunarity, R diminish) {
+  return sum_octaves(p, octaves, lacunarity, diminish, [](Vector<R, 3> at, R amplitude, int i) {
+    return Vector<R, 3>{{1, 1, 1}} * (amplitude * (1 + i * length(at)));
   });
 }
 
 /// The three least distances to the feature points of nine squares.
-inline Vector<3> worleynoise2d(Vector<2> p, Real jitter) {
-  std::array<Real, 9> distances;
+template <class R>
+Vector<R, 3> worleynoise2d(Vector<R, 2> p, R jitter) {
+  std::array<R, 9> distances;
   for (int i = 0; i < 9; ++i) {
     const int64_t x = cell_of(p[0]) + i % 3 - 1, y = cell_of(p[1]) + i / 3 - 1;
-    const Vector<2> point{
-        {static_cast<Real>(x) + (unit_of(hash_words<3>({x, y, 0})) - 0.5L) * jitter + 0.5L,
-         static_cast<Real>(y) + (unit_of(hash_words<3>({x, y, 1})) - 0.5L) * jitter + 0.5L}};
+    const auto moved = [&](int64_t cell, int64_t axis) {
+      return R(cell) + (unit_of<R>(hash_words<3>({x, y, axis})) - 0.5) * jitter + 0.5;
+    };
+    const Vector<R, 2> point{{moved(x, 0), moved(y, 1)}};
     distances[i] = length(point - p);
   }
-  std::ranges::sort(distances);
+  std::sort(distances.begin(), distances.end());
   return {{distances[0], distances[1], distances[2]}};
 }
 
-inline Real ones(Real) { return 1; }
-inline Vector<3> ones(Vector<3>) { return {{1, 1, 1}}; }
+template <class R>
+R ones(R) {
+  return 1;
+}
+template <class R>
+Vector<R, 3> ones(Vector<R, 3>) {
+  return {{1, 1, 1}};
+}
 
 }  // namespace isoshade::reference

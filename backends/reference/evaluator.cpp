@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/reference/evaluator.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "backends/reference/functions.h"
+#include "compiler/ir/evaluate.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::reference {
+
+using ir::Opcode;
+using support::check;
+
+namespace {
+
+float float_of(uint32_t bits) { return std::bit_cast<float>(ir::flush_denormal(bits)); }
+
+uint32_t to_int(const Real& x) {
+  const auto cut = std::clamp<int64_t>(static_cast<int64_t>(x), INT32_MIN, INT32_MAX);
+  return static_cast<uint32_t>(static_cast<int32_t>(cut));
+}
+
+/// One component of the result of a primitive op.
+void compute(Opcode op, const Cell& a, const Cell& b, const Cell& c, Cell& to) {
+  const Real &x = a.number, &y = b.number;
+  switch (op) {
+    case Opcode::fadd: to.number = x + y; return;
+    case Opcode::fsub: to.number = x - y; return;
+    case Opcode::fmul: to.number = x * y; return;
+    case Opcode::fdiv: to.number = x / y; return;
+    case Opcode::fsqrt: to.number = sqrt(x); return;
+    case Opcode::floor: to.number = floor(x); return;
+    case Opcode::fneg: to.number = -x; return;
+    case Opcode::fabs: to.number = abs(x); return;
+    case Opcode::flt: to.word = x < y; return;
+    case Opcode::fle: to.word = x <= y; return;
+    case Opcode::fgt: to.word = x > y; return;
+    case Opcode::fge: to.word = x >= y; return;
+    case Opcode::feq: to.word = x == y; return;
+    case Opcode::fne: to.word = x != y; return;
+    case Opcode::select: to = a.word != 0 ? b : c; return;
+    case Opcode::ftoi: to.word = to_int(x); return;
+    case Opcode::itof: to.number = static_cast<int32_t>(a.word); return;
+    case Opcode::fbits:
+    case Opcode::fbits_nonnan: to.word = std::bit_cast<uint32_t>(stored(x)); return;
+    case Opcode::bitsf:
+    case Opcode::bitsf_normal: to.number = float_of(a.word); return;
+    default: to.word = ir::evaluate(op, a.word, b.word, c.word); return;
+  }
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const ir::Module& module)
+    : module_(module), buffers_(module.buffers.size()), frames_(module.functions.size()) {}
+
+void Evaluator::run(uint32_t function, std::span<const Cell> arguments, std::span<Cell> results) {
+  Frame& frame = frame_of(function);
+  const ir::Block& body = frame.function->blocks[0];
+  size_t next = 0;
+  for (const ir::ValueId parameter : body.parameters)
+    for (uint32_t i = 0; i < frame.function->type(parameter).width; ++i)
+      frame.cells[frame.first[parameter] + i] = arguments[next++];
+  block(frame, 0);
+  next = 0;
+  for (const ir::ValueId result : body.yields)
+    for (uint32_t i = 0; i < frame.function->type(result).width; ++i)
+      results[next++] = frame.cells[frame.first[result] + i];
+}
+
+Evaluator::Frame& Evaluator::frame_of(uint32_t function) {
+  Frame& frame = frames_[function];
+  if (frame.function != nullptr) return frame;
+  frame.function = &module_.functions[function];
+  if (frame.function->is_declaration()) frame.variant = &functions::variant_of(*frame.function);
+  uint32_t count = 0;
+  for (const ir::Value& value : frame.function->values) {
+    frame.first.push_back(count);
+    count += value.type.width;
+  }
+  frame.cells.resize(count);
+  return frame;
+}
+
+void Evaluator::block(Frame& frame, ir::BlockId id) {
+  for (const ir::InstructionId made : frame.function->blocks[id].instructions)
+    instruction(frame, frame.function->instructions[made]);
+}
+
+namespace {
+
+/// Copies the cells of values to those of others, one after the other.
+template <class Frame>
+void copy(Frame& frame, std::span<const ir::ValueId> from, ir::ValueId to) {
+  for (const ir::ValueId value : from) {
+    const uint32_t width = frame.function->type(value).width;
+    std::copy_n(&frame.cells[frame.first[value]], width, &frame.cells[frame.first[to]]);
+    ++to;
+  }
+}
+
+}  // namespace
+
+void Evaluator::instruction(Frame& frame, const ir::Instruction& made) {
+  const auto operands = frame.function->operands_of(made);
+  Cell* const result = made.result_count == 0 ? nullptr : &frame.cells[frame.first[made.first_result]];
+  switch (made.op) {
+    case Opcode::constant:
+      result->word = made.imm;
+      if (frame.function->type(made.first_result).is_float()) result->number = std::bit_cast<float>(made.imm);
+      return;
+    case Opcode::hidden_zero: result->number = 0; return;
+    case Opcode::extract: *result = frame.cells[frame.first[operands[0]] + made.imm]; return;
+    case Opcode::construct:
+      for (size_t i = 0; i < operands.size(); ++i) result[i] = frame.cells[frame.first[operands[i]]];
+      return;
+    case Opcode::load: load(frame, made); return;
+    case Opcode::call: call(frame, made); return;
+    case Opcode::branch: {
+      const bool taken = frame.cells[frame.first[operands[0]]].word != 0;
+      const ir::BlockId side = made.blocks[taken ? 0 : 1];
+      block(frame, side);
+      copy(frame, frame.function->blocks[side].yields, made.first_result);
+      return;
+    }
+    case Opcode::loop: loop(frame, made); return;
+    default: primitive(frame, made); return;
+  }
+}
+
+void Evaluator::primitive(Frame& frame, const ir::Instruction& made) {
+  check(ir::is_primitive(made.op), "the reference met an op that a pass had to replace");
+  const auto operands = frame.function->operands_of(made);
+  const bool chooses = ir::info(made.op).rule == ir::Rule::choose;
+  const uint32_t to = frame.first[made.first_result];
+  static const Cell absent;
+  for (uint32_t i = 0; i < frame.function->type(made.first_result).width; ++i) {
+    std::array<const Cell*, 3> from{&absent, &absent, &absent};
+    for (size_t k = 0; k < operands.size(); ++k)
+      from[k] = &frame.cells[frame.first[operands[k]] + (chooses && k == 0 ? 0 : i)];
+    compute(made.op, *from[0], *from[1], *from[2], frame.cells[to + i]);
+  }
+}
+
+void Evaluator::load(Frame& frame, const ir::Instruction& made) {
+  const std::span<const uint32_t> words = buffers_[made.imm];
+  check(!words.empty(), "the reference loads from a buffer that is empty");
+  const uint32_t index = frame.cells[frame.first[frame.function->operands_of(made)[0]]].word;
+  const uint32_t word = words[std::min<size_t>(index, words.size() - 1)];
+  Cell& to = frame.cells[frame.first[made.first_result]];
+  to.word = word;
+  if (frame.function->type(made.first_result).is_float()) to.number = float_of(word);
+}
+
+void Evaluator::call(Frame& frame, const ir::Instruction& made) {
+  Frame& callee = frame_of(made.imm);
+  if (callee.variant != nullptr) return call_library(frame, *callee.variant, made);
+  const ir::Block& body = callee.function->blocks[0];
+  const auto operands = frame.function->operands_of(made);
+  for (size_t i = 0; i < operands.size(); ++i)
+    std::copy_n(&frame.cells[frame.first[operands[i]]], frame.function->type(operands[i]).width,
+                &callee.cells[callee.first[body.parameters[i]]]);
+  block(callee, 0);
+  for (size_t i = 0; i < body.yields.size(); ++i)
+    std::copy_n(&callee.cells[callee.first[body.yields[i]]], callee.function->type(body.yields[i]).width,
+                &frame.cells[frame.first[made.first_result + i]]);
+}
+
+void Evaluator::call_library(Frame& frame, const functions::Variant& variant, const ir::Instruction& made) {
+  std::vector<Real> arguments, results;
+  for (const ir::ValueId operand : frame.function->operands_of(made))
+    for (uint32_t i = 0; i < frame.function->type(operand).width; ++i)
+      arguments.push_back(frame.cells[frame.first[operand] + i].number);
+  for (const ir::Type type : variant.results) results.resize(results.size() + type.width);
+  evaluate(variant, arguments, results);
+  for (size_t i = 0; i < results.size(); ++i)
+    frame.cells[frame.first[made.first_result] + i].number = results[i];
+}
+
+void Evaluator::loop(Frame& frame, const ir::Instruction& made) {
+  const auto operands = frame.function->operands_of(made);
+  const ir::Block& body = frame.function->blocks[made.blocks[0]];
+  const uint32_t count = frame.cells[frame.first[operands[0]]].word;
+  // What the loop returns is carried from round to round.
+  copy(frame, operands.subspan(1), made.first_result);
+  for (uint32_t index = 0; static_cast<int32_t>(index) < static_cast<int32_t>(count); ++index) {
+    frame.cells[frame.first[body.parameters[0]]].word = index;
+    for (uint32_t i = 0; i < made.result_count; ++i)
+      copy(frame, std::array{made.first_result + i}, body.parameters[i + 1]);
+    block(frame, made.blocks[0]);
+    copy(frame, body.yields, made.first_result);
+  }
+}
+
+}  // namespace isoshade::reference
