@@ -161,6 +161,16 @@ TEST(Outline, NarrowsWithTheDistanceIfTheWidthIsOfTheWorld) {
   }
 }
 
+TEST(Outline, IsAsWideOnBothSidesAwayFromTheMiddleOfTheView) {
+  const std::string camera = R"("position": [0, 0, 9], "target": [0, 0, 0], "fov": 40)";
+  const std::string place = R"("transform": {"translate": [-2.5, 0, 0]}, )";
+  const Picture seen =
+      picture(scene_of(camera, R"({"type": "icosphere", "subdivisions": 6})", place, "\"outline\": 0.3"));
+  const auto [outer, inner] = widths(seen, true);
+  EXPECT_GT(outer, 5);
+  EXPECT_NEAR(outer, inner, 1);  // that of graphs/source_forms/hull_position.json is half as wide there
+}
+
 TEST(Outline, OfAMirroredMeshIsThatOfTheMeshItIsTheImageOf) {
   const std::string camera = R"("position": [1, 2, 5], "target": [0, 0, 0], "fov": 40)";
   const std::string place = R"("transform": {"rotate": [0, 20, 10], "scale": )";

@@ -79,6 +79,8 @@ TEST(LibraryGraphs, HullsMoveOutwardsAndAwayFromTheViewerWhereverTheNormalPoints
   const std::vector<float> aside = moved({1, 0, 0}, 0);
   EXPECT_FLOAT_EQ(aside[0], 1 + step);
   EXPECT_FLOAT_EQ(aside[2], -10 - step);
+  Program source = load("source_forms/hull_position");
+  EXPECT_EQ(moved({0.5f, 0.25f, 0.8f}, 0), source({1, 2, -10, 0.5f, 0.25f, 0.8f, 4}));
   // Four pixels of half a unit, however much of the normal is seen.
   const std::vector<float> on_screen = moved({0, 0.25f, 0.8f}, 1);
   EXPECT_FLOAT_EQ(on_screen[0], 1);
