@@ -146,7 +146,21 @@ class NodeResolver {
       return fail();
     }
     given.link = link_in(port);
+    if (given.link != nullptr && is_named_value(*given.link, *found)) return fail();
     if (given.link != nullptr && !resolve_link(work_, *given.link, operand)) fail();
+  }
+
+  /// Reports a link to nothing that is the name of one of the values that the port's function takes.
+  bool is_named_value(const Link& link, uint32_t port) {
+    if (node_.callee == nullptr || !link.selectors.empty() || work_.graph().names.contains(link.name))
+      return false;
+    const auto value = graph::named_value(node_.callee->graph.inputs[port].names, link.name);
+    if (!value) return false;
+    work_
+        .report(Id::unknown_node, link.place,
+                "a string in a port is a link, and there is no " + quote(link.name))
+        .suggest("write " + std::to_string(value->integer) + ", the value of that name");
+    return true;
   }
 
   /// The link in a port, if it is one: strings are links where no text is asked for.

@@ -129,6 +129,20 @@ library/square.json:1:55: note: as declared here
 )");
 }
 
+TEST(CheckLibrary, NamesOfValuesAreNumbersInPorts) {
+  const auto messages = [](const std::string& mode) {
+    FrontEnd front_end;
+    front_end.library.add("library/pick.json", R"({"isoshade": 1, "function": "pick",
+      "inputs": {"mode": {"type": "integer", "enum": ["first", "second"]}},
+      "nodes": {"n": {"type": "convert", "in": "mode", "to": "float"}}, "outputs": {"out": "n"}})");
+    return front_end.messages(R"({"isoshade": 1, "function": "f", "nodes": {"p": {"type": "pick", "mode": )" +
+                              mode + R"(}}, "outputs": {"out": "p"}})");
+  };
+  EXPECT_EQ(messages("1"), "");
+  EXPECT_NE(messages("\"second\"").find("write 1, the value of that name"), std::string::npos);
+  EXPECT_NE(messages("2").find("error[out-of-range]"), std::string::npos);
+}
+
 TEST(CheckLibrary, DeepNestingIsRefused) {
   FrontEnd front_end;
   for (int i = 0; i < 100; ++i) {
