@@ -47,6 +47,8 @@ struct Frame {
   std::vector<float> objects;
   std::vector<float> lights;
   std::vector<float> frame;
+  std::vector<float> texels;
+  std::vector<int32_t> textures;
   int light_count = 0;
   std::vector<Draw> draws;
   float background[4] = {0, 0, 0, 0};

@@ -43,7 +43,9 @@ class Buffers {
   }
   bool bind_frame(const Frame& frame, std::span<const float> vertices) {
     return bind(FrameBuffer::vertices, vertices) && bind<float>(FrameBuffer::objects, frame.objects) &&
-           bind<float>(FrameBuffer::lights, frame.lights) && bind<float>(FrameBuffer::frame, frame.frame);
+           bind<float>(FrameBuffer::lights, frame.lights) && bind<float>(FrameBuffer::frame, frame.frame) &&
+           bind<float>(FrameBuffer::texels, frame.texels) &&
+           bind<int32_t>(FrameBuffer::textures, frame.textures);
   }
   const BufferView* views() const { return views_; }
 

@@ -37,6 +37,8 @@ class Buffers {
     bind<float>(FrameBuffer::objects, frame.objects);
     bind<float>(FrameBuffer::lights, frame.lights);
     bind<float>(FrameBuffer::frame, frame.frame);
+    bind<float>(FrameBuffer::texels, frame.texels);
+    bind<int32_t>(FrameBuffer::textures, frame.textures);
   }
   const std::vector<uint32_t>& operator[](size_t buffer) const { return words_[buffer]; }
 

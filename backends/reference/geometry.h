@@ -49,6 +49,17 @@ R smoothstep(R low, R high, R x) {
   return t * t * (3 - 2 * t);
 }
 
+/// Texture coordinates; what is not finite counts as 0.
+template <class R>
+R wrap(R x) {
+  return x - x == 0 ? x - floor(x) : R(0);
+}
+template <class R>
+R mirror(R x) {
+  const R in_two = x - x == 0 ? abs(x) - 2 * floor(abs(x) / 2) : R(0);
+  return in_two > 1 ? 2 - in_two : in_two;
+}
+
 template <class R>
 R sign(R x) {
   return x > 0 ? R(1) : x < 0 ? R(-1) : x;
@@ -134,6 +145,11 @@ R dot(Vector<R, N> a, Vector<R, N> b) {
 template <class R, int N>
 R length(Vector<R, N> a) {
   return sqrt(dot(a, a));
+}
+template <class R, int N>
+R mip_level(Vector<R, N> along_x, Vector<R, N> along_y) {
+  const R across = dot(along_x, along_x), down = dot(along_y, along_y);
+  return log2(across < down ? down : across) / 2;
 }
 template <class R, int N>
 Vector<R, N> normalize(Vector<R, N> a) {

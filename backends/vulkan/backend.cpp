@@ -46,6 +46,14 @@ bool upload(Device& device, FrameBuffer buffer, std::span<const T> data, Diagnos
   return true;
 }
 
+bool reads_textures(const Program& program) {
+  return std::ranges::any_of(program.module.functions, [](const ir::Function& function) {
+    return std::ranges::any_of(function.instructions, [](const ir::Instruction& made) {
+      return made.op == ir::Opcode::load && made.imm == static_cast<uint32_t>(FrameBuffer::textures);
+    });
+  });
+}
+
 /// The pixels that triangles of each program may cover, within the frame.
 std::vector<Rect> bounds_of_programs(const Frame& frame, std::span<const int32_t> triangles) {
   struct Bounds {
@@ -146,10 +154,17 @@ bool VulkanBackend::upload_frame(const Frame& frame, std::span<const float> vert
          upload<float>(*device_, FrameBuffer::frame, frame.frame, diagnostics);
 }
 
+bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics) {
+  return upload<float>(*device_, FrameBuffer::texels, frame.texels, diagnostics) &&
+         upload<int32_t>(*device_, FrameBuffer::textures, frame.textures, diagnostics);
+}
+
 bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
                               Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
     if (!upload_frame(frame, frame.vertices, diagnostics)) return false;
+    const auto reads = [&](const Draw& draw) { return reads_textures(*frame.programs[draw.vertex_program]); };
+    if (std::ranges::any_of(frame.draws, reads) && !upload_textures(frame, diagnostics)) return false;
     std::vector<std::optional<PipelineIndex>> pipelines(frame.programs.size());
     clip.resize(frame.draws.size());
     for (size_t d = 0; d < frame.draws.size(); ++d) {
@@ -199,7 +214,7 @@ bool VulkanBackend::draw(const Frame& frame, std::span<const float> vertices,
     image.resize(frame.width, frame.height);
     std::vector<Call> visibility, color;
     if (!triangles.empty()) {
-      if (!upload_frame(frame, vertices, diagnostics) ||
+      if (!upload_frame(frame, vertices, diagnostics) || !upload_textures(frame, diagnostics) ||
           !upload(*device_, FrameBuffer::triangles, triangles, diagnostics))
         return false;
       const auto pipeline = device_->pipeline(

@@ -32,7 +32,7 @@ struct Options {
   /// Instead of what the probe finds.
   std::optional<driver::Division> division;
   /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
-  /// one record after another, to `layout(std430, set = 0, binding = 6) writeonly buffer { int words[]; }`.
+  /// one record after another, to `layout(std430, set = 0, binding = 8) writeonly buffer { int words[]; }`.
   EvalStage eval_stage = EvalStage::fragment;
   /// The text of a program's stage; see emit/stages.h for the interface it must have. Empty: the driver's.
   std::function<std::string(const driver::Program&, driver::Division)> glsl;
@@ -62,6 +62,7 @@ class VulkanBackend : public backends::Backend {
 
   template <class Work>
   bool guarded(support::Diagnostics& diagnostics, Work work);
+  bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool upload_frame(const backends::Frame& frame, std::span<const float> vertices,
                     support::Diagnostics& diagnostics);
 

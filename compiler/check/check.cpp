@@ -16,6 +16,7 @@ void check_supported(Work& work) {
     work.report(Id::unsupported, graph.name_place, "post effects cannot be compiled yet");
   for (const graph::Input& input : graph.inputs) {
     const bool is_function = graph.kind == graph::DocumentKind::function;
+    if (input.type == graph::Type::filename && graph.kind == graph::DocumentKind::effect) continue;
     if (nodes::value_types.has(input.type) && (is_function || !nodes::matrix_types.has(input.type))) continue;
     work.report(Id::unsupported, input.place,
                 std::string(is_function ? "an input" : "a parameter") + " of type " +

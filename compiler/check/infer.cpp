@@ -276,6 +276,8 @@ void NodeInference::place_value(size_t i) {
     report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(needed) + ", not " + name_of(to.type))
         .suggest(conversion_hint(*given(i).link, needed));
   } else if (const Literal* value = literal(i)) {
+    if (fits(*value, needed) && needed == Type::filename)
+      return place_file(work_.typed, {value->string, given(i).port->place}, to);
     if (fits(*value, needed)) return place(work_.typed, *value, needed, to);
     report(Id::wrong_type, i, of_node(i) + " is " + name_of(needed) + ", not " + described(*value));
   } else {

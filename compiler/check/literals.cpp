@@ -2,6 +2,7 @@
 #include "compiler/check/literals.h"
 
 #include <bit>
+#include <utility>
 
 namespace isoshade::check {
 
@@ -46,6 +47,13 @@ void place(TypedGraph& typed, const Literal& literal, Type type, Operand& operan
   if (type == Type::boolean) typed.words.push_back(literal.boolean ? 1 : 0);
   if (type == Type::integer) typed.words.push_back(static_cast<uint32_t>(literal.integer));
   for (const float number : literal.numbers) typed.words.push_back(std::bit_cast<uint32_t>(number));
+}
+
+void place_file(TypedGraph& typed, File file, Operand& operand) {
+  operand.from = Operand::From::file;
+  operand.type = operand.needed = Type::filename;
+  operand.index = static_cast<uint32_t>(typed.files.size());
+  typed.files.push_back(std::move(file));
 }
 
 void place(TypedGraph& typed, const nodes::Default& value, Type type, Operand& operand) {

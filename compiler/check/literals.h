@@ -14,7 +14,9 @@ bool converts(Type from, Type to);
 /// every component of a vector or colour, and is an integer where it is whole.
 bool fits(const graph::Literal& literal, Type type);
 void place(TypedGraph& typed, const graph::Literal& literal, Type type, Operand& operand);
-/// The same for the default of a row. Attributes of the surface are read instead.
+/// A literal that is a path.
+void place_file(TypedGraph& typed, File file, Operand& operand);
+/// The same as place() for the default of a row. Attributes of the surface are read instead.
 void place(TypedGraph& typed, const nodes::Default& value, Type type, Operand& operand);
 
 /// "a string", "an array of 3 numbers"

@@ -145,7 +145,7 @@ class NodeResolver {
                    quote(port.name) + " of " + quote(source_.label()) + " is written in place, not linked");
       return fail();
     }
-    given.link = link_in(port);
+    given.link = link_in(port, takes_text(*found));
     if (given.link != nullptr && is_named_value(*given.link, *found)) return fail();
     if (given.link != nullptr && !resolve_link(work_, *given.link, operand)) fail();
   }
@@ -163,11 +163,15 @@ class NodeResolver {
     return true;
   }
 
+  bool takes_text(size_t i) const {
+    return node_.row != nullptr && node_.row->ports[i].type.accepts.has(Type::filename);
+  }
+
   /// The link in a port, if it is one: strings are links where no text is asked for.
-  const Link* link_in(const graph::Port& port) {
+  const Link* link_in(const graph::Port& port, bool takes_text) {
     if (const auto* link = std::get_if<Link>(&port.value)) return link;
     const Literal& literal = std::get<Literal>(port.value);
-    if (literal.kind != Literal::Kind::string) return nullptr;
+    if (literal.kind != Literal::Kind::string || takes_text) return nullptr;
     std::optional<Link> link =
         graph::parse_link(work_.graph().source, literal.string, port.place, work_.diagnostics);
     if (!link) {

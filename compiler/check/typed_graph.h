@@ -25,6 +25,7 @@ struct Operand {
     words,    ///< index: of the first of its words in TypedGraph::words; already of the needed type
     setting,  ///< index: the literal itself: a Type, the number of a choice, a component
     surface,  ///< index: of a nodes::SurfaceValue
+    file,     ///< index: in TypedGraph::files
   };
   From from = From::nothing;
   Type type{};    ///< of what is read, after the swizzle
@@ -33,6 +34,12 @@ struct Operand {
   uint32_t output = 0;  ///< which output of a node
   std::array<uint8_t, 4> swizzle{};
   uint8_t swizzle_count = 0;  ///< 0: the whole value
+};
+
+/// A path written in a port: relative to the document; empty: no file.
+struct File {
+  std::string path;
+  graph::Place place;
 };
 
 struct TypedGraph;
@@ -56,6 +63,7 @@ struct TypedGraph {
   std::vector<Operand> operands;  ///< of all nodes
   std::vector<Type> types;        ///< of all nodes' outputs
   std::vector<uint32_t> words;    ///< of literals: bits of floats, booleans, integers
+  std::vector<File> files;        ///< that ports name
   /// Of a function's Graph::outputs; or the color of each pass, and then the position of each that has one.
   std::vector<Operand> outputs;
   uint64_t expanded_nodes = 0;  ///< with those of called functions, once for each call

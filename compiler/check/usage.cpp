@@ -57,9 +57,18 @@ void check_lights(Work& work) {
   }
 }
 
-/// What a row speaks of that vertices do not have; nullptr if it has a meaning there.
-const char* missing_at_vertices(const nodes::Row& row) {
+bool is_trilinear_image(const TypedGraph& typed, const Node& node) {
+  return node.row != nullptr && node.row->is<nodes::Image>() &&
+         typed.operands_of(node)[nodes::image_port::filtertype].index ==
+             static_cast<uint32_t>(nodes::Filter::trilinear);
+}
+
+/// What a node speaks of that vertices do not have; nullptr if it has a meaning there.
+const char* missing_at_vertices(const TypedGraph& typed, const Node& node) {
+  const nodes::Row& row = *node.row;
   if (row.is<nodes::Derivative>()) return "derivatives are those of pixels";
+  if (is_trilinear_image(typed, node))
+    return "its mip level is that of pixels; \"closest\" and \"linear\" have none";
   if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "light falls on pixels";
   return nullptr;
 }
@@ -77,7 +86,7 @@ void check_positions(Work& work) {
     if (!reached[*it]) continue;
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
-    const char* reason = node.row != nullptr ? missing_at_vertices(*node.row) : nullptr;
+    const char* reason = node.row != nullptr ? missing_at_vertices(typed, node) : nullptr;
     if (reason == nullptr) continue;
     work.report(Id::misplaced_node, graph.nodes[*it].type_place,
                 "the \"position\" of a pass cannot depend on " + quote(graph.nodes[*it].label()))
@@ -104,6 +113,14 @@ void check_derivatives(Work& work) {
                       quote(work.graph().nodes[derivative[i]].id));
     }
     if (takes_one) derivative[i] = i;
+    if (!is_trilinear_image(typed, node)) continue;
+    // The mip level comes of derivatives; what comes of the level counts as having none.
+    const Operand& texcoord = typed.operands_of(node)[nodes::image_port::texcoord];
+    if (texcoord.from != From::node || derivative[texcoord.index] == nothing) continue;
+    work.report(Id::second_derivative, work.graph().nodes[i].type_place,
+                "a trilinear image takes derivatives of its \"texcoord\", which depends on the derivative " +
+                    quote(work.graph().nodes[derivative[texcoord.index]].id))
+        .suggest("filter it with \"linear\"");
   }
 }
 

@@ -87,21 +87,33 @@ std::vector<Field> parameters_of(const check::TypedGraph& typed) {
   return fields;
 }
 
+std::vector<Image> images_of(const check::TypedGraph& typed) {
+  std::vector<Image> images;
+  for (lower::ImageSlot& slot : lower::image_slots(typed).slots) {
+    const std::string file =
+        slot.path.empty() ? "" : graph::path_beside(typed.graph.source->path(), slot.path);
+    const support::Span where = typed.graph.span(slot.place);
+    images.push_back({std::move(slot), file, where});
+  }
+  return images;
+}
+
 /// Where each parameter of the emitted function lies in the object's record. A matrix is passed as its columns.
-lower::FieldOffsets offsets_of(const std::vector<Field>& parameters) {
+lower::FieldOffsets offsets_of(const std::vector<Field>& parameters, const std::vector<Image>& images) {
   lower::FieldOffsets offsets;
   int word = lower::object_word::parameters;
   for (const Field& parameter : parameters) {
     const int columns = parameter.type == "matrix33" ? 3 : parameter.type == "matrix44" ? 4 : 0;
-    if (columns == 0) offsets.emplace_back(parameter.name, word);
+    if (columns == 0 && parameter.words > 0) offsets.emplace_back(parameter.name, word);
     for (int i = 0; i < columns; ++i)
       offsets.emplace_back(parameter.name + "_" + std::to_string(i), word + columns * i);
     word += parameter.words;
   }
+  for (const Image& image : images) offsets.emplace_back(image.slot.name, word++);
   return offsets;
 }
 
-Program vertex_program(const check::TypedGraph& typed, size_t pass, const std::vector<Field>& parameters,
+Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                        const Options& options) {
   Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
   uint32_t kernel = 0;
@@ -110,19 +122,20 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const std::v
   } else {
     program.module = lower::lower(typed, {pass, lower::PassPart::position});
     program.module.buffers = lower::frame_module().buffers;
-    kernel = lower::add_moving_vertex_kernel(program.module, offsets_of(parameters),
+    kernel = lower::add_moving_vertex_kernel(program.module, offsets_of(effect.parameters, effect.images),
                                              typed.graph.passes[pass].position_space);
   }
   finish(program, kernel, options);
   return program;
 }
 
-Program pixel_program(const check::TypedGraph& typed, size_t pass, const std::vector<Field>& parameters,
+Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                       const Options& options) {
   Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}};
   program.module = lower::lower(typed, {pass});
   program.module.buffers = lower::frame_module().buffers;
-  const uint32_t kernel = lower::add_pixel_kernel(program.module, offsets_of(parameters), options.lights);
+  const uint32_t kernel =
+      lower::add_pixel_kernel(program.module, offsets_of(effect.parameters, effect.images), options.lights);
   finish(program, kernel, options);
   return program;
 }
@@ -143,12 +156,12 @@ std::optional<Effect> compile_effect(const support::Source& source, const Option
                                      Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
-  Effect effect{typed->graph.name, typed->document, parameters_of(*typed), {}};
+  Effect effect{typed->graph.name, typed->document, parameters_of(*typed), images_of(*typed), {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
     effect.passes.push_back({pass.name, pass.cull, pass.position.has_value(), pass.enabled,
-                             vertex_program(*typed, i, effect.parameters, options),
-                             pixel_program(*typed, i, effect.parameters, options)});
+                             vertex_program(*typed, i, effect, options),
+                             pixel_program(*typed, i, effect, options)});
   }
   return effect;
 }

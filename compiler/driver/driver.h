@@ -13,6 +13,7 @@
 #include "compiler/check/library.h"
 #include "compiler/driver/program.h"
 #include "compiler/graph/graph.h"
+#include "compiler/lower/image_slots.h"
 
 namespace isoshade::driver {
 
@@ -26,6 +27,13 @@ struct Options {
   /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and no optimisation;
   /// only ddx and ddy are gone.
   bool reference = false;
+};
+
+/// An image that an effect reads.
+struct Image {
+  lower::ImageSlot slot;
+  std::string file;     ///< the document's path for it, from where the document lies; empty: none
+  support::Span where;  ///< where the document says so
 };
 
 /// One pass of an effect.
@@ -42,6 +50,7 @@ struct Effect {
   std::string name;
   std::string document;
   std::vector<Field> parameters;  ///< with defaults, in the order of the object's record
+  std::vector<Image> images;      ///< one word each in the record, after the parameters
   std::vector<Pass> passes;
 };
 

@@ -60,6 +60,7 @@ std::string text(const check::TypedGraph& graph, const check::Operand& operand) 
       for (const lower::SurfaceField& field : lower::surface_fields())
         if (field.value.index() == operand.index) out = "surface." + field.name;
       break;
+    case check::Operand::From::file: out = "\"" + graph.files[operand.index].path + "\""; break;
     case check::Operand::From::words: out = fmt::format("words[{}]", operand.index); break;
     case check::Operand::From::input: out = graph.graph.inputs[operand.index].name; break;
     case check::Operand::From::node:

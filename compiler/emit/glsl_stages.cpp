@@ -25,8 +25,14 @@ constexpr std::string_view push_constants =
 
 // A uniform will not do: lavapipe compiles a shader again for the values of some.
 constexpr std::string_view zero =
-    "layout(std430, set = 0, binding = 8) readonly buffer iso_zero_block { float iso_zero; };\n"
+    "readonly buffer iso_zero_block { float iso_zero; };\n"
     "#define ISO_ZERO iso_zero\n";
+
+/// "layout(set = 0, binding = 8) ": the first after those of the frame, or a later one.
+std::string binding(size_t after_frame, std::string_view layout = "std430, ") {
+  return "layout(" + std::string(layout) +
+         "set = 0, binding = " + std::to_string(std::size(lower::frame_buffers) + after_frame) + ") ";
+}
 
 constexpr std::string_view canonical_bits =
     "// The bits of a float; NaN is one value.\n"
@@ -147,8 +153,8 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
   std::string interface, body;
   switch (stage) {
     case lower::Stage::vertex:
-      interface = std::string(push_constants) +
-                  "layout(std430, set = 0, binding = 6) writeonly buffer clip_block { uvec4 clip[]; };\n";
+      interface =
+          std::string(push_constants) + binding(0) + "writeonly buffer clip_block { uvec4 clip[]; };\n";
       body = vertex_main();
       break;
     case lower::Stage::depth:
@@ -158,14 +164,13 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
     case lower::Stage::pixel:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
       used[static_cast<size_t>(lower::FrameBuffer::objects)] = true;
-      interface =
-          std::string(push_constants) +
-          "layout(set = 0, binding = 7) uniform isampler2D ids;\nlayout(location = 0) out vec4 color;\n";
+      interface = std::string(push_constants) + binding(1, "") +
+                  "uniform isampler2D ids;\nlayout(location = 0) out vec4 color;\n";
       body = pixel_main();
       break;
     case lower::Stage::eval:
       if (eval_in == EvalIn::vertex_shader) {
-        interface = "layout(std430, set = 0, binding = 6) writeonly buffer words_block { int words[]; };\n";
+        interface = binding(0) + "writeonly buffer words_block { int words[]; };\n";
         body = vertex_eval_main(module.functions[entry]);
         break;
       }
@@ -173,7 +178,7 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
       body = eval_main(module.functions[entry]);
       break;
   }
-  if (uses_hidden_zero(module, entry)) interface += zero;
+  if (uses_hidden_zero(module, entry)) interface.append(binding(2)).append(zero);
   text.append(buffers_of(module, used)).append(interface).append("\n");
   text.append(glsl_functions(module, entry)).append("\n").append(body);
   return text;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole shaders and whole C++ files: a kernel with the stage around it.
 //
-// GLSL. Set 0: bindings 0-5 are the buffers of lower/frame_layout.h (only those used are declared), 6 `clip`
-// (uvec4, written by vertex), 7 `ids` (isampler2D, read by pixel), 8 a word that is 0.0 (see ir::Opcode). Push constants, six ints:
+// GLSL. Set 0: bindings 0-7 are the buffers of lower/frame_layout.h (only those used are declared), 8 `clip`
+// (uvec4, written by vertex), 9 `ids` (isampler2D, read by pixel), 10 a word that is 0.0 (see ir::Opcode). Push constants, six ints:
 //   object, light_count, program, first, count, width
 //   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as
 //   bits at
@@ -36,7 +36,7 @@ struct Heading {
 };
 
 /// Which shader an eval program becomes. As a vertex shader it stores the words of row gl_VertexIndex, one
-/// record after another, at binding 6 (ints).
+/// record after another, at binding 8 (ints).
 enum class EvalIn : uint8_t { fragment_shader, vertex_shader };
 
 std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading,

@@ -16,6 +16,7 @@
 #include "compiler/functions/power.h"
 #include "compiler/functions/root.h"
 #include "compiler/functions/rounding.h"
+#include "compiler/functions/texture.h"
 #include "compiler/functions/trigonometric.h"
 #include "compiler/functions/vector.h"
 #include "compiler/functions/widths.h"

@@ -14,6 +14,12 @@ std::string canonical_path(const std::string& path) {
   return (error ? absolute.lexically_normal() : found).string();
 }
 
+std::string path_beside(const std::string& document_path, const std::string& path) {
+  const fs::path given(path);
+  if (given.is_absolute()) return path;
+  return (fs::path(document_path).parent_path() / given).lexically_normal().string();
+}
+
 bool is_within(const std::string& path, const std::string& folder) {
   if (folder.empty() || !path.starts_with(folder)) return false;
   return folder.back() == '/' || path.size() == folder.size() || path[folder.size()] == '/';

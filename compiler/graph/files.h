@@ -20,6 +20,9 @@ bool is_within(const std::string& path, const std::string& folder);
 /// the marker; its own if there is none.
 std::string home_of(const std::string& document_path);
 
+/// A path that a document has, which counts from its folder.
+std::string path_beside(const std::string& document_path, const std::string& path);
+
 struct FileRule {
   std::string library;         ///< canonical; open to every document; empty: there is none
   bool allow_outside = false;  ///< the user trusts the documents

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/functions/library.h"
+#include "compiler/lower/sampling.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::lower {
@@ -65,6 +66,7 @@ class Body {
   void make_call(const Node& node);
   void make_sum(uint32_t node);
   Value transform(nodes::Transform what, const Node& node);
+  Value image(uint32_t node);
   std::vector<uint32_t> nodes_under(uint32_t sum);
   /// Gives the results of a node its name, but for those that stood before it under another.
   void name_results(uint32_t node, ir::ValueId first_new);
@@ -88,6 +90,7 @@ Value Body::read(const Operand& operand) {
   Value value;
   switch (operand.from) {
     case From::nothing:
+    case From::file:
     case From::setting: return value;
     case From::words:
       return nodes::constant(b_, operand.needed, std::span(graph_.words).subspan(operand.index));
@@ -144,6 +147,10 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
     return;
   }
   if (row.is<nodes::SumLights>()) return make_sum(index);
+  if (row.is<nodes::Image>()) {
+    out[0] = image(index);
+    return;
+  }
   constexpr size_t most = 8;
   std::array<Value, most> in;
   std::array<Type, most> types{};
@@ -177,6 +184,37 @@ Value Body::transform(nodes::Transform what, const Node& node) {
   }
   if (what != nodes::Transform::normal) return at;
   return functions::call_library(b_, "normalize", std::array{at}).front();
+}
+
+Value Body::image(uint32_t index) {
+  namespace port = nodes::image_port;
+  using nodes::AddressMode;
+  const Node& node = graph_.nodes[index];
+  const std::span<const Operand> operands = graph_.operands_of(node);
+  const ir::ValueId texture = environment_.image_slots[environment_.images->of_node[index]];
+  const ir::ValueId otherwise = read(operands[port::default_value]).id();
+  const ir::ValueId texcoord = read(operands[port::texcoord]).id();
+  const Sampling sampling{filter_of(graph_, node), address_mode_of(graph_, node, port::uaddressmode),
+                          address_mode_of(graph_, node, port::vaddressmode)};
+  const auto picture = [&] {
+    const ir::ValueId color = sample(b_, sampling, texture, texcoord);
+    std::array<ir::ValueId, 4> components;
+    const auto width = static_cast<size_t>(graph::float_count(graph_.types_of(node)[0]));
+    for (uint32_t i = 0; i < width; ++i) components[i] = b_.extract(color, i);
+    ir::ValueId result =
+        width == 4 ? color : b_.construct(std::span<const ir::ValueId>(components).first(width));
+    for (const uint32_t axis : {0u, 1u}) {
+      if ((axis == 0 ? sampling.u : sampling.v) != AddressMode::constant) continue;
+      const ir::ValueId at = b_.extract(texcoord, axis);
+      const ir::ValueId from_0 = b_.op(ir::Opcode::fge, {at, b_.constant(0.0f)});
+      const ir::ValueId to_1 = b_.op(ir::Opcode::fle, {at, b_.constant(1.0f)});
+      const ir::ValueId inside = b_.op(ir::Opcode::band, {from_0, to_1});
+      result = b_.op(ir::Opcode::select, {inside, result, otherwise});
+    }
+    return std::vector{result};
+  };
+  const ir::ValueId there = b_.op(ir::Opcode::ige, {texture, b_.constant(0)});
+  return b_.branch(there, picture, [&] { return std::vector{otherwise}; }).front();
 }
 
 void Body::make_call(const Node& node) {
@@ -268,7 +306,7 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     : nodes(graph.nodes.size()), inputs(graph.graph.inputs.size()) {
   const auto need = [&](const Operand& operand) {
     if (operand.from == From::node) nodes[operand.index] = true;
-    if (operand.from == From::input) inputs[operand.index] = true;
+    if (operand.from == From::input && operand.needed != Type::filename) inputs[operand.index] = true;
     if (operand.from == From::surface) surface[operand.index] = true;
   };
   std::ranges::for_each(results, need);

@@ -8,6 +8,7 @@
 
 #include "compiler/check/typed_graph.h"
 #include "compiler/ir/builder.h"
+#include "compiler/lower/image_slots.h"
 #include "compiler/lower/lower.h"
 #include "compiler/nodes/site.h"
 
@@ -16,7 +17,7 @@ namespace isoshade::lower {
 /// The nodes that some operands of a document depend on, and what these nodes need from outside.
 struct Needs {
   std::vector<bool> nodes;
-  std::vector<bool> inputs;
+  std::vector<bool> inputs;                                ///< but those of images
   std::array<bool, nodes::surface_value_count> surface{};  ///< by SurfaceValue::index
   std::array<size_t, space_matrix_count> columns{};        ///< of each SpaceMatrix
   bool time = false;
@@ -34,6 +35,9 @@ struct Environment {
   ir::ValueId time = ir::none;
   ir::ValueId light_count = ir::none;
   uint32_t light_at = ir::none;
+  const ImageSlots* images = nullptr;
+  std::vector<ir::ValueId>
+      image_slots;  ///< of the slots: the texture, negative for none; none where not needed
   std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called
 };
 

@@ -11,7 +11,7 @@
 namespace isoshade::lower {
 
 /// The buffers of every module with stages, in this order; the index is the Vulkan binding (set 0).
-enum class FrameBuffer : uint32_t { vertices, triangles, objects, lights, frame, inputs };
+enum class FrameBuffer : uint32_t { vertices, triangles, objects, lights, frame, inputs, texels, textures };
 
 struct FrameBufferInfo {
   std::string_view name;
@@ -24,6 +24,8 @@ inline constexpr FrameBufferInfo frame_buffers[] = {
     {"lights", ir::Scalar::floating},    //
     {"frame", ir::Scalar::floating},     ///< the camera and the time
     {"inputs", ir::Scalar::integer},     ///< of `eval`: one row a record, floats as bits
+    {"texels", ir::Scalar::floating},    ///< of all textures: r g b a, linear, row by row from the top
+    {"textures", ir::Scalar::integer},   ///< where each texture lies in `texels`
 };
 
 /// vertices: one record a mesh vertex.
@@ -51,7 +53,8 @@ inline constexpr int stride = 16;
 }  // namespace triangle_word
 
 /// objects: one record an object; effect parameters follow in the order of the effect's reflection, each of
-/// as many words as it has components (matrices column by column).
+/// as many words as it has components (matrices column by column), but file names, which have none; then one word
+/// for each image that the effect reads: the number of its record in `textures`, or -1 where there is none.
 namespace object_word {
 inline constexpr int model = 0;  ///< 4 columns of 3: object space -> world space
 inline constexpr int normal =
@@ -73,6 +76,16 @@ inline constexpr int cone_offset = 11;
 inline constexpr int range = 12;  ///< point, spot: 1 / range^2, 0 for no end
 inline constexpr int stride = 16;
 }  // namespace light_word
+
+/// textures: one record a texture, followed by those of its mip levels: each is a texture, of half the width and
+/// height of the one before (rounded down, at least 1).
+namespace texture_word {
+inline constexpr int first = 0;  ///< the first of its words in `texels`; 4 a texel
+inline constexpr int width = 1;  ///< in texels
+inline constexpr int height = 2;
+inline constexpr int smaller = 3;  ///< how many of the records that follow are its mip levels
+inline constexpr int stride = 4;
+}  // namespace texture_word
 
 /// frame: the camera and the time.
 namespace frame_word {

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "compiler/lower/body.h"
+#include "compiler/lower/sampling.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::lower {
@@ -20,13 +21,14 @@ using nodes::Value;
 
 /// What the stages around authored functions are called: no document takes these names.
 constexpr std::string_view names_of_stages[] = {
-    shade_name, move_vertex_name, light_at_name,  "vertex",     "depth",      "pixel",     "eval",
-    "edges_at", "edges_at_ddx",   "edges_at_ddy", "attribute2", "attribute3", "attribute4"};
+    shade_name,     move_vertex_name, light_at_name, texel_at_name, texture_size_name,
+    "vertex",       "depth",          "pixel",       "eval",        "edges_at",
+    "edges_at_ddx", "edges_at_ddy",   "attribute2",  "attribute3",  "attribute4"};
 
 /// A name that neither the stages nor library functions have.
 std::string authored_name(const std::string& name) {
   const bool taken = std::ranges::find(names_of_stages, name) != std::end(names_of_stages);
-  return taken || name.starts_with("iso_") ? "function_" + name : name;
+  return taken || name.starts_with("iso_") || name.starts_with(sample_prefix) ? "function_" + name : name;
 }
 
 class ModuleLowering {
@@ -181,6 +183,13 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
     const graph::Input& input = graph.graph.inputs[i];
     if (needs.inputs[i]) first[i] = parameters.add(input.name, input.type, "parameters", true);
   }
+  const ImageSlots images = image_slots(graph);
+  std::vector<bool> reads(images.slots.size());
+  for (size_t i = 0; i < graph.nodes.size(); ++i)
+    if (needs.nodes[i] && graph.nodes[i].row != nullptr && graph.nodes[i].row->is<nodes::Image>())
+      reads[images.of_node[i]] = true;
+  for (size_t i = 0; i < reads.size(); ++i)
+    if (reads[i]) function.parameters.push_back({images.slots[i].name, ir::int_type, "images", true});
   if (needs.lights) function.parameters.push_back({"light_count", ir::int_type, "", true});
   const size_t last = function.parameters.size() - 1;
 
@@ -194,7 +203,10 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
   for (size_t i = 0; i < first.size(); ++i) {
     environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
                                                  : Value());
+    if (needs.inputs[i]) next += static_cast<size_t>(nodes::column_count(graph.graph.inputs[i].type));
   }
+  environment.images = &images;
+  for (const bool read : reads) environment.image_slots.push_back(read ? b.parameter(next++) : ir::none);
   if (needs.lights) environment.light_count = b.parameter(last);
   ir::ValueId result = build_body(b, graph, needs, environment, roots)[0].id();
   if (root.needed == Type::color3) {

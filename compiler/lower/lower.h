@@ -41,6 +41,7 @@ inline constexpr const char* light_at_name = "light_at";
 ///     of which the fourth is the translation
 ///   frame.time       float, uniform; seconds
 ///   parameters.NAME  uniform; of the effect, in its order
+///   images.NAME      int, uniform: a texture (sampling.h), or negative for none; of image_slots()
 ///   light_count      int, uniform: where there is a sum over lights
 /// What a light gives comes from light_at(index: int uniform, position: vec3) -> (direction: vec3, color:
 /// vec3), which is declared without a body where it is needed (see add_pixel_kernel).

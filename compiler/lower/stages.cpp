@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/lower/stages.h"
 
+#include "compiler/lower/sampling.h"
 #include "compiler/lower/surface.h"
 
 namespace isoshade::lower {
@@ -67,7 +68,7 @@ ir::ValueId load_typed(Kernel& k, ir::Type type, Int object, int offset) {
 }
 
 /// What a kernel passes to an authored function for one of its parameters, but for light_count.
-/// `parameters`: where each effect parameter lies in the record.
+/// `parameters`: where each effect parameter and image lies in the record.
 ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& surface, Int object,
                      const FieldOffsets& parameters) {
   if (parameter.group == "surface") return surface.field(parameter.name);
@@ -76,7 +77,7 @@ ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& su
     const Int time(k.b, k.b.constant(frame_word::time));
     return k.named(parameter.name, k.load(FrameBuffer::frame, time)).value;
   }
-  support::check(parameter.group == "parameters", parameter.name);
+  support::check(parameter.group == "parameters" || parameter.group == "images", parameter.name);
   int offset = -1;
   for (const auto& [name, word] : parameters)
     if (name == parameter.name) offset = word;
@@ -144,6 +145,7 @@ uint32_t add_vertex_kernel(ir::Module& module) {
 
 uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parameters,
                                   graph::PositionSpace space) {
+  define_texture_reads(module);
   const uint32_t move_vertex = module.find(move_vertex_name);
   support::check(move_vertex != ir::none, "no move_vertex");
   Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
@@ -184,6 +186,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
   if (ir::asks_for_derivatives(module)) add_edge_gradients(module);
   if (const uint32_t light_at = module.find("light_at"); light_at != ir::none)
     define_light_at(module, light_at, lights);
+  define_texture_reads(module);
   const uint32_t shade = module.find("shade");
   support::check(shade != ir::none, "no shade");
   Kernel k(module, "pixel",

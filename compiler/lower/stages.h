@@ -46,8 +46,8 @@ uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parame
 /// Adds `depth`; returns its index.
 uint32_t add_depth_kernel(ir::Module& module);
 
-/// Adds `pixel` around the module's `shade`, and the body of `light_at` if it is declared.
-/// `parameters`: where each effect parameter lies, from the first word of the object's record.
+/// Adds `pixel` around the module's `shade`, and the bodies of `light_at` and of what reads textures, where they are
+/// declared. `parameters`: where each effect parameter and each image lies, from the first word of the object's record.
 uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, LightKinds lights);
 
 /// Adds `eval` around `function`: its arguments are the words of record `row` of `inputs`, in order.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compiler/ir/op.h"
+#include "compiler/nodes/image.h"
 #include "compiler/nodes/type_set.h"
 #include "compiler/support/diagnostics.h"
 
@@ -109,7 +110,7 @@ enum class Derivative : uint8_t { x, y, width };
 using Custom = void (*)(Site&);
 
 using Lowering =
-    std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative, Custom>;
+    std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative, Image, Custom>;
 
 /// What a row demands of its ports beyond their types, and what is wrong there.
 struct Refusal {
@@ -134,10 +135,11 @@ struct Row {
   bool is() const {
     return std::holds_alternative<Kind>(lowering);
   }
-  /// Whether it speaks of the surface, its pixels, the scene or its lights: function documents have none of these.
+  /// Whether it speaks of the surface, its pixels, textures, the scene or its lights: function documents have none of
+  /// these.
   bool belongs_to_effects() const {
     return is<Surface>() || is<Transform>() || is<Time>() || is<Light>() || is<SumLights>() ||
-           is<Derivative>();
+           is<Derivative>() || is<Image>();
   }
 };
 

@@ -60,6 +60,7 @@ namespace {
 SchemaJson value_schema(TypeSet accepts) {
   std::vector<SchemaJson> forms{reference("link")};
   const auto has = [&](TypeSet types) { return (accepts.bits & types.bits) != 0; };
+  if (accepts == only(Type::filename)) forms = {string_schema(), object_schema({{"link", string_schema(), true}})};
   if (has(only(Type::boolean))) forms.push_back(boolean_schema());
   if (accepts == only(Type::integer)) {
     forms.push_back({{"type", "integer"}});

@@ -25,7 +25,7 @@ struct Value {
   std::span<const ir::ValueId> ids() const { return {columns.data(), count}; }
 };
 
-/// How many IR values a type takes, and of what type each is. Strings and file names have none.
+/// How many IR values a type takes, and of what type each is. A file name is the number of a texture. Strings have none.
 int column_count(Type type);
 ir::Type ir_type(Type type);
 

@@ -22,6 +22,7 @@ const std::vector<Row>& table() {
     add("logic", logic_rows());
     add("color", color_rows());
     add("procedural", procedural_rows());
+    add("texture", texture_rows());
     add("geometry", geometry_rows());
     add("light", light_rows());
     return all;

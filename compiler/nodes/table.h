@@ -28,6 +28,7 @@ std::vector<Row> vector_rows();
 std::vector<Row> logic_rows();
 std::vector<Row> color_rows();
 std::vector<Row> procedural_rows();
+std::vector<Row> texture_rows();
 std::vector<Row> geometry_rows();
 std::vector<Row> light_rows();
 

@@ -55,6 +55,7 @@ inline constexpr PortType Color4{only(Type::color4)};
 inline constexpr PortType AnyFloat{float_types, Variable::t};  ///< float, a vector or a colour
 inline constexpr PortType Vector{vector_types, Variable::t};
 inline constexpr PortType VectorOrColor{vector_types | color_types, Variable::t};
+inline constexpr PortType Filename{only(Type::filename)};
 inline constexpr PortType Color{color_types, Variable::t};
 inline constexpr PortType Matrix{matrix_types, Variable::t};
 inline constexpr PortType FloatOrMatrix{float_types | matrix_types, Variable::t};

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "compiler/graph/files.h"
 #include "compiler/support/check.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
@@ -94,6 +95,7 @@ bool check_fit(const Found& found, const Literal& literal, const support::Span& 
   if (graph::fits(type, literal)) return check_range(*found.field, literal, where, diagnostics);
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
+  if (type == Type::filename) expected += ", a path in quotes";
   if (floats == 1) expected += ", a number";
   if (!values.empty()) expected += ", or one of " + listed(values);
   if (floats > 1) expected += ", an array of " + std::to_string(floats) + " numbers";
@@ -134,11 +136,50 @@ void store_factors(const driver::Effect& effect, const std::string& name, std::s
   }
 }
 
+/// A path that a value has, from where the document lies that has it.
+std::string path_of(const Literal& literal, const support::Span& where) {
+  if (literal.string.empty() || where.file == nullptr) return literal.string;
+  return graph::path_beside(where.file->path(), literal.string);
+}
+
 }  // namespace
+
+bool ObjectParameters::resolve_image(const scene::Object& object, const driver::Image& image,
+                                     const FindTexture& find_texture) {
+  const std::string& name = image.slot.parameter;
+  const auto find = [&](const std::string& path, const support::Span& where) {
+    return path.empty() ? std::optional(-1) : find_texture(path, image.slot, where);
+  };
+  for (size_t axis = 0; axis < object.repeat.size() && !name.empty(); ++axis) {
+    for (const scene::Variation& variation : object.repeat[axis].variations) {
+      if (variation.name != name) continue;
+      VaryingImage varying{axis, images_.size(), {}};
+      for (const Literal& value : variation.values) {
+        const auto texture = find(path_of(value, variation.value_where), variation.value_where);
+        if (!texture) return false;
+        varying.textures.push_back(*texture);
+      }
+      varying_images_.push_back(std::move(varying));
+      images_.push_back(-1);
+      return true;
+    }
+  }
+  std::string path = image.file;
+  support::Span where = image.where;
+  for (const scene::Parameter& parameter : object.parameters) {
+    if (name.empty() || parameter.name != name) continue;
+    where = parameter.value_where;
+    path = path_of(parameter.value, where);
+  }
+  const auto texture = find(path, where);
+  images_.push_back(texture.value_or(-1));
+  return texture.has_value();
+}
 
 std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& object,
                                                           const driver::Effect& effect,
                                                           const scene::GltfMaterial* material,
+                                                          const FindTexture& find_texture,
                                                           Diagnostics& diagnostics) {
   const size_t errors_before = diagnostics.error_count();
   ObjectParameters result;
@@ -170,6 +211,7 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
       }
       for (const Literal& value : variation.values)
         if (!check_fit(*found, value, variation.value_where, diagnostics)) break;
+      if (found->type == Type::filename) continue;
       if (!variation.listed && found->type == Type::integer) {
         diagnostics.report(Id::wrong_type, variation.value_where,
                            "the parameter " + quote(variation.name) + " is an integer: list its values");
@@ -178,11 +220,13 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
     }
   }
   if (diagnostics.error_count() != errors_before) return std::nullopt;
+  for (const driver::Image& image : effect.images)
+    if (!result.resolve_image(object, image, find_texture)) return std::nullopt;
   return result;
 }
 
-std::vector<float> ObjectParameters::words(const scene::Object& object,
-                                           const scene::Instance& instance) const {
+std::vector<float> ObjectParameters::words(const scene::Object& object, const scene::Instance& instance,
+                                           const std::function<int(int)>& record_of) const {
   std::vector<float> words = common_;
   for (const Varying& varying : varying_) {
     const scene::Repeat& repeat = object.repeat[varying.axis];
@@ -191,6 +235,10 @@ std::vector<float> ObjectParameters::words(const scene::Object& object,
     store(varying.type, varying.names, value, words.data() + varying.first_word);
   }
   for (float& word : words) word = scene::canonical(word);
+  std::vector<int> textures = images_;
+  for (const VaryingImage& varying : varying_images_)
+    textures[varying.image] = varying.textures[static_cast<size_t>(instance.place[varying.axis])];
+  for (const int texture : textures) words.push_back(static_cast<float>(record_of(texture)));
   return words;
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/lanes/float_rules.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/parameters.h"
+#include "runtime/render/textures.h"
 #include "runtime/render/visibility.h"
 #include "runtime/scene/gltf.h"
 #include "runtime/scene/host_math.h"
@@ -110,6 +111,7 @@ class Planner {
   std::vector<ObjectParameters> parameters_;
   std::map<MeshKey, size_t> mesh_by_shape_;
   std::vector<size_t> mesh_of_object_;
+  TextureStore textures_;
 };
 
 bool Planner::compile_effects() {
@@ -179,13 +181,18 @@ bool Planner::make_objects() {
   Count triangles{"triangles", max_drawn_triangles};
   Count words{"words of object records", max_object_words};
   bool good = true;
+  const FindTexture find_texture = [&](const std::string& path, const lower::ImageSlot& slot,
+                                       const support::Span& where) -> std::optional<int> {
+    if (!good || !may_read(path, where)) return std::nullopt;
+    return textures_.find(path, slot.decoding, slot.mips, where, diagnostics_);
+  };
   for (size_t o = 0; o < scene_.objects.size(); ++o) {
     const Object& object = scene_.objects[o];
     const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
     // After an error the rest is read for further ones, but nothing more is made.
     const StoredMesh* mesh = good ? make_mesh(object) : nullptr;
     const auto* material = mesh != nullptr && mesh->material ? &*mesh->material : nullptr;
-    auto parameters = ObjectParameters::resolve(object, effect, material, diagnostics_);
+    auto parameters = ObjectParameters::resolve(object, effect, material, find_texture, diagnostics_);
     good = good && mesh != nullptr && parameters.has_value();
     if (!good) {
       if (diagnostics_.full()) return false;
@@ -246,7 +253,8 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<Skipped>& skipp
   const Object& object = scene_.objects[o];
   const glm::mat3 normal = scene::normal_matrix(copy.model);
   const glm::mat4 inverse = scene::affine_inverse(copy.model);
-  const std::vector<float> parameters = parameters_[o].words(object, copy.instance);
+  const std::vector<float> parameters =
+      parameters_[o].words(object, copy.instance, [&](int number) { return textures_.record(number); });
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
   const glm::vec3& scale = object.transform.scale;
@@ -347,6 +355,7 @@ std::optional<Plan> Planner::plan() {
   if (!compile_effects()) return std::nullopt;
   plan_.stats.compile_seconds = clock.lap();
   if (!make_objects()) return std::nullopt;
+  textures_.store(plan_.frame);
 
   backends::Frame& frame = plan_.frame;
   frame.width = options_.width > 0 ? options_.width : scene_.width;
@@ -370,6 +379,8 @@ std::optional<Plan> Planner::plan() {
   stats.mesh_vertices = static_cast<int64_t>(frame.vertices.size()) / lower::vertex_word::stride;
   stats.effects = static_cast<int64_t>(plan_.effects.size());
   stats.programs = static_cast<int64_t>(frame.programs.size());
+  stats.textures = static_cast<int64_t>(textures_.count());
+  stats.texels = static_cast<int64_t>(frame.texels.size()) / 4;
   stats.lights = frame.light_count;
   stats.plan_seconds = clock.lap();
   return std::move(plan_);

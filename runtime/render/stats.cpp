@@ -6,13 +6,18 @@
 namespace isoshade::render {
 
 std::string text(const PlanStats& stats) {
+  const std::string textures =
+      stats.textures == 0 ? ""
+                          : fmt::format("textures: {} stored with {} texels\n", stats.textures, stats.texels);
   std::string text = fmt::format(
       "scene:    {} objects, {} draws, {} lights\n"
       "meshes:   {} stored with {} vertices; {} vertices and {} triangles are drawn\n"
       "effects:  {} compiled into {} programs in {:.1f} ms\n"
+      "{}"
       "plan:     {:.1f} ms\n",
       stats.copies, stats.draws, stats.lights, stats.meshes, stats.mesh_vertices, stats.vertices,
-      stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, 1e3 * stats.plan_seconds);
+      stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, textures,
+      1e3 * stats.plan_seconds);
   for (const Skip& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
   return text;
 }

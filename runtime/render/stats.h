@@ -20,6 +20,7 @@ struct PlanStats {
   int64_t vertices = 0, triangles = 0;    ///< of all draws
   int64_t meshes = 0, mesh_vertices = 0;  ///< stored
   int64_t effects = 0, programs = 0;      ///< compiled
+  int64_t textures = 0, texels = 0;  ///< stored; with mip levels
   int64_t lights = 0;
   double compile_seconds = 0, plan_seconds = 0;
   std::vector<Skip> skips;

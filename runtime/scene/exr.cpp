@@ -46,19 +46,22 @@ int find_channel(const EXRHeader& header, const char* name) {
   return -1;
 }
 
-/// Empty if the header describes what we read: flat scanlines of a sensible size with the three colours.
+bool is_grey(const EXRHeader& header) {
+  return find_channel(header, "Y") >= 0 && find_channel(header, "R") < 0;
+}
+
+/// Empty if the header describes what we read: flat scanlines of a sensible size with the three colours, or grey.
 std::string refuse(const EXRVersion& version, const EXRHeader& header) {
   if (version.multipart != 0 || version.non_image != 0 || header.tiled != 0)
     return "it is tiled, deep or of several parts";
   const EXRBox2i& window = header.data_window;
   const int64_t width = int64_t{window.max_x} - window.min_x + 1;
   const int64_t height = int64_t{window.max_y} - window.min_y + 1;
-  if (width < 1 || height < 1 || width > max_size || height > max_size)
-    return "a side is not from 1 to " + std::to_string(max_size) + " pixels";
+  if (std::string reason = refuse_size(width, height); !reason.empty()) return reason;
   constexpr int most_channels = 64;  // tinyexr allocates all of them
   if (header.num_channels > most_channels) return "it has too many channels";
   for (const char* name : {"R", "G", "B"})
-    if (find_channel(header, name) < 0) return "it has no channel " + std::string(name);
+    if (!is_grey(header) && find_channel(header, name) < 0) return "it has no channel " + std::string(name);
   for (int c = 0; c < header.num_channels; ++c) {
     if (header.channels[c].x_sampling != 1 || header.channels[c].y_sampling != 1)
       return "a channel is subsampled";
@@ -110,6 +113,8 @@ std::string exr(const ImageView& image) {
   return std::string(reinterpret_cast<const char*>(memory), size);
 }
 
+bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
+
 Decoded decode_exr(std::string_view bytes) {
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   EXRVersion version;
@@ -136,7 +141,8 @@ Decoded decode_exr(std::string_view bytes) {
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
   image.rgba.assign(4 * pixels, 1.0f);
   for (int c = 0; c < channel_count; ++c) {
-    const int place = find_channel(header, channel_names[c]);
+    const bool color = channel_source[c] < 3;
+    const int place = find_channel(header, color && is_grey(header) ? "Y" : channel_names[c]);
     if (place < 0) continue;
     const auto* plane = reinterpret_cast<const float*>(loaded.images[place]);
     if (channel_source[c] == 4) {

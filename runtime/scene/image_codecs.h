@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What read_image chooses among.
+// What decode_image chooses among.
 #pragma once
 
 #include <string>
@@ -9,13 +9,15 @@
 
 namespace isoshade::scene {
 
-/// An image, or the reason why there is none: "it is tiled".
-struct Decoded {
-  std::optional<FloatImage> image;
-  std::string reason;
-};
+/// Why an image of this size is not read; empty if it is.
+std::string refuse_size(int64_t width, int64_t height);
 
+/// Whether the bytes begin as such a file does.
+bool is_exr(std::string_view bytes);
 Decoded decode_exr(std::string_view bytes);
-Decoded decode_png(std::string_view bytes);
+bool is_hdr(std::string_view bytes);
+Decoded decode_hdr(std::string_view bytes);
+/// PNG and JPEG; nothing else that stb would read.
+Decoded decode_by_stb(std::string_view bytes);
 
 }  // namespace isoshade::scene

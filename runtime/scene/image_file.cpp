@@ -8,6 +8,7 @@
 #include "compiler/support/visible.h"
 #include "runtime/scene/image_codecs.h"
 #include "runtime/scene/output_file.h"
+#include "runtime/scene/scene.h"
 
 namespace isoshade::scene {
 
@@ -27,22 +28,27 @@ Format format_of(const std::string& path) {
   return Format::unknown;
 }
 
-std::optional<std::string> read_bytes(const std::string& path, Diagnostics& diagnostics) {
+std::optional<std::string> read_bytes(const std::string& path, Diagnostics& diagnostics,
+                                      const support::Span& where) {
   constexpr uintmax_t most = uintmax_t{2} << 30;  // stb counts in int
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    diagnostics.report(Id::missing_file, "there is no file " + quote(path));
+    diagnostics.report(Id::missing_file, where, "there is no file " + quote(path));
+    return std::nullopt;
+  }
+  if (!std::filesystem::is_regular_file(path, error)) {
+    diagnostics.report(Id::unreadable_file, where, quote(path) + " is no file");
     return std::nullopt;
   }
   const uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size >= most) {
-    diagnostics.report(Id::too_large, quote(path) + " has more than 2 GiB");
+    diagnostics.report(Id::too_large, where, quote(path) + " has more than 2 GiB");
     return std::nullopt;
   }
   std::ifstream file(path, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(file), {});
   if (!error && file.is_open() && !file.bad()) return bytes;
-  diagnostics.report(Id::unreadable_file, "cannot read " + quote(path));
+  diagnostics.report(Id::unreadable_file, where, "cannot read " + quote(path));
   return std::nullopt;
 }
 
@@ -63,18 +69,23 @@ bool write_image(const std::string& path, const ImageView& image, Encoding encod
                     diagnostics);
 }
 
-std::optional<FloatImage> read_image(const std::string& path, Diagnostics& diagnostics) {
-  const Format format = format_of(path);
-  if (format == Format::unknown || path == "-") {
-    diagnostics.report(Id::bad_image,
-                       "an image is read from a file that ends in .png or .exr, not from " + quote(path));
-    return std::nullopt;
-  }
-  const std::optional<std::string> bytes = read_bytes(path, diagnostics);
+Decoded decode_image(std::string_view bytes) {
+  if (is_exr(bytes)) return decode_exr(bytes);
+  return is_hdr(bytes) ? decode_hdr(bytes) : decode_by_stb(bytes);
+}
+
+std::string refuse_size(int64_t width, int64_t height) {
+  if (width >= 1 && height >= 1 && width <= max_size && height <= max_size) return {};
+  return "a side is not from 1 to " + std::to_string(max_size) + " pixels";
+}
+
+std::optional<FloatImage> read_image(const std::string& path, Diagnostics& diagnostics,
+                                     const support::Span& where) {
+  const std::optional<std::string> bytes = read_bytes(path, diagnostics, where);
   if (!bytes) return std::nullopt;
-  Decoded decoded = format == Format::png ? decode_png(*bytes) : decode_exr(*bytes);
+  Decoded decoded = decode_image(*bytes);
   if (!decoded.image) {
-    diagnostics.report(Id::bad_image,
+    diagnostics.report(Id::bad_image, where,
                        "cannot read the image " + quote(path) + ": " + support::visible(decoded.reason));
   }
   return std::move(decoded.image);

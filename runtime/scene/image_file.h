@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images as files: PNG for eyes, OpenEXR for floats.
+// Images as files: PNG for eyes, OpenEXR for floats; and as textures JPEG and Radiance HDR too.
 #pragma once
 
 #include <cstdint>
@@ -22,13 +22,14 @@ struct ImageView {
   std::span<const float> depth;  ///< one a pixel
 };
 
-/// An image as a file holds it. A PNG's values are its bytes over 255, as encoded; where a file has no alpha,
-/// it is 1; where it has no depth, `depth` is empty.
+/// An image as a file holds it. Bytes are over 255, numbers of 16 bits over 65535, as encoded; where a file is grey,
+/// its three colours are alike; where it has no alpha, it is 1; where it has no depth, `depth` is empty.
 struct FloatImage {
   int width = 0;
   int height = 0;
   std::vector<float> rgba;
   std::vector<float> depth;
+  bool bytes = false;  ///< the file has 8 bits a number, or fewer
 
   ImageView view() const { return {width, height, rgba, depth}; }
 };
@@ -47,8 +48,18 @@ bool check_image_path(const std::string& path, support::Diagnostics& diagnostics
 bool write_image(const std::string& path, const ImageView& image, Encoding encoding, float exposure,
                  support::Diagnostics& diagnostics);
 
-/// Reads a PNG or OpenEXR file, by its ending. Reports what is no such file, is damaged, or has a side beyond
-/// 8192 pixels.
-std::optional<FloatImage> read_image(const std::string& path, support::Diagnostics& diagnostics);
+/// An image, or the reason why there is none: "it is tiled".
+struct Decoded {
+  std::optional<FloatImage> image;
+  std::string reason;
+};
+
+/// PNG, JPEG, Radiance HDR or OpenEXR, by how they begin. Not beyond 8192 pixels a side, which is known before anything
+/// is unpacked.
+Decoded decode_image(std::string_view bytes);
+
+/// Reads an image file. Reports what is no such file, is damaged or too large, at `where`.
+std::optional<FloatImage> read_image(const std::string& path, support::Diagnostics& diagnostics,
+                                     const support::Span& where = {});
 
 }  // namespace isoshade::scene

@@ -2,8 +2,8 @@
 // Objects: mesh, transform, effect, parameters, grids.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "compiler/graph/files.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/parse_parts.h"
@@ -162,9 +162,7 @@ void check_parameter_names(const Object& object, Diagnostics& diagnostics) {
 }  // namespace
 
 std::string path_beside(const Document& document, const std::string& path) {
-  const std::filesystem::path given(path);
-  if (given.is_absolute()) return path;
-  return (std::filesystem::path(document.source->path()).parent_path() / given).lexically_normal().string();
+  return graph::path_beside(document.source->path(), path);
 }
 
 std::optional<Literal> parse_literal(const Document& document, const Json& json, Diagnostics& diagnostics) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "compiler/graph/files.h"
 #include "compiler/graph/graph.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/parse_parts.h"
@@ -95,6 +97,8 @@ class Editor {
 
   std::vector<std::string_view> parameters_of(const Json& object);
   const std::vector<std::string>& parameters_of_effect(const std::string& path);
+  /// A value for a parameter of an object, with a path in it from the root, as the user counts it from where he is.
+  std::string value_for(const Json& object, const Setting& setting);
 
   const Document& document_;
   Diagnostics& diagnostics_;
@@ -152,7 +156,27 @@ void Editor::remove_member(const Json& object, const Member& member) {
   edits_.push_back({begin, end, ""});
 }
 
+std::string Editor::value_for(const Json& object, const Setting& setting) {
+  const Json* effect = object.find("effect");
+  if (effect == nullptr || effect->kind != Json::Kind::string) return setting.value;
+  Diagnostics unheard;
+  const auto value =
+      graph::parse_document(std::make_shared<support::SourceFile>("--set", setting.value), unheard);
+  const std::string path = path_beside(document_, effect->string);
+  const support::Source source = graph::read_source(path, unheard, {document_.source, 0, 0});
+  const auto read = source ? graph::parse_document(source, unheard) : std::nullopt;
+  if (!value || !read || value->root.kind != Json::Kind::string || value->root.string.empty())
+    return setting.value;
+  const Json* parameters = find_object(read->root, "parameters");
+  const Json* parameter = parameters != nullptr ? find_object(*parameters, setting.key) : nullptr;
+  const Json* type = parameter != nullptr ? parameter->find("type") : nullptr;
+  if (type == nullptr || type->string != graph::type_name(graph::Type::filename)) return setting.value;
+  return nlohmann::json(graph::canonical_path(value->root.string))
+      .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
 void Editor::set_parameter(const Json& object, const Setting& setting) {
+  const std::string value = value_for(object, setting);
   if (const Json* repeat = object.find("repeat")) {
     for (const Json& axis : repeat->items) {
       const Json* variations = find_object(axis, "parameters");
@@ -162,9 +186,9 @@ void Editor::set_parameter(const Json& object, const Setting& setting) {
     }
   }
   if (const Json* parameters = find_object(object, "parameters")) {
-    set_member(*parameters, setting.key, setting.value);
+    set_member(*parameters, setting.key, value);
   } else {
-    set_member(object, "parameters", "{\"" + std::string(setting.key) + "\": " + setting.value + "}");
+    set_member(object, "parameters", "{\"" + std::string(setting.key) + "\": " + value + "}");
   }
 }
 

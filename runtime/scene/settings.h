@@ -18,6 +18,8 @@ namespace isoshade::scene {
 ///     camera.key=value         "camera.fov=30", and so output.key
 ///     key=value                background or size of the scene
 ///
+/// A path for a parameter of type filename counts from the working directory.
+///
 /// A value is JSON, or numbers with commas between them ("1,0.5,0"), or a plain word. Whether it fits is
 /// found when the result is read by parse_scene; what it then reports shows the line with the new value.
 /// Lines keep their numbers. Reports settings that are malformed or that name nothing, or more than one

@@ -14,3 +14,4 @@ if(ISOSHADE_FUZZ)
 endif()
 
 isoshade_test(gltf_fuzz_test SOURCES fuzz/gltf_test.cpp LINKS isoshade_scene TIMEOUT 600)
+isoshade_test(images_fuzz_test SOURCES fuzz/images_test.cpp LINKS isoshade_scene PkgConfig::stb TIMEOUT 600)

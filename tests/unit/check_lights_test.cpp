@@ -58,9 +58,9 @@ TEST(CheckLights, WhatCannotBeCompiledYetIsSaid) {
           .find("error[unsupported]: post effects"),
       std::string::npos);
   EXPECT_NE(
-      messages_of(R"({"isoshade": 1, "effect": "e", "parameters": {"f": {"type": "filename", "value": "a"},
+      messages_of(R"({"isoshade": 1, "effect": "e", "parameters": {"f": {"type": "matrix33", "value": [1, 0, 0, 0, 1, 0, 0, 0, 1]},
                            "c": {"type": "color3", "value": [1, 1, 1]}}, "passes": [{"name": "p", "color": "c"}]})")
-          .find("error[unsupported]: a parameter of type filename"),
+          .find("error[unsupported]: a parameter of type matrix33"),
       std::string::npos);
 }
 

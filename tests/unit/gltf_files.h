@@ -70,6 +70,8 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
+  const std::string& path() const { return path_; }
+
   /// Writes a file and returns its path.
   std::string write(const std::string& name, const std::string& bytes) const {
     const std::filesystem::path file = std::filesystem::path(path_) / name;

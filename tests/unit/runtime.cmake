@@ -2,11 +2,13 @@ isoshade_test(scene_test
   SOURCES
     unit/scene_gltf_test.cpp
     unit/scene_image_file_test.cpp
+    unit/scene_image_formats_test.cpp
     unit/scene_mesh_test.cpp
     unit/scene_parse_test.cpp
     unit/scene_placement_test.cpp
     unit/scene_settings_test.cpp
-  LINKS isoshade_scene)
+    unit/scene_texture_test.cpp
+  LINKS isoshade_scene PkgConfig::stb)
 
 isoshade_test(compare_test
   SOURCES
@@ -18,5 +20,6 @@ isoshade_test(compare_test
 isoshade_test(render_test
   SOURCES
     unit/render_plan_test.cpp
+    unit/render_textures_test.cpp
     unit/render_visibility_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_interpreter)

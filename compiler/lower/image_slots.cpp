@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/lower/image_slots.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "compiler/lower/body.h"
+
+namespace isoshade::lower {
+namespace {
+
+using check::Operand;
+namespace port = nodes::image_port;
+
+Decoding decoding_of(const check::TypedGraph& graph, const check::Node& node) {
+  switch (static_cast<nodes::ColorSpace>(graph.operands_of(node)[port::colorspace].index)) {
+    case nodes::ColorSpace::srgb: return Decoding::srgb;
+    case nodes::ColorSpace::linear: return Decoding::linear;
+    case nodes::ColorSpace::automatic: break;
+  }
+  return nodes::color_types.has(graph.types_of(node)[0]) ? Decoding::srgb_if_bytes : Decoding::linear;
+}
+
+/// The slot of one node alone.
+ImageSlot slot_of(const check::TypedGraph& graph, uint32_t index) {
+  const check::Node& node = graph.nodes[index];
+  const Operand& file = graph.operands_of(node)[port::file];
+  ImageSlot slot;
+  if (file.from == Operand::From::input) {
+    const graph::Input& input = graph.graph.inputs[file.index];
+    slot.name = slot.parameter = input.name;
+    slot.path = input.value->string;
+    slot.place = input.value_place;
+  } else {
+    slot.name = graph.graph.nodes[index].id;
+    slot.path = graph.files[file.index].path;
+    slot.place = graph.files[file.index].place;
+  }
+  slot.decoding = decoding_of(graph, node);
+  slot.mips = filter_of(graph, node) == nodes::Filter::trilinear;
+  return slot;
+}
+
+}  // namespace
+
+nodes::Filter filter_of(const check::TypedGraph& graph, const check::Node& node) {
+  return static_cast<nodes::Filter>(graph.operands_of(node)[port::filtertype].index);
+}
+
+nodes::AddressMode address_mode_of(const check::TypedGraph& graph, const check::Node& node, size_t port) {
+  return static_cast<nodes::AddressMode>(graph.operands_of(node)[port].index);
+}
+
+ImageSlots image_slots(const check::TypedGraph& graph) {
+  ImageSlots result;
+  result.of_node.resize(graph.nodes.size());
+  const Needs needs(graph, graph.outputs);
+  const auto same = [](const ImageSlot& a, const ImageSlot& b) {
+    return std::tie(a.parameter, a.path, a.decoding) == std::tie(b.parameter, b.path, b.decoding);
+  };
+  for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
+    if (!needs.nodes[i] || graph.nodes[i].row == nullptr || !graph.nodes[i].row->is<nodes::Image>()) continue;
+    ImageSlot slot = slot_of(graph, i);
+    const auto found =
+        std::ranges::find_if(result.slots, [&](const ImageSlot& other) { return same(slot, other); });
+    result.of_node[i] = static_cast<uint32_t>(found - result.slots.begin());
+    if (found != result.slots.end()) {
+      found->mips |= slot.mips;
+      continue;
+    }
+    // A parameter that is read in two ways has two slots.
+    const auto taken = [&] {
+      const auto named = graph.graph.names.find(slot.name);
+      const bool by_other =
+          named != graph.graph.names.end() && named->second.is_input && slot.name != slot.parameter;
+      return by_other || std::ranges::find(result.slots, slot.name, &ImageSlot::name) != result.slots.end();
+    };
+    while (taken()) slot.name += "_";
+    result.slots.push_back(std::move(slot));
+  }
+  return result;
+}
+
+}  // namespace isoshade::lower

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The images that an effect reads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/check/typed_graph.h"
+#include "compiler/nodes/image.h"
+
+namespace isoshade::lower {
+
+/// How the numbers of a file become linear.
+enum class Decoding : uint8_t {
+  linear,        ///< they are
+  srgb,          ///< by srgb_decode, but for the fourth
+  srgb_if_bytes  ///< the same, if they have 8 bits
+};
+
+/// A file that nodes read in one way. Each object has a word for it in its record (frame_layout.h).
+struct ImageSlot {
+  std::string name;       ///< of the parameter or the node; no other slot is called so, nor another parameter
+  std::string parameter;  ///< that has the path; empty: the path is the document's
+  std::string path;       ///< what the document says; relative to it; empty: none
+  graph::Place place;     ///< where it says so
+  Decoding decoding = Decoding::linear;
+  bool mips = false;  ///< levels of half the size are read too
+};
+
+struct ImageSlots {
+  std::vector<ImageSlot> slots;
+  std::vector<uint32_t> of_node;  ///< by TypedGraph::nodes: the slot of what is an image
+};
+
+/// The slots of an effect, over all of its passes, in the order of its nodes. What no pass reads has none.
+ImageSlots image_slots(const check::TypedGraph& graph);
+
+/// Of a node whose row is an image.
+nodes::Filter filter_of(const check::TypedGraph& graph, const check::Node& node);
+nodes::AddressMode address_mode_of(const check::TypedGraph& graph, const check::Node& node, size_t port);
+
+}  // namespace isoshade::lower

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/lower/sampling.h"
+
+#include "compiler/lower/kernel.h"
+
+namespace isoshade::lower {
+namespace {
+
+using nodes::AddressMode;
+using nodes::Filter;
+
+struct Size {
+  Int width, height, smaller;
+};
+
+uint32_t declared(ir::Module& module, const char* name, std::vector<ir::Parameter> parameters,
+                  std::vector<ir::Result> results) {
+  if (const uint32_t found = module.find(name); found != ir::none) return found;
+  ir::Function& function = module.functions.emplace_back();
+  function.name = name;
+  function.parameters = std::move(parameters);
+  function.results = std::move(results);
+  return static_cast<uint32_t>(module.functions.size() - 1);
+}
+
+Size size_of(ir::Builder& b, ir::ValueId texture) {
+  const uint32_t function =
+      declared(b.module(), texture_size_name, {int_parameter("picture")},
+               {{"width", ir::int_type}, {"height", ir::int_type}, {"smaller", ir::int_type}});
+  const std::vector<ir::ValueId> words = b.call(function, std::array{texture});
+  return {Int(b, words[0]), Int(b, words[1]), Int(b, words[2])};
+}
+
+Vec4 texel_at(ir::Builder& b, ir::ValueId texture, Int x, Int y) {
+  const uint32_t function =
+      declared(b.module(), texel_at_name, {int_parameter("picture"), int_parameter("x"), int_parameter("y")},
+               {{"texel", ir::vector_type(4)}});
+  return Vec4(b, b.call(function, std::array{texture, x.id(b), y.id(b)})[0]);
+}
+
+/// A coordinate brought into [0, 1].
+Float within(AddressMode mode, Float coordinate) {
+  switch (mode) {
+    case AddressMode::periodic: return wrap(coordinate);
+    case AddressMode::mirror: return mirror(coordinate);
+    case AddressMode::clamp:
+    case AddressMode::constant: break;
+  }
+  return saturate(coordinate);
+}
+
+/// The column in which a coordinate lies, or the row.
+Int nearest(AddressMode mode, Float coordinate, Int size) {
+  const Int last = size - Int(1);
+  const Int found = to_int(within(mode, coordinate) * to_float(size));  // `size` for 1
+  return select(found < last, found, last);
+}
+
+/// The columns, or rows, between whose middles a coordinate lies, and how far it is on the way to the second.
+struct Between {
+  Int first, second;
+  Float share;
+};
+
+Between between(Kernel& k, char name, AddressMode mode, Float coordinate, Int size) {
+  const Float place = within(mode, coordinate) * to_float(size) - Float(0.5f);  // in [-0.5, size - 0.5]
+  const Float whole = floor(place);
+  const Int first = to_int(whole);
+  const Int second = first + Int(1);
+  const Int last = size - Int(1);
+  const bool goes_around = mode == AddressMode::periodic;
+  const std::string axis(1, name);
+  return {k.named(axis + "0", select(first < Int(0), goes_around ? last : Int(0), first)),
+          k.named(axis + "1", select(second > last, goes_around ? Int(0) : last, second)),
+          k.named(axis + "_share", place - whole)};
+}
+
+std::string mode_text(AddressMode mode) {
+  constexpr std::string_view names[] = {"periodic", "clamp", "mirror", "clamp"};
+  return std::string(names[static_cast<size_t>(mode)]);
+}
+
+/// "sample_linear_clamp", or with the mode of each axis.
+std::string sample_name(const Sampling& sampling) {
+  constexpr std::string_view filters[] = {"closest_", "linear_", "trilinear_"};
+  const std::string u = mode_text(sampling.u), v = mode_text(sampling.v);
+  return sample_prefix + std::string(filters[static_cast<size_t>(sampling.filter)]) + u +
+         (u == v ? "" : "_" + v);
+}
+
+std::vector<ir::Parameter> sample_parameters() {
+  return {int_parameter("picture"), {"texcoord", ir::vector_type(2), "", false}};
+}
+
+void build_closest(Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
+  const Size size = size_of(k.b, texture);
+  const Int x = k.named("x", nearest(sampling.u, texcoord[0], size.width));
+  const Int y = k.named("y", nearest(sampling.v, texcoord[1], size.height));
+  k.b.finish(std::array{texel_at(k.b, texture, x, y).value});
+}
+
+void build_linear(Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
+  const Size size = size_of(k.b, texture);
+  const Between x = between(k, 'x', sampling.u, texcoord[0], size.width);
+  const Between y = between(k, 'y', sampling.v, texcoord[1], size.height);
+  const auto row = [&](Int at) {
+    return mix(texel_at(k.b, texture, x.first, at), texel_at(k.b, texture, x.second, at), x.share);
+  };
+  const Vec4 upper = k.named("upper", row(y.first));
+  const Vec4 lower = k.named("lower", row(y.second));
+  k.b.finish(std::array{mix(upper, lower, y.share).value});
+}
+
+/// The function for closest or linear.
+uint32_t sampler(ir::Module& module, const Sampling& sampling) {
+  const std::string name = sample_name(sampling);
+  if (const uint32_t found = module.find(name); found != ir::none) return found;
+  Kernel k(module, name, sample_parameters(), {{"color", ir::vector_type(4)}});
+  const auto build = sampling.filter == Filter::closest ? build_closest : build_linear;
+  build(k, sampling, k.b.parameter(0), Vec2(k.b, k.b.parameter(1)));
+  return k.index;
+}
+
+/// sample_level(picture, along_x, along_y): the mip level for these changes of the texture coordinates along the sides of
+/// a pixel, in 1/65536: an integer, so that it has no derivative.
+ir::ValueId level_of(ir::Builder& b, ir::ValueId texture, ir::ValueId texcoord) {
+  const std::array arguments{texture, b.op(ir::Opcode::ddx, {texcoord}), b.op(ir::Opcode::ddy, {texcoord})};
+  const std::string name = std::string(sample_prefix) + "level";
+  ir::Module& module = b.module();
+  if (const uint32_t found = module.find(name); found != ir::none) return b.call(found, arguments)[0];
+  Kernel k(module, name,
+           {int_parameter("picture"),
+            {"along_x", ir::vector_type(2), "", false},
+            {"along_y", ir::vector_type(2), "", false}},
+           {{"level", ir::int_type}});
+  const Size size = size_of(k.b, k.b.parameter(0));
+  const Vec2 texels(to_float(size.width), to_float(size.height));
+  const Float wanted = mip_level(Vec2(k.b, k.b.parameter(1)) * texels, Vec2(k.b, k.b.parameter(2)) * texels);
+  const Float last = to_float(size.smaller);
+  const Float from_0 = select(wanted > Float(0.0f), wanted, Float(0.0f));  // NaN too
+  const Float level = k.named("level", select(from_0 < last, from_0, last));
+  k.b.finish(std::array{to_int(level * Float(0x1p16f)).value});
+  return b.call(k.index, arguments)[0];
+}
+
+/// sample_trilinear_...(picture, texcoord, level): between the two mip levels around one, in 1/65536.
+uint32_t trilinear_sampler(ir::Module& module, const Sampling& sampling) {
+  const std::string name = sample_name(sampling);
+  if (const uint32_t found = module.find(name); found != ir::none) return found;
+  const uint32_t linear = sampler(module, {Filter::linear, sampling.u, sampling.v});
+  std::vector<ir::Parameter> parameters = sample_parameters();
+  parameters.push_back(int_parameter("level"));
+  Kernel k(module, name, std::move(parameters), {{"color", ir::vector_type(4)}});
+  const auto at = [&](Int texture) {
+    return Vec4(k.b, k.b.call(linear, std::array{texture.value, k.b.parameter(1)})[0]);
+  };
+  const Int level = k.integer(2);
+  const Int larger = k.named("larger", k.integer(0) + shift_right(level, Int(16)));
+  const Int rest = level & Int(65535);
+  const Vec4 fine = k.named("fine", at(larger));
+  // A level that is reached is read alone: the next may not be there.
+  const Vec4 color = functions::traced::branch(
+      rest > Int(0), [&] { return mix(fine, at(larger + Int(1)), to_float(rest) * Float(0x1p-16f)); },
+      [&] { return fine; });
+  k.b.finish(std::array{color.value});
+  return k.index;
+}
+
+}  // namespace
+
+ir::ValueId sample(ir::Builder& b, const Sampling& sampling, ir::ValueId texture, ir::ValueId texcoord) {
+  if (sampling.filter == Filter::trilinear) {
+    const ir::ValueId level = level_of(b, texture, texcoord);
+    return b.call(trilinear_sampler(b.module(), sampling), std::array{texture, texcoord, level})[0];
+  }
+  return b.call(sampler(b.module(), sampling), std::array{texture, texcoord})[0];
+}
+
+void define_texture_reads(ir::Module& module) {
+  const auto word = [](Kernel& k, int at) {
+    return k.load_int(FrameBuffer::textures, k.integer(0) * Int(texture_word::stride) + Int(at));
+  };
+  if (const uint32_t size = module.find(texture_size_name); size != ir::none) {
+    Kernel k(module, size);
+    k.b.finish(std::array{word(k, texture_word::width).value, word(k, texture_word::height).value,
+                          word(k, texture_word::smaller).value});
+  }
+  if (const uint32_t texel = module.find(texel_at_name); texel != ir::none) {
+    Kernel k(module, texel);
+    const Int place = k.integer(2) * word(k, texture_word::width) + k.integer(1);
+    const Int first = k.named("first", word(k, texture_word::first) + place * Int(4));
+    k.b.finish(std::array{k.load4(FrameBuffer::texels, first, 0).value});
+  }
+}
+
+}  // namespace isoshade::lower

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading textures: functions of the module, made where they are first asked for. No sampler of a device is the same as
+// another's, so they are arithmetic like all else.
+//
+// A texture is the number of its record (frame_layout.h, texture_word). What reads it is left to the kernel, or to the
+// engine that takes `shade`:
+//   texture_size(picture: int) -> (width: int, height: int, smaller: int)
+//   texel_at(picture: int, x: int, y: int) -> (texel: vec4)      0 <= x < width, 0 <= y < height; y down
+// `smaller` is how many of the textures after this one are its mip levels.
+#pragma once
+
+#include "compiler/ir/builder.h"
+#include "compiler/nodes/image.h"
+
+namespace isoshade::lower {
+
+inline constexpr const char* texture_size_name = "texture_size";
+inline constexpr const char* texel_at_name = "texel_at";
+/// How names of the others begin.
+inline constexpr const char* sample_prefix = "sample_";
+
+struct Sampling {
+  nodes::Filter filter;
+  nodes::AddressMode u, v;
+};
+
+/// The colour of a texture at `texcoord`, as a vec4 under `builder`. Beyond edges of AddressMode::constant it is that
+/// of the edge. Trilinear: asks for derivatives of `texcoord`, but the mip level that comes of them counts as constant
+/// where derivatives are taken of the result.
+ir::ValueId sample(ir::Builder& builder, const Sampling& sampling, ir::ValueId texture, ir::ValueId texcoord);
+
+/// Gives what sample() left without a body one that reads the frame's buffers.
+void define_texture_reads(ir::Module& module);
+
+}  // namespace isoshade::lower

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What documents may say of images.
+#include "compiler/lower/image_slots.h"
+#include "tests/unit/front_end.h"
+
+namespace isoshade {
+namespace {
+
+std::string messages_of(const std::string& text) { return FrontEnd().messages(text); }
+
+std::string effect(const std::string& nodes, const std::string& color = "color") {
+  return R"({"isoshade": 1, "effect": "e", "parameters": {
+    "map": {"type": "filename", "value": "a.png"}, "tint": {"type": "color3", "value": [1, 1, 1]}},
+"nodes": {
+)" + nodes +
+         "\n},\n\"passes\": [{\"name\": \"p\", \"color\": \"" + color + "\"}]}";
+}
+
+std::string image(const std::string& ports) {
+  return effect("\"color\": {\"type\": \"image\", " + ports + "}");
+}
+
+TEST(CheckImage, FilesAreWrittenOrLinked) {
+  FrontEnd front_end;
+  EXPECT_NE(front_end.check(image(R"("file": "b.png")")), nullptr) << front_end.diagnostics.text();
+  EXPECT_NE(front_end.check(image(R"("file": {"link": "map"})")), nullptr) << front_end.diagnostics.text();
+  EXPECT_NE(messages_of(image(R"("file": 3)")).find("error[wrong-type]"), std::string::npos);
+  EXPECT_NE(messages_of(image(R"("file": {"link": "tint"})")).find("error[type-mismatch]"),
+            std::string::npos);
+  EXPECT_NE(messages_of(image(R"("file": {"link": "none"})")).find("error[unknown-node]"), std::string::npos);
+  EXPECT_NE(messages_of(image(R"("filtertype": "linear")")).find("error[missing-port]"), std::string::npos);
+}
+
+TEST(CheckImage, FileNamesAreNothingToComputeWith) {
+  EXPECT_NE(messages_of(effect(R"("color": {"type": "multiply", "in1": "tint", "in2": "map"})"))
+                .find("error[type-mismatch]"),
+            std::string::npos);
+  EXPECT_NE(messages_of(effect(R"("n": {"type": "normal"})", "map")).find("error[type-mismatch]"),
+            std::string::npos);
+}
+
+TEST(CheckImage, SplinesAreRefusedByWhatThereIs) {
+  const std::string text = messages_of(image(R"("file": "b.png", "filtertype": "cubic")"));
+  EXPECT_NE(text.find("\"filtertype\" of \"image\" cannot be \"cubic\""), std::string::npos) << text;
+  EXPECT_NE(text.find("\"trilinear\""), std::string::npos) << text;
+}
+
+TEST(CheckImage, FunctionsHaveNone) {
+  EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "inputs": {"uv": {"type": "vector2"}},
+    "nodes": {"i": {"type": "image", "file": "a.png", "texcoord": "uv"}}, "outputs": {"out": "i"}})")
+                .find("error[misplaced-node]"),
+            std::string::npos);
+}
+
+TEST(CheckImage, MipLevelsAreNoSecondDerivatives) {
+  FrontEnd front_end;
+  const std::string of_image = R"("i": {"type": "image", "file": "a.png", "filtertype": "trilinear"},
+"color": {"type": "ddx", "in": "i"})";
+  EXPECT_NE(front_end.check(effect(of_image)), nullptr) << front_end.diagnostics.text();
+  const std::string of_derivative = R"("w": {"type": "fwidth", "in": "uv"}, "uv": {"type": "texcoord"},
+"color": {"type": "image", "file": "a.png", "texcoord": "w", "filtertype": ")";
+  EXPECT_NE(messages_of(effect(of_derivative + "trilinear\"}")).find("error[second-derivative]"),
+            std::string::npos);
+  EXPECT_NE(front_end.check(effect(of_derivative + "linear\"}")), nullptr) << front_end.diagnostics.text();
+}
+
+TEST(ImageSlots, AreOneForEachFileAndDecoding) {
+  FrontEnd front_end;
+  const auto typed = front_end.check(effect(R"json("a": {"type": "image", "file": {"link": "map"}},
+"b": {"type": "image", "file": {"link": "map"}, "filtertype": "trilinear"},
+"c": {"type": "image", "file": {"link": "map"}, "to": "vector3"},
+"d": {"type": "image", "file": "d.png", "colorspace": "srgb", "to": "float"},
+"unused": {"type": "image", "file": "e.png"},
+"color": {"type": "expression", "code": "a * b * d * color3(c.x, c.y, c.z)", "a": "a", "b": "b", "c": "c", "d": "d"})json"));
+  ASSERT_NE(typed, nullptr) << front_end.diagnostics.text();
+  const auto slots = lower::image_slots(*typed).slots;
+  ASSERT_EQ(slots.size(), 3u);
+  EXPECT_EQ(slots[0].name, "map");
+  EXPECT_EQ(slots[0].path, "a.png");
+  EXPECT_EQ(slots[0].decoding, lower::Decoding::srgb_if_bytes);
+  EXPECT_TRUE(slots[0].mips);
+  EXPECT_EQ(slots[1].name, "map_");
+  EXPECT_EQ(slots[1].decoding, lower::Decoding::linear);
+  EXPECT_EQ(slots[2].name, "d");
+  EXPECT_EQ(slots[2].parameter, "");
+  EXPECT_EQ(slots[2].decoding, lower::Decoding::srgb);
+}
+
+}  // namespace
+}  // namespace isoshade

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// What textures give, against plain code, for sizes and coordinates of all kinds.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "compiler/functions/library.h"
+#include "compiler/ir/interpreter.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/lower/sampling.h"
+#include "compiler/lower/stages.h"
+
+namespace isoshade {
+namespace {
+
+using nodes::AddressMode;
+using nodes::Filter;
+
+/// Two textures, of which the first is a decoy, and what sample() makes of the second.
+class Picture {
+ public:
+  Picture(int width, int height) : width_(width), height_(height), texels_(size_t{4} * width * height + 4) {
+    std::mt19937 random(7);
+    for (float& value : texels_) value = std::ldexp(static_cast<float>(random() >> 8), -24);
+    records_ = {0, 1, 1, 0, 4, width, height, 0};
+  }
+
+  float texel(int x, int y, int channel) const {
+    return texels_[static_cast<size_t>(4 + 4 * (y * width_ + x) + channel)];
+  }
+
+  std::vector<float> sample(const lower::Sampling& sampling, float u, float v) const {
+    ir::Module module = lower::frame_module();
+    ir::Function& function = module.functions.emplace_back();
+    function.name = "probe";
+    function.parameters = {{"texture", ir::int_type, "", false}, {"texcoord", ir::vector_type(2), "", false}};
+    function.results = {{"color", ir::vector_type(4)}};
+    ir::Builder b(module, 0);
+    b.finish(std::array{lower::sample(b, sampling, b.parameter(0), b.parameter(1))});
+    lower::define_texture_reads(module);
+    functions::expand(module);
+    ir::Interpreter interpreter(module);
+    std::vector<uint32_t> texels, records(records_.begin(), records_.end());
+    for (const float value : texels_) texels.push_back(std::bit_cast<uint32_t>(value));
+    interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::texels), texels);
+    interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::textures), records);
+    const std::array arguments{uint32_t{1}, std::bit_cast<uint32_t>(u), std::bit_cast<uint32_t>(v)};
+    std::array<uint32_t, 4> results{};
+    interpreter.run(0, arguments, results);
+    EXPECT_EQ(interpreter.breaches(), 0u) << u << " " << v;
+    std::vector<float> color;
+    for (const uint32_t bits : results) color.push_back(std::bit_cast<float>(bits));
+    return color;
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  int width_, height_;
+  std::vector<float> texels_;
+  std::vector<int32_t> records_;
+};
+
+constexpr AddressMode modes[] = {AddressMode::periodic, AddressMode::clamp, AddressMode::mirror};
+
+/// The place in [0, 1] that a coordinate means.
+double place(AddressMode mode, float x) {
+  if (!std::isfinite(x)) return mode == AddressMode::clamp && x > 0 ? 1 : 0;
+  if (mode == AddressMode::clamp) return std::clamp<double>(x, 0, 1);
+  if (mode == AddressMode::periodic) return double{x} - std::floor(double{x});
+  const double in_two = std::fmod(std::abs(double{x}), 2.0);
+  return in_two > 1 ? 2 - in_two : in_two;
+}
+
+/// The texel that lies at an index beyond the edges by at most one.
+int around(AddressMode mode, int index, int size) {
+  if (mode == AddressMode::periodic) return (index + size) % size;
+  return std::clamp(index, 0, size - 1);
+}
+
+std::vector<float> coordinates() {
+  const float inf = std::numeric_limits<float>::infinity();
+  std::vector<float> all{
+      0,       -0.0f, 1,     0.5f, -1,     2,     -2.5f, 0.999999940f, 1.00000012f,  1e-30f,
+      -1e-30f, 7.3f,  -8.7f, 1e6f, -3e38f, 3e38f, inf,   -inf,         std::nanf("")};
+  std::mt19937 random(3);
+  for (int i = 0; i < 60; ++i) all.push_back(std::ldexp(static_cast<float>(random() >> 8), -22) - 2.0f);
+  return all;
+}
+
+TEST(Sampling, ClosestIsTheTexelWhereTheCoordinateLies) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
+    const Picture picture(width, height);
+    for (const AddressMode mode : modes) {
+      for (const float u : coordinates()) {
+        const float v = 0.3f - u;
+        const auto column = [](AddressMode m, float x, int size) {
+          const float scaled = static_cast<float>(place(m, x)) * static_cast<float>(size);
+          return std::min(static_cast<int>(scaled), size - 1);
+        };
+        const int x = column(mode, u, width), y = column(mode, v, height);
+        const auto color = picture.sample({Filter::closest, mode, mode}, u, v);
+        for (int c = 0; c < 4; ++c)
+          ASSERT_EQ(color[c], picture.texel(x, y, c)) << width << "x" << height << " at " << u << ", " << v;
+      }
+    }
+  }
+}
+
+TEST(Sampling, LinearIsInProportionBetweenTheNearestFour) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
+    const Picture picture(width, height);
+    for (const AddressMode mode : modes) {
+      for (const float u : coordinates()) {
+        const float v = 0.3f - u;
+        const double x = place(mode, u) * width - 0.5, y = place(mode, v) * height - 0.5;
+        const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+        const double s = x - x0, t = y - y0;
+        const auto texel = [&](int i, int k, int c) {
+          return double{picture.texel(around(mode, x0 + i, picture.width()),
+                                      around(mode, y0 + k, picture.height()), c)};
+        };
+        const auto color = picture.sample({Filter::linear, mode, mode}, u, v);
+        // Places are rounded to 2^-24 of the picture, so that shares are wrong by that many of its texels.
+        const double bound = 0x1p-23 * (width + height + 4);
+        for (int c = 0; c < 4; ++c) {
+          const double expected = (texel(0, 0, c) * (1 - s) + texel(1, 0, c) * s) * (1 - t) +
+                                  (texel(0, 1, c) * (1 - s) + texel(1, 1, c) * s) * t;
+          ASSERT_NEAR(color[c], expected, bound) << width << "x" << height << " at " << u << ", " << v;
+        }
+      }
+    }
+  }
+}
+
+TEST(Sampling, LinearGivesTexelsExactlyInTheirMiddle) {
+  const Picture picture(8, 4);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x)
+      for (const AddressMode mode : modes)
+        EXPECT_EQ(picture.sample({Filter::linear, mode, mode}, (x + 0.5f) / 8, (y + 0.5f) / 4)[2],
+                  picture.texel(x, y, 2));
+}
+
+TEST(Sampling, AxesHaveModesOfTheirOwn) {
+  const Picture picture(4, 4);
+  const auto color = picture.sample({Filter::closest, AddressMode::clamp, AddressMode::periodic}, 1.3f, 1.3f);
+  EXPECT_EQ(color[0], picture.texel(3, 1, 0));
+}
+
+}  // namespace
+}  // namespace isoshade

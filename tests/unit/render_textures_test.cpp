@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which textures a scene loads, and what it says of those that it cannot.
+#include <algorithm>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "backends/interpreter/backend.h"
+#include "compiler/lower/frame_layout.h"
+#include "runtime/render/plan.h"
+#include "runtime/render/render.h"
+#include "runtime/scene/texture.h"
+#include "tests/unit/gltf_files.h"
+#include "tests/unit/scene_documents.h"
+
+namespace isoshade {
+namespace {
+
+namespace word = lower::texture_word;
+
+/// Scenes beside a picture of 4 x 4 texels, all different, and an effect that shows one.
+class Textures : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::vector<uint8_t> bytes;
+    for (int i = 0; i < 4 * 16; ++i) bytes.push_back(static_cast<uint8_t>(i % 4 == 3 ? 255 : 16 + 3 * i));
+    folder_.write("a.png", scene::png(4, 4, bytes));
+    folder_.write("bad.png", scene::png(4, 4, bytes).substr(0, 60));
+    folder_.write("shown.json", effect("shown", R"("filtertype": "closest", "colorspace": "linear")"));
+    folder_.write("small.json", effect("small", R"("filtertype": "trilinear", "colorspace": "linear")"));
+    folder_.write("plain.json", R"({"isoshade": 1, "effect": "plain", "parameters": {
+      "map": {"type": "filename", "value": "missing.png"}, "tint": {"type": "color3", "value": [1, 1, 1]}},
+      "passes": [{"name": "base", "color": "tint"}]})");
+  }
+
+  static std::string effect(const std::string& name, const std::string& ports) {
+    return R"({"isoshade": 1, "effect": ")" + name + R"(", "parameters": {
+      "map": {"type": "filename", "value": "a.png"}, "tiles": {"type": "float", "value": 1}},
+      "nodes": {"uv": {"type": "texcoord"}, "at": {"type": "multiply", "in1": "uv", "in2": "tiles"},
+        "picture": {"type": "image", "file": {"link": "map"}, "default": 0.25, "texcoord": "at", )" +
+           ports + R"(}},
+      "passes": [{"name": "base", "color": "picture"}]})";
+  }
+
+  std::string path(const std::string& name) const { return folder_.path() + "/" + name; }
+
+  std::optional<render::Plan> plan(const std::string& members, int size = 4) {
+    diagnostics_ = support::Diagnostics();
+    const auto document =
+        testing::document_of(testing::scene_text(members), diagnostics_, path("scene.json"));
+    scene_ = document ? scene::parse_scene(*document, diagnostics_) : std::nullopt;
+    if (!scene_) return std::nullopt;
+    options_.compiler.library = &library_;
+    options_.width = options_.height = size;
+    return render::plan_frame(*scene_, options_, diagnostics_);
+  }
+
+  /// A square that fills the view, with these parameters.
+  static std::string square(const std::string& effect, const std::string& parameters = "") {
+    return R"("camera": {"type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": 1},
+      "objects": {"square": {"mesh": "plane", "transform": {"rotate": [90, 0, 0]}, "effect": ")" +
+           effect + R"(.json", "parameters": {)" + parameters + "}}}";
+  }
+
+  std::vector<float> draw(const render::Plan& plan) {
+    backends::Image image;
+    render::DrawStats stats;
+    const auto backend = interpreter::create();
+    EXPECT_TRUE(render::render(plan, *backend, image, stats, diagnostics_)) << diagnostics_.text();
+    return image.rgba;
+  }
+
+  scene::TextureLevel picture() {
+    const auto image = scene::read_image(path("a.png"), diagnostics_);
+    return scene::linear_level(*image, false);
+  }
+
+  testing::Folder folder_;
+  check::Library library_;
+  render::Options options_;
+  support::Diagnostics diagnostics_;
+  std::optional<scene::Scene> scene_;
+};
+
+TEST_F(Textures, AreShownUprightFromTheUpperLeft) {
+  const auto made = plan(square("shown"));
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(draw(*made), picture().texels);
+}
+
+TEST_F(Textures, TrilinearShowsTheMipLevelOfThePixelsSize) {
+  const auto made = plan(square("small"), 2);
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(draw(*made), scene::half_size(picture()).texels);
+  const auto whole = plan(square("small"), 1);
+  ASSERT_TRUE(whole) << diagnostics_.text();
+  EXPECT_EQ(draw(*whole), scene::half_size(scene::half_size(picture())).texels);
+  const auto large = plan(square("small", R"("tiles": 0.25)"), 4);
+  ASSERT_TRUE(large) << diagnostics_.text();
+  // The last pixel is 3/8 of the way from the first texel to the next.
+  const std::vector<float> texels = picture().texels;
+  const double expected =
+      0.625 * (0.625 * texels[0] + 0.375 * texels[4]) + 0.375 * (0.625 * texels[16] + 0.375 * texels[20]);
+  EXPECT_NEAR(draw(*large)[60], expected, 1e-6);
+}
+
+TEST_F(Textures, WithoutAFileThereIsTheDefault) {
+  const auto made = plan(square("shown", R"("map": "")"));
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(draw(*made)[5], 0.25f);
+  EXPECT_TRUE(made->frame.texels.empty());
+  EXPECT_TRUE(made->frame.textures.empty());
+  EXPECT_EQ(made->stats.textures, 0);
+  EXPECT_EQ(render::text(made->stats).find("textures:"), std::string::npos);
+}
+
+TEST_F(Textures, WhatNoPassReadsIsNotLoaded) {
+  const auto made = plan(square("plain"));  // its default is missing
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_TRUE(made->frame.texels.empty());
+}
+
+TEST_F(Textures, AreStoredOnceWithMipsForAllWhereOneAsks) {
+  const auto made = plan(R"("objects": {"a": {"mesh": "box", "effect": "shown.json"},
+    "b": {"mesh": "box", "effect": "small.json", "parameters": {"map": "./a.png"}}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  EXPECT_EQ(made->stats.textures, 1);
+  EXPECT_EQ(made->stats.texels, 16 + 4 + 1);
+  EXPECT_EQ(made->frame.textures.size(), size_t{3} * word::stride);
+  EXPECT_EQ(made->frame.textures[word::smaller], 2);
+}
+
+TEST_F(Textures, GridsVaryThem) {
+  const auto made = plan(R"("objects": {"a": {"mesh": "box", "effect": "shown.json",
+    "repeat": [{"count": 2, "step": [0.1, 0, 0], "parameters": {"map": {"values": ["", "a.png"]}}}]}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  const auto image = [&](size_t draw) {
+    return made->frame
+        .objects[static_cast<size_t>(made->frame.draws[draw].object) + lower::object_word::parameters + 1];
+  };
+  EXPECT_EQ(image(0), -1.0f);
+  EXPECT_EQ(image(1), 0.0f);
+}
+
+TEST_F(Textures, ThatCannotBeReadAreReportedWhereTheyAreNamed) {
+  struct Case {
+    std::string parameters, message;
+  };
+  for (const Case& wrong : {Case{R"("map": "none.png")", "error[missing-file]"},
+                            {R"("map": "bad.png")", "error[bad-image]"},
+                            {R"("map": "shown.json")", "error[bad-image]"},
+                            {R"("map": ".")", "error[unreadable-file]"},
+                            {R"("map": "../x.png")", "error[outside-reference]"},
+                            {R"("map": "/etc/passwd")", "error[outside-reference]"},
+                            {R"("map": 3)", "error[wrong-type]"}}) {
+    EXPECT_FALSE(plan(square("shown", wrong.parameters))) << wrong.parameters;
+    const std::string text = diagnostics_.text();
+    EXPECT_NE(text.find(wrong.message), std::string::npos) << text;
+    EXPECT_NE(text.find("scene.json:"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace isoshade
