@@ -18,3 +18,20 @@ isoshade_test(pixel_derivatives_test
   LABEL accuracy
   TIMEOUT 300)
 target_compile_definitions(pixel_derivatives_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
+# On every backend. `stress_test --update` writes docs/stress.md.
+isoshade_test(stress_test
+  SOURCES
+    accuracy/stress_cases.cpp
+    accuracy/stress_test.cpp
+    accuracy/subject.cpp
+  LINKS isoshade_cpu isoshade_interpreter isoshade_reference nlohmann_json::nlohmann_json
+    $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL accuracy
+  TIMEOUT 300
+  DEVICES)
+target_compile_definitions(stress_test PRIVATE
+  ISOSHADE_ACCURACY_DATA="${CMAKE_CURRENT_SOURCE_DIR}/accuracy/data"
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
+  ISOSHADE_STRESS_PAGE="${PROJECT_SOURCE_DIR}/docs/stress.md"
+  $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
