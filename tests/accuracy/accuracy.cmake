@@ -22,7 +22,9 @@ target_compile_definitions(pixel_derivatives_test PRIVATE ISOSHADE_GRAPHS="${PRO
 # On every backend. `stress_test --update` writes docs/stress.md.
 isoshade_test(stress_test
   SOURCES
+    accuracy/brdf_test.cpp
     accuracy/stress_cases.cpp
+    accuracy/stress_properties_test.cpp
     accuracy/stress_test.cpp
     accuracy/subject.cpp
   LINKS isoshade_cpu isoshade_interpreter isoshade_reference nlohmann_json::nlohmann_json
