@@ -96,6 +96,14 @@ TEST(ReferenceBackend, DrawsShippedScenesAsTheOthersDoButForRounding) {
   }
 }
 
+TEST(ReferenceBackend, ShadesTheMaterialBallsAsTheOthersDoAtEveryPixel) {
+  const std::string path = equivalence::scene_path("material_balls");
+  const backends::Image exact = equivalence::draw(small_plan(path, true), *create());
+  const backends::Image rounded = equivalence::draw(small_plan(path, false), *interpreter::create());
+  for (size_t i = 0; i < exact.rgba.size(); ++i)
+    ASSERT_LE(std::abs(exact.rgba[i] - rounded.rgba[i]), 0x1p-10f * std::max(1.0f, exact.rgba[i])) << i / 4;
+}
+
 TEST(ReferenceBackend, RefusesLargeImages) {
   render::Plan plan = small_plan(equivalence::scene_path("borders"), true);
   plan.frame.width = max_size + 1;
