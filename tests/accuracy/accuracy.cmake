@@ -23,6 +23,7 @@ target_compile_definitions(pixel_derivatives_test PRIVATE ISOSHADE_GRAPHS="${PRO
 isoshade_test(stress_test
   SOURCES
     accuracy/brdf_test.cpp
+    accuracy/stress_brdf_test.cpp
     accuracy/stress_cases.cpp
     accuracy/stress_properties_test.cpp
     accuracy/stress_test.cpp
