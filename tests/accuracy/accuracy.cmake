@@ -38,3 +38,13 @@ target_compile_definitions(stress_test PRIVATE
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
   ISOSHADE_STRESS_PAGE="${PROJECT_SOURCE_DIR}/docs/stress.md"
   $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
+# With ISOSHADE_DATA in the environment; skipped without.
+isoshade_test(cycles_test
+  SOURCES accuracy/cycles_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(cycles_test PRIVATE
+  ISOSHADE_ACCURACY_GRAPHS="${CMAKE_CURRENT_SOURCE_DIR}/accuracy/graphs"
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

@@ -72,6 +72,31 @@ void expect_variants_within(std::string_view row, functions::Types<First, Rest..
   }
 #include "compiler/functions/functions.def"
 
+TEST(FunctionErrorIsWithinItsBound, AndTheBoundIsWhatUsersCountOn) {
+  EXPECT_EQ(rows::div_exact_row::bound, 0);
+  EXPECT_EQ(rows::sqrt_exact_row::bound, 0);
+  EXPECT_LE(rows::rsqrt_row::bound, 2);
+  EXPECT_LE(rows::exp2_row::bound, 1.5);
+  EXPECT_LE(rows::log2_row::bound, 1.5);
+  EXPECT_LE(rows::pow_row::bound, 4);
+  EXPECT_LE(rows::sin_row::bound, 2);
+  EXPECT_LE(rows::cos_row::bound, 2);
+  EXPECT_LE(rows::atan2_row::bound, 3);
+  EXPECT_LE(rows::srgb_encode_row::bound, 4);
+  EXPECT_LE(rows::srgb_decode_row::bound, 4);
+  const auto holds_over = [](const Range& range, double low, double high) {
+    EXPECT_LE(range.low, low);
+    EXPECT_GE(range.high, high);
+  };
+  holds_over(rows::exp2_row::domain()[0], -126, 127.999);
+  holds_over(rows::pow_row::domain()[0], 1e-6, 1e6);
+  holds_over(rows::pow_row::domain()[1], -8, 8);
+  holds_over(rows::sin_row::domain()[0], -8192, 8192);
+  holds_over(rows::cos_row::domain()[0], -8192, 8192);
+  holds_over(rows::srgb_encode_row::domain()[0], 0, 1);
+  holds_over(rows::srgb_decode_row::domain()[0], 0, 1);
+}
+
 /// The error over all floats from order(first) to order(last).
 template <class Row>
 Error measure_floats(int64_t first, int64_t last) {
