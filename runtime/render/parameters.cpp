@@ -145,17 +145,17 @@ std::string path_of(const Literal& literal, const support::Span& where) {
 }  // namespace
 
 bool ObjectParameters::resolve_image(const scene::Object& object, const driver::Image& image,
-                                     const FindTexture& find_texture) {
+                                     const scene::GltfMaterial* material, const FindTexture& find_texture) {
   const std::string& name = image.slot.parameter;
-  const auto find = [&](const std::string& path, const support::Span& where) {
-    return path.empty() ? std::optional(-1) : find_texture(path, image.slot, where);
+  const auto find = [&](const ImageSource& source) {
+    return source.path.empty() ? std::optional(-1) : find_texture(source, image.slot);
   };
   for (size_t axis = 0; axis < object.repeat.size() && !name.empty(); ++axis) {
     for (const scene::Variation& variation : object.repeat[axis].variations) {
       if (variation.name != name) continue;
       VaryingImage varying{axis, images_.size(), {}};
       for (const Literal& value : variation.values) {
-        const auto texture = find(path_of(value, variation.value_where), variation.value_where);
+        const auto texture = find({path_of(value, variation.value_where), nullptr, variation.value_where});
         if (!texture) return false;
         varying.textures.push_back(*texture);
       }
@@ -164,14 +164,16 @@ bool ObjectParameters::resolve_image(const scene::Object& object, const driver::
       return true;
     }
   }
-  std::string path = image.file;
-  support::Span where = image.where;
+  ImageSource source{image.file, nullptr, image.where};
+  if (material != nullptr && material->textures.contains(name)) {
+    const scene::GltfImage& own = material->textures.at(name);
+    source = {own.name, own.bytes, object.mesh_where};
+  }
   for (const scene::Parameter& parameter : object.parameters) {
     if (name.empty() || parameter.name != name) continue;
-    where = parameter.value_where;
-    path = path_of(parameter.value, where);
+    source = {path_of(parameter.value, parameter.value_where), nullptr, parameter.value_where};
   }
-  const auto texture = find(path, where);
+  const auto texture = find(source);
   images_.push_back(texture.value_or(-1));
   return texture.has_value();
 }
@@ -189,6 +191,9 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
     store_factors(effect, "base_color", material->base_color, result.common_);
     store_factors(effect, "metallic", std::array{material->metallic}, result.common_);
     store_factors(effect, "roughness", std::array{material->roughness}, result.common_);
+    store_factors(effect, "emissive_color", material->emissive_color, result.common_);
+    store_factors(effect, "normal_scale", std::array{material->normal_scale}, result.common_);
+    store_factors(effect, "occlusion_strength", std::array{material->occlusion_strength}, result.common_);
   }
 
   for (const scene::Parameter& parameter : object.parameters) {
@@ -221,7 +226,7 @@ std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& o
   }
   if (diagnostics.error_count() != errors_before) return std::nullopt;
   for (const driver::Image& image : effect.images)
-    if (!result.resolve_image(object, image, find_texture)) return std::nullopt;
+    if (!result.resolve_image(object, image, material, find_texture)) return std::nullopt;
   return result;
 }
 

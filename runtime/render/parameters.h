@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/driver/driver.h"
+#include "runtime/render/textures.h"
 #include "runtime/scene/gltf.h"
 #include "runtime/scene/scene.h"
 
@@ -16,14 +17,14 @@ namespace isoshade::render {
 
 /// What an object gives to the parameters of its effect, found once for all of its copies.
 /// The number of the texture that is to fill an image of the effect; nothing where there is none, which is reported.
-using FindTexture = std::function<std::optional<int>(const std::string& path, const lower::ImageSlot& slot,
-                                                     const support::Span& where)>;
+using FindTexture =
+    std::function<std::optional<int>(const ImageSource& source, const lower::ImageSlot& slot)>;
 
 class ObjectParameters {
  public:
   /// Reports parameters that the effect has not, and values that do not fit their type.
   /// What neither the object gives nor a variation is the material's, if there is one and the effect calls it
-  /// base_color (of 3 or 4 components), metallic or roughness; else the effect's own. Paths that the object gives
+  /// base_color (of 3 or 4 components), metallic, roughness, or as another of its members or textures; else the effect's own. Paths that the object gives
   /// count from the scene's folder. Asks for no texture of what no pass reads.
   static std::optional<ObjectParameters> resolve(const scene::Object& object, const driver::Effect& effect,
                                                  const scene::GltfMaterial* material,
@@ -51,7 +52,7 @@ class ObjectParameters {
     std::vector<int> textures;
   };
   bool resolve_image(const scene::Object& object, const driver::Image& image,
-                     const FindTexture& find_texture);
+                     const scene::GltfMaterial* material, const FindTexture& find_texture);
 
   std::vector<float> common_;  ///< of all copies
   std::vector<int> images_;    ///< of all copies: the number of each image's texture, or -1

@@ -181,10 +181,11 @@ bool Planner::make_objects() {
   Count triangles{"triangles", max_drawn_triangles};
   Count words{"words of object records", max_object_words};
   bool good = true;
-  const FindTexture find_texture = [&](const std::string& path, const lower::ImageSlot& slot,
-                                       const support::Span& where) -> std::optional<int> {
-    if (!good || !may_read(path, where)) return std::nullopt;
-    return textures_.find(path, slot.decoding, slot.mips, where, diagnostics_);
+  const FindTexture find_texture = [&](const ImageSource& source,
+                                       const lower::ImageSlot& slot) -> std::optional<int> {
+    // What has no file of its own was read with that which has it.
+    if (!good || (source.bytes == nullptr && !may_read(source.path, source.where))) return std::nullopt;
+    return textures_.find(source, slot.decoding, slot.mips, diagnostics_);
   };
   for (size_t o = 0; o < scene_.objects.size(); ++o) {
     const Object& object = scene_.objects[o];

@@ -41,8 +41,9 @@ bool TextureStore::fits(int64_t texels, const std::string& path, const support::
   return false;
 }
 
-std::optional<int> TextureStore::find(const std::string& path, lower::Decoding decoding, bool mips,
-                                      const support::Span& where, support::Diagnostics& diagnostics) {
+std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding decoding, bool mips,
+                                      support::Diagnostics& diagnostics) {
+  const auto& [path, bytes, where] = source;
   const std::string canonical = graph::canonical_path(path);
   if (const auto read = has_bytes_.find(canonical); read != has_bytes_.end()) {
     const auto known = numbers_.find({canonical, is_srgb(decoding, read->second)});
@@ -58,7 +59,9 @@ std::optional<int> TextureStore::find(const std::string& path, lower::Decoding d
       return known->second;
     }
   }
-  const std::optional<scene::FloatImage> image = scene::read_image(path, diagnostics, where);
+  const std::optional<scene::FloatImage> image = bytes != nullptr
+                                                     ? scene::read_image(path, *bytes, diagnostics, where)
+                                                     : scene::read_image(path, diagnostics, where);
   if (!image || !fits(texel_count(image->width, image->height, mips), path, where, diagnostics))
     return std::nullopt;
   has_bytes_[canonical] = image->bytes;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,12 +19,19 @@ namespace isoshade::render {
 inline constexpr int64_t max_texels = 96'000'000;  ///< 16 bytes each, of all textures with their mip levels
 inline constexpr size_t max_textures = 4096;
 
+/// Where an image comes from.
+struct ImageSource {
+  std::string path;                          ///< of its file, or what else it is called
+  std::shared_ptr<const std::string> bytes;  ///< of the file, if it is none on the disk
+  support::Span where;                       ///< what names it
+};
+
 class TextureStore {
  public:
   /// The number of the texture; it is `mips` for all who ask for it, if it is for one. Reports what is no image, or too
   /// large.
-  std::optional<int> find(const std::string& path, lower::Decoding decoding, bool mips,
-                          const support::Span& where, support::Diagnostics& diagnostics);
+  std::optional<int> find(const ImageSource& source, lower::Decoding decoding, bool mips,
+                          support::Diagnostics& diagnostics);
 
   /// Fills the frame's `texels` and `textures`, after the last find().
   void store(backends::Frame& frame);

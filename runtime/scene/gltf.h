@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -16,16 +18,30 @@ inline constexpr size_t max_gltf_bytes = size_t{256} << 20;  ///< of the file, a
 inline constexpr int64_t max_gltf_vertices = 2'000'000;      ///< of all its meshes as they are placed
 inline constexpr int64_t max_gltf_triangles = 4'000'000;
 
-/// The factors of glTF's metallic-roughness model; textures are not read.
+/// An image of a glTF file, as it is encoded.
+struct GltfImage {
+  std::string name;  ///< the file and which image of it: nothing else is called so
+  std::shared_ptr<const std::string> bytes;
+};
+
+/// glTF's metallic-roughness model.
 struct GltfMaterial {
   std::array<float, 4> base_color{1, 1, 1, 1};  ///< linear
   float metallic = 1;
   float roughness = 1;  ///< alpha: the square of what the file says, which is perceptual
+  std::array<float, 3> emissive_color{0, 0, 0};
+  float normal_scale = 1;
+  float occlusion_strength = 1;
+  /// By the parameter that takes it: base_color_texture, metallic_roughness_texture (green: perceptual roughness, blue:
+  /// metallic), normal_texture, occlusion_texture, emissive_texture. Those of other than the first texture coordinates
+  /// are left out.
+  std::map<std::string, GltfImage> textures;
 };
 
 struct GltfModel {
   Mesh mesh;
   std::optional<GltfMaterial> material;  ///< if all triangles have one
+  int material_index = -1;               ///< in the file; -1 if there is none
 };
 
 /// The triangles of the file's scene (its default one, else its first, else all nodes) as one mesh, in the space

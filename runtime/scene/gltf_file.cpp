@@ -87,9 +87,13 @@ struct Files {
   }
 };
 
-/// Textures are not read yet, and so not decoded.
-bool skip_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                void*) {
+/// Keeps an image as it is: only what a material needs is decoded. Of one in a buffer nothing was checked yet, so it is
+/// left for read_textures.
+bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void* kept) {
+  if (image->bufferView < 0 && size > 0)
+    (*static_cast<ImageBytes*>(kept))[index] =
+        std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes), static_cast<size_t>(size));
   return true;
 }
 
@@ -144,13 +148,14 @@ bool check_json(const graph::Document& document, Refusal& refusal) {
 }
 
 /// tinygltf may throw: it looks into vectors with at().
-bool load_model(const std::string& bytes, Files& files, tinygltf::Model& model, Refusal& refusal) {
+bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tinygltf::Model& model,
+                Refusal& refusal) {
   std::string errors, warnings;
   bool good = false;
   try {
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({Files::exists, Files::expand, Files::read, Files::write, &files});
-    loader.SetImageLoader(skip_image, nullptr);
+    loader.SetImageLoader(keep_image, &images);
     const auto size = static_cast<unsigned int>(bytes.size());
     good = is_binary(bytes)
                ? loader.LoadBinaryFromMemory(&model, &errors, &warnings,
@@ -189,8 +194,14 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
     if (!document) return std::nullopt;
     const lanes::FpGuard guard;
     tinygltf::Model model;
-    if (check_json(*document, refusal) && load_model(*bytes, files, model, refusal))
+    ImageBytes images;
+    if (check_json(*document, refusal) && load_model(*bytes, files, images, model, refusal))
       result = build_gltf(model, refusal);
+    if (result && result->material_index >= 0) {
+      const tinygltf::Material& material = model.materials[static_cast<size_t>(result->material_index)];
+      result->material->textures =
+          read_textures(model, material, graph::canonical_path(path), images, refusal);
+    }
   }
   if (!refusal.refused()) return result;
   if (!files.outside.empty()) {

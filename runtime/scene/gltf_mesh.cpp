@@ -320,6 +320,12 @@ std::optional<GltfMaterial> Builder::material() const {
   material.metallic = number(factors.metallicFactor);
   const float perceptual = number(factors.roughnessFactor);
   material.roughness = perceptual * perceptual;
+  const tinygltf::Material& all = model_.materials[static_cast<size_t>(*material_)];
+  for (size_t i = 0; i < 3 && i < all.emissiveFactor.size(); ++i)
+    material.emissive_color[i] = number(all.emissiveFactor[i]);
+  material.occlusion_strength = number(all.occlusionTexture.strength);
+  const double scale = all.normalTexture.scale;
+  if (std::abs(scale) <= 1e6) material.normal_scale = canonical(static_cast<float>(scale));
   return material;
 }
 
@@ -336,7 +342,8 @@ std::optional<GltfModel> Builder::build() {
   if (mesh_.indices.empty()) refusal_.refuse("it has no triangles");
   if (refusal_.refused()) return std::nullopt;
   finish();
-  return GltfModel{std::move(mesh_), material()};
+  const auto found = material();
+  return GltfModel{std::move(mesh_), found, found ? *material_ : -1};
 }
 
 }  // namespace

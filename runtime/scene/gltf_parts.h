@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tiny_gltf.h>
@@ -46,6 +48,13 @@ int components_of(const tinygltf::Model& model, int accessor);
 
 /// The triangles of the model's scene. Computed under lanes::FpGuard, which the caller holds.
 std::optional<GltfModel> build_gltf(const tinygltf::Model& model, Refusal& refusal);
+
+/// The bytes of images that have files of their own or data URIs, by their index.
+using ImageBytes = std::map<int, std::shared_ptr<const std::string>>;
+/// The textures of a material, with names that begin with `file`. Refuses what leads nowhere.
+std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
+                                               const tinygltf::Material& material, const std::string& file,
+                                               const ImageBytes& images, Refusal& refusal);
 
 /// Gives the vertices from `first` on tangents along u, from their positions, normals and texture coordinates;
 /// triangles from index `first_index` on point to them. A vertex without a direction of u gets any that is

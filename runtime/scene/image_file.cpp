@@ -82,11 +82,15 @@ std::string refuse_size(int64_t width, int64_t height) {
 std::optional<FloatImage> read_image(const std::string& path, Diagnostics& diagnostics,
                                      const support::Span& where) {
   const std::optional<std::string> bytes = read_bytes(path, diagnostics, where);
-  if (!bytes) return std::nullopt;
-  Decoded decoded = decode_image(*bytes);
+  return bytes ? read_image(path, *bytes, diagnostics, where) : std::nullopt;
+}
+
+std::optional<FloatImage> read_image(const std::string& name, std::string_view bytes,
+                                     Diagnostics& diagnostics, const support::Span& where) {
+  Decoded decoded = decode_image(bytes);
   if (!decoded.image) {
     diagnostics.report(Id::bad_image, where,
-                       "cannot read the image " + quote(path) + ": " + support::visible(decoded.reason));
+                       "cannot read the image " + quote(name) + ": " + support::visible(decoded.reason));
   }
   return std::move(decoded.image);
 }

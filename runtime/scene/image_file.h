@@ -61,5 +61,8 @@ Decoded decode_image(std::string_view bytes);
 /// Reads an image file. Reports what is no such file, is damaged or too large, at `where`.
 std::optional<FloatImage> read_image(const std::string& path, support::Diagnostics& diagnostics,
                                      const support::Span& where = {});
+/// The same of the bytes of a file that messages call `name`.
+std::optional<FloatImage> read_image(const std::string& name, std::string_view bytes,
+                                     support::Diagnostics& diagnostics, const support::Span& where);
 
 }  // namespace isoshade::scene

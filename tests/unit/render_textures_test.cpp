@@ -103,6 +103,69 @@ TEST_F(Textures, TrilinearShowsTheMipLevelOfThePixelsSize) {
   EXPECT_NEAR(draw(*large)[60], expected, 1e-6);
 }
 
+TEST_F(Textures, DerivativesAreTheSlopesBetweenTexels) {
+  for (const char* filter : {"closest", "linear", "trilinear"}) {
+    folder_.write("slope.json", R"({"isoshade": 1, "effect": "slope",
+      "nodes": {"uv": {"type": "texcoord"}, "at": {"type": "multiply", "in1": "uv", "in2": 0.25},
+        "picture": {"type": "image", "file": "a.png", "texcoord": "at", "colorspace": "linear",
+                    "uaddressmode": "clamp", "vaddressmode": "clamp", "filtertype": ")" +
+                                    std::string(filter) + R"("},
+        "x": {"type": "ddx", "in": "picture"}, "y": {"type": "ddy", "in": "picture"},
+        "both": {"type": "combine3", "in1": "x.r", "in2": "y.r", "to": "color3"}},
+      "passes": [{"name": "base", "color": "both"}]})");
+    const auto made = plan(square("slope"));
+    ASSERT_TRUE(made) << diagnostics_.text();
+    const std::vector<float> texels = picture().texels, slopes = draw(*made);
+    // A pixel is a quarter of a texel wide. In the upper row and left column the next texel is that beyond the edge.
+    const bool flat = filter == std::string("closest");
+    const double across = flat ? 0 : 0.25 * (texels[4] - texels[0]);
+    const double down = flat ? 0 : 0.25 * (texels[16] - texels[0]);
+    EXPECT_NEAR(slopes[4 * 3], across, 1e-6) << filter;
+    EXPECT_NEAR(slopes[4 * 3 + 1], 0, 1e-6) << filter;
+    EXPECT_NEAR(slopes[4 * 12], 0, 1e-6) << filter;
+    EXPECT_NEAR(slopes[4 * 12 + 1], down, 1e-6) << filter;
+  }
+}
+
+TEST_F(Textures, OfAGltfAreThoseOfItsMaterial) {
+  std::string png = scene::png(1, 1, std::vector<uint8_t>{51, 102, 255, 255});
+  const std::string data = testing::square_data() + png;
+  std::string json = testing::square_json();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const size_t at = json.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    json.replace(at, from.size(), to);
+  };
+  replace(R"("roughnessFactor": 0.5}})",
+          R"("roughnessFactor": 0.5, "baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}],
+    "images": [{"mimeType": "image/png", "bufferView": 2})");
+  replace(R"("byteLength": 12})", R"("byteLength": 12}, {"buffer": 0, "byteOffset": 156, "byteLength": )" +
+                                      std::to_string(png.size()) + "}");
+  replace(R"("byteLength": 156})", R"("byteLength": )" + std::to_string(data.size()) + "}");
+  folder_.write("m.glb", testing::glb(json, data + std::string((4 - data.size() % 4) % 4, '\0')));
+  folder_.write("pbr.json", R"({"isoshade": 1, "effect": "pbr", "parameters": {
+    "base_color": {"type": "color3", "value": [1, 1, 1]}, "base_color_texture": {"type": "filename", "value": ""}},
+    "nodes": {"map": {"type": "image", "file": {"link": "base_color_texture"}, "colorspace": "linear"},
+      "color": {"type": "multiply", "in1": "base_color", "in2": "map"}},
+    "passes": [{"name": "base", "color": "color", "cull": "none"}]})");
+  const std::string members =
+      R"("camera": {"type": "orthographic", "position": [0.5, 0.5, 5], "target": [0.5, 0.5, 0],
+    "height": 1}, "objects": {"m": {"mesh": {"type": "gltf", "file": "m.glb"}, "effect": "pbr.json"PARAMETERS}})";
+  const auto with = [&](const std::string& parameters) {
+    std::string text = members;
+    return text.replace(text.find("PARAMETERS"), 10, parameters);
+  };
+  const auto made = plan(with(""), 2);
+  ASSERT_TRUE(made) << diagnostics_.text();
+  const std::vector<float> shown = draw(*made);
+  EXPECT_EQ(shown[0], 0.5f * 0.2f);
+  EXPECT_EQ(shown[1], 0.25f * 0.4f);
+  // What the object says goes before it.
+  const auto other = plan(with(R"(, "parameters": {"base_color_texture": "a.png"})"), 2);
+  ASSERT_TRUE(other) << diagnostics_.text();
+  EXPECT_NE(draw(*other)[0], shown[0]);
+}
+
 TEST_F(Textures, WithoutAFileThereIsTheDefault) {
   const auto made = plan(square("shown", R"("map": "")"));
   ASSERT_TRUE(made) << diagnostics_.text();
