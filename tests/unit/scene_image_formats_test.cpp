@@ -76,6 +76,11 @@ TEST(ImageFormats, SidesAreCheckedBeforeAnythingIsUnpacked) {
   EXPECT_FALSE(scene::decode_image("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n").image);
 }
 
+TEST(ImageFormats, DataAreNotUnpackedBeyondTheRows) {
+  EXPECT_NE(scene::decode_image(png_file(1, 1, 8, 0, {std::string(60'000, '\0')})).reason.find("unpack"),
+            std::string::npos);
+}
+
 TEST(ImageFormats, WhatIsNoneOfThemIsRefused) {
   for (const char* bytes : {"", "BM", "GIF89a\1\0\1\0", "P6 1 1 255 abc", "\x89PNG", "{}", "\xff\xd8\xff"})
     EXPECT_FALSE(scene::decode_image(bytes).image) << bytes;
