@@ -47,7 +47,7 @@ void finish(Program& program, uint32_t kernel, const Options& options) {
     options.dump(pass, [&] { return dump_module(after); });
   };
   if (options.dump) dump("lower", program.module);
-  passes::run(passes::optimisations(), program.module, entries,
+  passes::run(passes::optimisations(), program.module, entries, program.tier,
               options.dump ? passes::Dump(dump) : passes::Dump());
   program.entry = entries[0];
 }
@@ -131,7 +131,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
 
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                       const Options& options) {
-  Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}};
+  Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}, options.tier};
   program.module = lower::lower(typed, {pass});
   program.module.buffers = lower::frame_module().buffers;
   const uint32_t kernel =
@@ -174,7 +174,8 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
   module.buffers = lower::frame_module().buffers;
   const uint32_t function = module.find(lower::entry_name(*typed));
   support::check(function != ir::none, "lowering made no function");
-  Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {}};
+  Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {},
+                  options.tier};
   finish(program, lower::add_eval_kernel(program.module, function), options);
   for (const graph::Input& input : typed->graph.inputs) {
     program.inputs.push_back(field(input.name, input.type));
@@ -196,8 +197,8 @@ const Program& depth_program() {
   return program;
 }
 
-Program finish_eval(ir::Module module, uint32_t function, std::string name) {
-  Program program{lower::Stage::eval, std::move(name), "", std::move(module), 0, {}, {}};
+Program finish_eval(ir::Module module, uint32_t function, std::string name, functions::Tier tier) {
+  Program program{lower::Stage::eval, std::move(name), "", std::move(module), 0, {}, {}, tier};
   for (const ir::Parameter& parameter : program.module.functions[function].parameters)
     program.inputs.push_back(field(parameter.name, graph_type(parameter.type)));
   for (const ir::Result& result : program.module.functions[function].results)

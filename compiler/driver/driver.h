@@ -23,10 +23,13 @@ using Dump = std::function<void(std::string_view stage, const std::function<std:
 struct Options {
   check::Library* library = nullptr;  ///< where sub-graphs come from; required
   lower::LightKinds lights;           ///< the kinds that the scene has
-  Dump dump;                          ///< empty: nothing is dumped
   /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and no optimisation;
   /// only ddx and ddy are gone.
   bool reference = false;
+  /// Of functions and of what pixels compute. Vertices are always transformed by the default's functions, so that the
+  /// same pixels are visible in every tier.
+  functions::Tier tier = functions::Tier::standard;
+  Dump dump;  ///< empty: nothing is dumped
 };
 
 /// An image that an effect reads.
@@ -73,6 +76,7 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
 const Program& depth_program();
 
 /// An eval program of a function of a module that frame_module() began.
-Program finish_eval(ir::Module module, uint32_t function, std::string name);
+Program finish_eval(ir::Module module, uint32_t function, std::string name,
+                    functions::Tier tier = functions::Tier::standard);
 
 }  // namespace isoshade::driver

@@ -53,27 +53,19 @@ class Counter {
   const ir::Module& module_;
 };
 
-struct Accuracy {
-  std::string_view row;
-  double ulp;
-  std::string_view unit;
-};
-
-constexpr Accuracy accuracies[] = {
-#define FUNCTION(name, signature, ulp, domain, reference, unit) {#name, ulp, #unit},
-#include "compiler/functions/functions.def"
-#undef FUNCTION
-};
-
-std::string error_of_row(std::string_view row) {
-  const auto* found = std::ranges::find(accuracies, row, &Accuracy::row);
-  support::check(found != std::end(accuracies), row);
-  return fmt::format("{:g} ULP{}", found->ulp, found->unit == "result" ? "" : " of its terms");
+std::string error_of_row(std::string_view row, functions::Tier tier) {
+  const auto found = std::ranges::find(functions::variants(), row, &functions::Variant::row);
+  support::check(found != functions::variants().end(), row);
+  const functions::Accuracy& accuracy = found->accuracy[static_cast<size_t>(tier)];
+  return fmt::format("{:g} ULP{}", accuracy.ulp,
+                     accuracy.unit == "result"         ? ""
+                     : accuracy.unit == "ones(result)" ? " of 1"
+                                                       : " of its terms");
 }
 
 }  // namespace
 
-NodeCost cost_of(const nodes::Example& example) {
+NodeCost cost_of(const nodes::Example& example, functions::Tier tier) {
   NodeCost cost;
   ir::Module module = lowered(example);
   std::set<std::string> calls;
@@ -87,20 +79,20 @@ NodeCost cost_of(const nodes::Example& example) {
   }
   cost.calls.assign(calls.begin(), calls.end());
   passes::Entries entries{entry};
-  passes::run(passes::optimisations(), module, entries);
+  passes::run(passes::optimisations(), module, entries, tier);
   cost.operations = Counter(module).of_function(entries[0]);
   return cost;
 }
 
-std::string error_of(const NodeCost& cost) {
+std::string error_of(const NodeCost& cost, functions::Tier tier) {
   if (cost.calls.empty()) {
     if (cost.own_operations == 0) return "exact";
     return cost.own_operations == 1 ? "0 ULP" : fmt::format("0 ULP in each of {} steps", cost.own_operations);
   }
-  if (cost.calls.size() == 1 && cost.own_operations == 0) return error_of_row(cost.calls[0]);
+  if (cost.calls.size() == 1 && cost.own_operations == 0) return error_of_row(cost.calls[0], tier);
   std::string text;
   for (const std::string& row : cost.calls)
-    text += (text.empty() ? "" : ", ") + fmt::format("{} in `{}`", error_of_row(row), row);
+    text += (text.empty() ? "" : ", ") + fmt::format("{} in `{}`", error_of_row(row, tier), row);
   return text + (cost.own_operations > 0 ? ", else 0 in each step" : "");
 }
 

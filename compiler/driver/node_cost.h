@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/functions/tier.h"
 #include "compiler/nodes/example.h"
 
 namespace isoshade::driver {
@@ -18,9 +19,9 @@ struct NodeCost {
 };
 
 /// The row must not belong to effects.
-NodeCost cost_of(const nodes::Example& example);
+NodeCost cost_of(const nodes::Example& example, functions::Tier tier);
 
 /// "0 ULP", "1.75 ULP", or what it is made of.
-std::string error_of(const NodeCost& cost);
+std::string error_of(const NodeCost& cost, functions::Tier tier);
 
 }  // namespace isoshade::driver

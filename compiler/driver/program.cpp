@@ -14,7 +14,7 @@ std::string glsl_of(const Program& program, Division division, emit::EvalIn eval
     return emit::glsl_stage(program.module, program.entry, program.stage, heading, eval_in);
   ir::Module module = program.module;
   passes::Entries entries{program.entry};
-  passes::run(passes::division_lowering(), module, entries);
+  passes::run(passes::division_lowering(), module, entries, program.tier);
   return emit::glsl_stage(module, entries[0], program.stage, heading, eval_in);
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/functions/tier.h"
 #include "compiler/ir/module.h"
 #include "compiler/lower/stages.h"
 
@@ -33,6 +34,7 @@ struct Program {
   uint32_t entry = 0;          ///< the kernel's index in the module
   std::vector<Field> inputs;   ///< eval: input columns
   std::vector<Field> results;  ///< eval: output columns
+  functions::Tier tier = functions::Tier::standard;
 };
 
 /// How `/` and `sqrt` are computed: by the device, or by Newton steps and an exact integer residual.

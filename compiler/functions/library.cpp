@@ -10,6 +10,7 @@
 #include "compiler/functions/all.h"
 #include "compiler/functions/calls.h"
 #include "compiler/functions/signatures.h"
+#include "compiler/functions/tiers.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::functions {
@@ -19,14 +20,29 @@ namespace {
 using namespace traced;
 
 // The body of a row, as a type: its `run` is the template, never the recording overload of the same name.
-#define FUNCTION(name, signature, ulp, domain, reference, unit) \
-  struct Body_##name {                                          \
-    template <class... T>                                       \
-    static auto run(T... arguments) {                           \
-      return functions::name(arguments...);                     \
-    }                                                           \
+#define FUNCTION(name, signature, ulp_, domain, reference, unit_) \
+  struct Body_##name {                                            \
+    using Variants = Signatures<Float>::signature;                \
+    static constexpr bool on_floats = #signature[0] == 'g';       \
+    static constexpr Accuracy accuracy{ulp_, #unit_};             \
+    template <class... T>                                         \
+    static auto run(T... arguments) {                             \
+      return functions::name(arguments...);                       \
+    }                                                             \
   };
 #include "compiler/functions/functions.def"
+
+// The body of a row in a tier.
+#define TIER(tier_, name, ulp_, domain, unit_)        \
+  struct Body_##tier_##_##name : Body_##name {        \
+    static constexpr Tier tier = Tier::tier_;         \
+    static constexpr Accuracy accuracy{ulp_, #unit_}; \
+    template <class... T>                             \
+    static auto run(T... arguments) {                 \
+      return tier_::name(arguments...);               \
+    }                                                 \
+  };
+#include "compiler/functions/tiers.def"
 
 template <class Body, class... T>
 void build(ir::Builder& b) {
@@ -66,7 +82,8 @@ void add_variant(std::vector<Variant>& out, std::string_view row, Types<T...>) {
   (Flat<T>::types(variant.parameters), ...);
   Flat<decltype(Body::run(std::declval<T>()...))>::types(variant.results);
   variant.name = variant_name<T...>(row);
-  variant.build = &build<Body, T...>;
+  variant.bodies.fill(&build<Body, T...>);
+  variant.accuracy.fill(Body::accuracy);
   out.push_back(std::move(variant));
 }
 
@@ -75,14 +92,39 @@ void add_row(std::vector<Variant>& out, std::string_view row, Types<Variants...>
   (add_variant<Body>(out, row, Variants{}), ...);
 }
 
+template <class Body, class... T>
+void set_body(Variant& variant, Types<T...>) {
+  variant.bodies[static_cast<size_t>(Body::tier)] = &build<Body, T...>;
+}
+
+/// Wider variants of rows on floats call the row for each component, and so follow its tier.
+template <class Body, class First, class... Rest>
+void add_tier(std::vector<Variant>& table, std::string_view row, Types<First, Rest...>) {
+  auto variant = std::ranges::find(table, row, &Variant::row);
+  support::check(variant != table.end(), row);
+  for (auto& wider : std::ranges::subrange(variant, variant + 1 + sizeof...(Rest)))
+    wider.accuracy[static_cast<size_t>(Body::tier)] = Body::accuracy;
+  set_body<Body>(*variant, First{});
+  if constexpr (!Body::on_floats) (set_body<Body>(*++variant, Rest{}), ...);
+}
+
+void set_accuracy(std::vector<Variant>& table, std::string_view row, Tier tier, const Accuracy& accuracy) {
+  for (Variant& variant : table)
+    if (variant.row == row) variant.accuracy[static_cast<size_t>(tier)] = accuracy;
+}
+
 }  // namespace
 
 const std::vector<Variant>& variants() {
   static const std::vector<Variant> table = [] {
     std::vector<Variant> rows;
 #define FUNCTION(name, signature, ulp, domain, reference, unit) \
-  add_row<Body_##name>(rows, #name, Signatures<Float>::signature{});
+  add_row<Body_##name>(rows, #name, Body_##name::Variants{});
 #include "compiler/functions/functions.def"
+#define TIER(tier, name, ulp, domain, unit) \
+  add_tier<Body_##tier##_##name>(rows, #name, Body_##name::Variants{});
+#define FOLLOWS(tier, name, ulp, domain, unit) set_accuracy(rows, #name, Tier::tier, {ulp, #unit});
+#include "compiler/functions/tiers.def"
     return rows;
   }();
   return table;
@@ -131,13 +173,13 @@ const Variant& variant_of(const ir::Function& declaration) {
   support::bug("a declaration that the library does not have: " + declaration.name);
 }
 
-void expand(ir::Module& module) {
+void expand(ir::Module& module, Tier tier) {
   // Bodies declare further functions at the end of the list.
   for (uint32_t i = 0; i < module.functions.size(); ++i) {
     if (!module.functions[i].is_declaration()) continue;
     const Variant& variant = variant_of(module.functions[i]);
     ir::Builder builder(module, i);
-    variant.build(builder);
+    variant.body(tier)(builder);
   }
 }
 

@@ -111,13 +111,14 @@ std::string change_name(const Function& f, const Marks& parameters, const Marks&
   return f.name + "_change" + (all ? "" : "_of" + of) + (all_results ? "" : "_to" + to);
 }
 
-/// The body of a library function is made for this alone: its declaration stays one.
+/// The body of a library function is made for this alone: its declaration stays one. It is the default body in every
+/// tier, since steps that a cheaper one leaves out may be what carries the slope; what it calls follows the tier.
 Function Differentiation::with_body(uint32_t function) {
   const Function declaration = module_.functions[function];
   if (!declaration.is_declaration()) return declaration;
   {
     Builder builder(module_, function);
-    functions::variant_of(declaration).build(builder);
+    functions::variant_of(declaration).body(functions::Tier::standard)(builder);
   }
   return std::exchange(module_.functions[function], declaration);
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "compiler/functions/library.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/ir/evaluate.h"
 #include "compiler/ir/interpreter.h"
@@ -28,15 +29,15 @@ constexpr uint64_t steps_per_call = 1'000'000;
 // where bodies must be made first, in a copy that has them all.
 class CallEvaluator {
  public:
-  CallEvaluator(const Module& module, Expand expand) : module_(module), expand_(expand) {}
+  CallEvaluator(const Module& module, std::optional<functions::Tier> tier) : module_(module), tier_(tier) {}
 
   /// False if the call must stay.
   bool evaluate(uint32_t callee, std::span<const uint32_t> arguments, std::span<uint32_t> results) {
-    if (budget_ == 0 || (module_.functions[callee].is_declaration() && expand_ == nullptr)) return false;
+    if (budget_ == 0 || (module_.functions[callee].is_declaration() && !tier_)) return false;
     if (!interpreter_) {
-      if (expand_ != nullptr) {
+      if (tier_) {
         expanded_ = module_;
-        expand_(expanded_);
+        functions::expand(expanded_, *tier_);
       }
       interpreter_.emplace(executable(), Preconditions::report);
     }
@@ -50,7 +51,7 @@ class CallEvaluator {
   }
 
  private:
-  const Module& executable() const { return expand_ != nullptr ? expanded_ : module_; }
+  const Module& executable() const { return tier_ ? expanded_ : module_; }
 
   // Whether a function reaches no declaration and no buffer.
   bool runnable(uint32_t function) {
@@ -70,7 +71,7 @@ class CallEvaluator {
   }
 
   const Module& module_;
-  Expand expand_;
+  std::optional<functions::Tier> tier_;
   Module expanded_;
   std::optional<Interpreter> interpreter_;
   std::vector<std::optional<bool>> runnable_;  ///< by function
@@ -282,16 +283,16 @@ class Folder {
 
 }  // namespace
 
-void fold(ir::Module& module, Expand expand, size_t first) {
+void fold(ir::Module& module, std::optional<functions::Tier> tier, size_t first) {
   const lanes::FpGuard guard;
   const auto& functions = module.functions;
   if (std::none_of(functions.begin(), functions.end(), [](const Function& f) { return f.is_declaration(); }))
-    expand = nullptr;
-  CallEvaluator calls(module, expand);
+    tier.reset();
+  CallEvaluator calls(module, tier);
   for (size_t i = first; i < module.functions.size(); ++i) {
     Function& function = module.functions[i];
     if (function.is_declaration()) continue;
-    if (expand == nullptr) {
+    if (!tier) {
       Folder(function, calls).run();
       continue;
     }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
+#include "compiler/functions/tier.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::passes {
-
-/// Gives every declaration of a module its body; functions may be appended, the others keep their indices.
-/// Null: calls of declarations are not folded.
-using Expand = void (*)(ir::Module&);
 
 /// Replaces what is known before run time:
 /// - ops and calls on constants, by the interpreter (calls that read buffers or take very long remain), but
@@ -21,8 +20,9 @@ using Expand = void (*)(ir::Module&);
 /// - a branch whose condition is constant by its side; results that both sides yield alike; a loop that runs
 /// never
 ///   or once by its initial values or its body.
-/// In the functions from index `first` on.
+/// In the functions from index `first` on. Calls of library functions that have no body yet are evaluated with those
+/// of the tier; without one they stay.
 /// Needs: a valid module. Leaves: the replaced instructions in no block (renumber drops them).
-void fold(ir::Module& module, Expand expand = nullptr, size_t first = 0);
+void fold(ir::Module& module, std::optional<functions::Tier> tier = {}, size_t first = 0);
 
 }  // namespace isoshade::passes

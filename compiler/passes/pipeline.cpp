@@ -20,14 +20,17 @@ namespace isoshade::passes {
 
 namespace {
 
-void run_derivatives(ir::Module& m, Entries&) { derivatives(m); }
-void run_renumber(ir::Module& m, Entries&) { renumber(m); }
-void run_fold(ir::Module& m, Entries&) { fold(m, functions::expand); }
-void run_cse(ir::Module& m, Entries&) { cse(m); }
-void run_expand(ir::Module& m, Entries&) { functions::expand(m); }
-void run_specialize(ir::Module& m, Entries&) { specialize(m); }
-void run_hide(ir::Module& m, Entries& entries) { hide_foldables(m, entries); }
-void run_exact_division(ir::Module& m, Entries&) { exact_division(m); }
+using functions::Tier;
+
+void run_derivatives(ir::Module& m, Entries&, Tier) { derivatives(m); }
+void run_renumber(ir::Module& m, Entries&, Tier) { renumber(m); }
+void run_fold(ir::Module& m, Entries&, Tier tier) { fold(m, tier); }
+void run_cse(ir::Module& m, Entries&, Tier) { cse(m); }
+void run_expand(ir::Module& m, Entries&, Tier tier) { functions::expand(m, tier); }
+void run_specialize(ir::Module& m, Entries&, Tier) { specialize(m); }
+void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries); }
+void run_hide(ir::Module& m, Entries& entries, Tier) { hide_foldables(m, entries); }
+void run_exact_division(ir::Module& m, Entries&, Tier) { exact_division(m); }
 
 constexpr Pass optimisation_table[] = {
     {"derivatives", run_derivatives,
@@ -37,14 +40,14 @@ constexpr Pass optimisation_table[] = {
     {"fold", run_fold, "functions of constants are evaluated whole, while calls are calls"},
     {"cse", run_cse, "folding makes equal constants and operands"},
     {"renumber", run_renumber, "drops what fold and cse replaced, and the calls in it"},
-    {"dce", dce, "no body is made for what nobody calls"},
+    {"dce", run_dce, "no body is made for what nobody calls"},
     {"expand", run_expand, "all that reasons about functions has seen them"},
     {"fold", run_fold, "bodies are templates: they have constants to fold"},
     {"specialize", run_specialize, "only bodies can take constants in"},
     {"hide_foldables", run_hide, "after the last fold, which could bring the shapes back"},
     {"cse", run_cse, "bodies compute things twice, and hidden shapes share their bits"},
     {"renumber", run_renumber, "what is printed is in canonical order"},
-    {"dce", dce, "no function that folding made useless, callees before callers"},
+    {"dce", run_dce, "no function that folding made useless, callees before callers"},
 };
 
 constexpr Pass division_table[] = {
@@ -56,7 +59,7 @@ constexpr Pass division_table[] = {
     {"hide_foldables", run_hide, "shapes in the new bodies"},
     {"cse", run_cse, "the new bodies compute things twice"},
     {"renumber", run_renumber, "canonical order"},
-    {"dce", dce, "callees before callers"},
+    {"dce", run_dce, "callees before callers"},
 };
 
 #ifdef NDEBUG
@@ -70,9 +73,10 @@ constexpr bool always_check = true;
 std::span<const Pass> optimisations() { return optimisation_table; }
 std::span<const Pass> division_lowering() { return division_table; }
 
-void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, const Dump& dump, bool check) {
+void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, Tier tier, const Dump& dump,
+         bool check) {
   for (const Pass& pass : passes) {
-    pass.run(module, entries);
+    pass.run(module, entries, tier);
     if (dump) dump(pass.name, module);
     if (!check && !always_check) continue;
     if (const std::string breach = ir::validate(module); !breach.empty())

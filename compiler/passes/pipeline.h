@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/functions/tier.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::passes {
@@ -17,7 +18,7 @@ using Entries = std::vector<uint32_t>;
 /// One line of a pipeline.
 struct Pass {
   std::string_view name;
-  void (*run)(ir::Module&, Entries&);
+  void (*run)(ir::Module&, Entries&, functions::Tier);
   std::string_view reason;  ///< why it stands where it stands
 };
 
@@ -30,9 +31,9 @@ std::span<const Pass> division_lowering();
 /// Called after each pass with its name.
 using Dump = std::function<void(std::string_view pass, const ir::Module&)>;
 
-/// Runs the passes in order. With `check` (always in debug builds) a pass that leaves an invalid module is a
+/// Runs the passes in order; library functions get their bodies of the tier. With `check` (always in debug builds) a pass that leaves an invalid module is a
 /// bug.
-void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, const Dump& dump = {},
-         bool check = false);
+void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, functions::Tier tier,
+         const Dump& dump = {}, bool check = false);
 
 }  // namespace isoshade::passes

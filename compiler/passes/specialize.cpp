@@ -208,7 +208,7 @@ void specialize(ir::Module& module) {
   Specializer specializer(module);
   // Folding a clone makes further arguments constant, one level of calls deeper each time.
   for (size_t first = 0, count = module.functions.size(); specializer.step(first);) {
-    fold(module, nullptr, count);
+    fold(module, {}, count);
     first = std::exchange(count, module.functions.size());
   }
 }

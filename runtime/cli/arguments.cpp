@@ -60,6 +60,15 @@ const CLI::Validator compared_names(
 const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
 const CLI::IsMember division_names({"native", "exact"});
 
+void add_precision(CLI::App& app, functions::Tier& precision) {
+  const auto choose = [&precision](const std::string& name) { precision = *functions::find_tier(name); };
+  app.add_option_function<std::string>(
+         "--precision", choose,
+         "How exact functions are: fast, default or precise; in each all backends give the same bits")
+      ->check(CLI::IsMember({"fast", "default", "precise"}))
+      ->default_str("default");
+}
+
 void add_choice(CLI::App& app, BackendChoice& choice, bool lanes = true) {
   if (lanes)
     app.add_option("--lanes", choice.lanes, "Lanes of the cpu backend (default: the machine's widest)")
@@ -144,6 +153,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   compile_app->add_option("--division", compile.division, "How the GLSL divides: native or exact")
       ->check(division_names)
       ->capture_default_str();
+  add_precision(*compile_app, compile.precision);
   compile_app->add_option(
       "--dump-after", compile.dump_after,
       "Print what a stage made: document, graph, typed, lower, a pass, or `help` for the list");
@@ -164,6 +174,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
   render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why");
+  add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
   add_choice(*render_app, render.choice);
 
@@ -191,6 +202,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                                                "A file of recorded hashes, of each scene at its own size");
   golden->excludes(verify_app->get_option("--size"));
   verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
+  add_precision(*verify_app, verify.precision);
   add_changes(*verify_app, verify.changes);
   add_choice(*verify_app, verify.choice, false);
 
@@ -207,6 +219,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                    "cpu, vulkan, interpreter (hex floats) or reference (the graph as authored: 40 digits)")
       ->check(backend_names)
       ->capture_default_str();
+  add_precision(*eval_app, eval.precision);
   add_choice(*eval_app, eval.choice);
 
   FormatArguments format;

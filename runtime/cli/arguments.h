@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/functions/tier.h"
+
 namespace isoshade::cli {
 
 /// Exit codes of every subcommand.
@@ -42,6 +44,7 @@ struct CompileArguments {
   std::string output;
   std::vector<std::string> targets{"glsl", "cpp"};
   std::string division = "native";
+  functions::Tier precision = functions::Tier::standard;
   std::string dump_after;
 };
 
@@ -52,6 +55,7 @@ struct RenderArguments {
   std::optional<Size> size;
   SceneChanges changes;
   bool stats = false;
+  functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };
 
@@ -64,6 +68,7 @@ struct VerifyArguments {
   std::string report;
   std::string golden;
   bool update = false;
+  functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };
 
@@ -72,6 +77,7 @@ struct EvalArguments {
   std::string inputs;
   std::string output = "-";
   std::string backend = "cpu";
+  functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };
 

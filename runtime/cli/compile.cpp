@@ -106,8 +106,8 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
 }
 
 // Reflection comes first: where it would replace a document, nothing else is written either.
-bool write_effect(const driver::Effect& effect, Writer& writer) {
-  ordered_json reflection{{"effect", effect.name}, {"document", effect.document}};
+bool write_effect(const driver::Effect& effect, std::string_view precision, Writer& writer) {
+  ordered_json reflection{{"effect", effect.name}, {"document", effect.document}, {"precision", precision}};
   reflection["parameters"] = reflect(effect.parameters);
   for (const driver::Pass& pass : effect.passes) {
     const std::string stem = effect.name + "." + pass.name;
@@ -125,8 +125,9 @@ bool write_effect(const driver::Effect& effect, Writer& writer) {
   });
 }
 
-bool write_function(const driver::Program& program, Writer& writer) {
-  ordered_json reflection{{"function", program.name}, {"document", program.document}};
+bool write_function(const driver::Program& program, std::string_view precision, Writer& writer) {
+  ordered_json reflection{
+      {"function", program.name}, {"document", program.document}, {"precision", precision}};
   reflection["inputs"] = reflect(program.inputs);
   reflection["outputs"] = reflect(program.results);
   return writer.write(program.name + ".json", reflection.dump(2) + "\n") &&
@@ -140,6 +141,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
   check::Library library = make_library(common);
   driver::Options options;
   options.library = &library;
+  options.tier = arguments.precision;
   int dumped = 0;
   const bool lists_stages = arguments.dump_after == "help";
   std::set<std::string, std::less<>> listed;  // passes run more than once
@@ -158,10 +160,10 @@ int compile(const CompileArguments& arguments, const Common& common) {
   bool done = false;
   if (kind == graph::DocumentKind::function) {
     const auto program = driver::compile_function(source, options, diagnostics);
-    done = program && write_function(*program, writer);
+    done = program && write_function(*program, functions::tier_name(options.tier), writer);
   } else if (kind) {
     const auto effect = driver::compile_effect(source, options, diagnostics);
-    done = effect && write_effect(*effect, writer);
+    done = effect && write_effect(*effect, functions::tier_name(options.tier), writer);
   }
   if (done) done = writer.headers();
   if (done && !arguments.dump_after.empty() && !lists_stages && dumped == 0)

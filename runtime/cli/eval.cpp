@@ -18,6 +18,7 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   driver::Options options;
   options.library = &library;
   options.reference = arguments.backend == "reference";
+  options.tier = arguments.precision;
   const support::Source function = graph::read_source(arguments.function, diagnostics);
   if (function == nullptr) return false;
   const auto program = driver::compile_function(function, options, diagnostics);

@@ -25,18 +25,35 @@ std::vector<nodes::Example> measured(const nodes::Row& row) {
   return chosen.empty() ? std::vector{all.front()} : chosen;
 }
 
-std::string cost_text(const nodes::Row& row) {
+struct CostText {
+  std::string cost, error;
+};
+
+CostText cost_text(const nodes::Row& row, functions::Tier tier) {
   std::string cost, error;
   for (const nodes::Example& example : measured(row)) {
-    const driver::NodeCost measured = driver::cost_of(example);
+    const driver::NodeCost measured = driver::cost_of(example, tier);
     if (!cost.empty()) cost += ", ";
     cost += std::to_string(measured.operations) + " operations";
     const bool typed = std::ranges::any_of(
         row.ports, [](const nodes::Port& port) { return port.type.variable == nodes::Variable::t; });
     if (typed) cost += " on " + std::string(graph::type_name(example.t));
-    if (error.empty()) error = driver::error_of(measured);
+    if (error.empty()) error = driver::error_of(measured, tier);
   }
-  return "cost   " + cost + "\nerror  " + error + "\n";
+  return {cost, error};
+}
+
+/// Of the default tier, and of the others where they differ.
+std::string cost_text(const nodes::Row& row) {
+  const CostText usual = cost_text(row, functions::Tier::standard);
+  std::string text = "cost   " + usual.cost + "\nerror  " + usual.error + "\n";
+  for (const functions::Tier tier : {functions::Tier::fast, functions::Tier::precise}) {
+    const CostText other = cost_text(row, tier);
+    if (other.cost == usual.cost && other.error == usual.error) continue;
+    text += "with --precision " + std::string(functions::tier_name(tier)) + "\n  cost   " + other.cost +
+            "\n  error  " + other.error + "\n";
+  }
+  return text;
 }
 
 }  // namespace

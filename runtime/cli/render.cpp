@@ -72,6 +72,7 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
   }
   options.compiler.library = &library;
   options.compiler.reference = arguments.backend == "reference";
+  options.compiler.tier = arguments.precision;
   const auto plan = render::plan_frame(*scene, options, diagnostics);
   if (!plan) return false;
   const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);

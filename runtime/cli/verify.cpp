@@ -15,9 +15,6 @@ namespace isoshade::cli {
 
 namespace {
 
-/// The only precision there is so far; it keys the recorded hashes.
-constexpr std::string_view tier = "default";
-
 struct NamedBackend {
   std::string name;  ///< "cpu", "cpu-8x2", "vulkan"
   std::unique_ptr<backends::Backend> backend;
@@ -107,9 +104,13 @@ class Verifier {
     options.width = size.width;
     options.height = size.height;
     options.compiler.library = &library_;
+    options.compiler.tier = arguments_.precision;
     const auto plan = render::plan_frame(scene, options, diagnostics_);
     if (!plan) return failure;
-    std::printf("%s %dx%d\n", path.c_str(), size.width, size.height);
+    const std::string_view tier = functions::tier_name(arguments_.precision);
+    const bool usual = arguments_.precision == functions::Tier::standard;
+    std::printf("%s %dx%d%s%s\n", path.c_str(), size.width, size.height, usual ? "" : " precision ",
+                usual ? "" : tier.data());
     std::vector<backends::Image> images(backends_.size());
     for (size_t i = 0; i < backends_.size(); ++i) {
       progress(common_, "  rendering on " + backends_[i].name);
@@ -154,11 +155,12 @@ class Verifier {
         compare::encoded_hash(image.width, image.height,
                               scene::encode(image.rgba, scene.output.encoding, scene.output.exposure))};
     const std::string key = compare::golden_key(path, arguments_.golden);
+    const std::string tier(functions::tier_name(arguments_.precision));
     if (arguments_.update) {
-      goldens_[key][std::string(tier)] = found;
+      goldens_[key][tier] = found;
       return success;
     }
-    const std::string mismatch = compare::golden_mismatch(goldens_, key, std::string(tier), found);
+    const std::string mismatch = compare::golden_mismatch(goldens_, key, tier, found);
     if (mismatch.empty()) return success;
     std::printf("  %s\n", mismatch.c_str());
     return different;

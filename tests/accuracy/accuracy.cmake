@@ -3,6 +3,7 @@ isoshade_test(functions_accuracy_test
   SOURCES
     accuracy/functions_accuracy_test.cpp
     accuracy/monotone_test.cpp
+    accuracy/tiers_accuracy_test.cpp
   LINKS isoshade_functions isoshade_reference
   LABEL accuracy
   TIMEOUT 7200)

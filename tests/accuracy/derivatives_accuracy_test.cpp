@@ -20,8 +20,6 @@
 
 namespace isoshade::accuracy {
 
-std::string text(float x) { return std::to_string(x); }
-
 namespace {
 
 using Reals = std::vector<Real>;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -74,7 +75,11 @@ void each(Visit visit, const functions::mat<float, N>& result, const Matrix<N>& 
   for (int i = 0; i < N; ++i) each(visit, result[i], exact[i], unit[i]);
 }
 
-std::string text(float x);
+inline std::string text(float x) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.9g", static_cast<double>(x));
+  return buffer;
+}
 template <int N>
 std::string text(const lanes::vec<float, N>& v) {
   std::string list = "(";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/functions/all.h"
+#include "compiler/functions/tiers.h"
 #include "tests/accuracy/samples.h"
 
 namespace isoshade::accuracy {
@@ -42,6 +43,30 @@ TEST(SrgbEncode, RisesWhereItsPiecesMeet) {
 TEST(SrgbDecode, RisesWhereItsPiecesMeet) {
   expect_rising(functions::srgb_decode<float>, 0.0404f, 0.0405f);
   expect_rising(functions::srgb_decode<float>, 0.2799f, 0.2801f);
+}
+
+TEST(FastSrgbEncode, RisesFromZeroToOne) { expect_rising(functions::fast::srgb_encode<float>, 0, 1); }
+TEST(FastSrgbDecode, RisesFromZeroToOne) { expect_rising(functions::fast::srgb_decode<float>, 0, 1); }
+TEST(PreciseSrgbEncode, RisesFromZeroToOne) { expect_rising(functions::precise::srgb_encode<float>, 0, 1); }
+TEST(PreciseSrgbDecode, RisesFromZeroToOne) { expect_rising(functions::precise::srgb_decode<float>, 0, 1); }
+TEST(SrgbOfEveryTier, RisesWhereItsPiecesMeetAndAtItsEnd) {
+  for (const auto encode : {functions::fast::srgb_encode<float>, functions::precise::srgb_encode<float>}) {
+    expect_rising(encode, 0.0031306f, 0.0031310f);
+    expect_rising(encode, 0.9999f, 1.0001f);
+  }
+  for (const auto decode : {functions::fast::srgb_decode<float>, functions::precise::srgb_decode<float>}) {
+    expect_rising(decode, 0.0404f, 0.0405f);
+    expect_rising(decode, 0.9999f, 1.0001f);
+  }
+}
+TEST(SrgbOfEveryTier, IsExactAtItsEndsAndBeyond) {
+  const lanes::FpGuard guard;
+  for (const auto curve : {functions::fast::srgb_encode<float>, functions::precise::srgb_encode<float>,
+                           functions::srgb_encode<float>, functions::fast::srgb_decode<float>,
+                           functions::precise::srgb_decode<float>, functions::srgb_decode<float>}) {
+    for (const float x : {0.0f, -0.0f, -1.0f, -INFINITY, std::nanf("")}) EXPECT_EQ(curve(x), 0.0f) << x;
+    for (const float x : {1.0f, std::nextafter(1.0f, 2.0f), 3e38f, INFINITY}) EXPECT_EQ(curve(x), 1.0f) << x;
+  }
 }
 TEST(Smoothstep, NeverExceedsOne) {
   const lanes::FpGuard guard;

@@ -110,7 +110,8 @@ Expression function_expression(const functions::Variant& variant) {
 int word_count(const Expression& expression);
 
 driver::Program program_of(std::string name, const std::vector<Expression>& expressions,
-                           std::vector<std::string>& words) {
+                           std::vector<std::string>& words,
+                           functions::Tier tier = functions::Tier::standard) {
   ir::Module module = lower::frame_module();
   ir::Function function;
   function.name = "conform";
@@ -139,7 +140,7 @@ driver::Program program_of(std::string name, const std::vector<Expression>& expr
   for (const Expression& expression : expressions)
     for (ValueId value : expression.build(b)) values.push_back(value);
   b.finish(values);
-  return driver::finish_eval(std::move(module), 0, std::move(name));
+  return driver::finish_eval(std::move(module), 0, std::move(name), tier);
 }
 
 int word_count(const Expression& expression) {
@@ -148,7 +149,8 @@ int word_count(const Expression& expression) {
   return static_cast<int>(words.size());
 }
 
-std::vector<Case> cases_of(const std::string& name, const std::vector<Expression>& expressions) {
+std::vector<Case> cases_of(const std::string& name, const std::vector<Expression>& expressions,
+                           functions::Tier tier = functions::Tier::standard) {
   std::vector<Case> cases;
   std::vector<Expression> chunk;
   int used = 0;
@@ -156,7 +158,7 @@ std::vector<Case> cases_of(const std::string& name, const std::vector<Expression
     if (chunk.empty()) return;
     Case made;
     made.name = name + "_" + std::to_string(cases.size());
-    made.program = program_of(made.name, chunk, made.words);
+    made.program = program_of(made.name, chunk, made.words, tier);
     cases.push_back(std::move(made));
     chunk.clear();
     used = 0;
@@ -189,6 +191,18 @@ std::vector<Case> function_cases() {
   for (const functions::Variant& variant : functions::variants())
     expressions.push_back(function_expression(variant));
   return cases_of("functions", expressions);
+}
+
+std::vector<Case> tier_cases() {
+  std::vector<Case> cases;
+  for (const functions::Tier tier : {functions::Tier::fast, functions::Tier::precise}) {
+    std::vector<Expression> expressions;
+    for (const functions::Variant& variant : functions::variants())
+      if (variant.has_own_body(tier)) expressions.push_back(function_expression(variant));
+    for (Case& made : cases_of(std::string(functions::tier_name(tier)), expressions, tier))
+      cases.push_back(std::move(made));
+  }
+  return cases;
 }
 
 // What optimisers like to recognise and to replace by something that is nearly the same.

@@ -22,6 +22,8 @@ struct Case {
 inline constexpr int input_words = 5;
 std::vector<Case> op_cases();
 std::vector<Case> function_cases();
+/// The rows that have bodies of their own in the fast and the precise tier, in these.
+std::vector<Case> tier_cases();
 std::vector<Case> idiom_cases();
 
 /// `rows` records of inputs: specials crossed with each other (+-0, denormal bits, +-inf, NaN payloads, extremes,

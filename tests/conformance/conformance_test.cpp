@@ -33,7 +33,7 @@ const std::vector<Expected>& expected() {
     std::vector<Expected> out;
     support::Diagnostics diagnostics;
     const auto interpreter = interpreter::create();
-    for (auto* cases : {&op_cases, &function_cases, &idiom_cases})
+    for (auto* cases : {&op_cases, &function_cases, &tier_cases, &idiom_cases})
       for (Case& made : cases()) {
         Expected e{std::move(made), {}};
         EXPECT_TRUE(interpreter->evaluate(e.made.program, table(), rows, e.results, diagnostics))

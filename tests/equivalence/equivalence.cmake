@@ -11,6 +11,14 @@ isoshade_test(scenes_test
   DEVICES)
 target_compile_definitions(scenes_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
+isoshade_test(tiers_test
+  SOURCES equivalence/tiers_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL equivalence
+  TIMEOUT 900
+  DEVICES)
+target_compile_definitions(tiers_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
 isoshade_test(outline_test
   SOURCES equivalence/outline_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>

@@ -43,7 +43,8 @@ inline scene::Scene load(const std::string& path) {
   return load(graph::read_source(path, diagnostics));
 }
 
-inline render::Plan plan(const scene::Scene& scene, int width = 0, int height = 0, bool skip = true) {
+inline render::Plan plan(const scene::Scene& scene, int width = 0, int height = 0, bool skip = true,
+                         functions::Tier tier = functions::Tier::standard) {
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
   render::Options options;
@@ -51,13 +52,15 @@ inline render::Plan plan(const scene::Scene& scene, int width = 0, int height = 
   options.height = height;
   options.skip = skip;
   options.compiler.library = &library;
+  options.compiler.tier = tier;
   auto made = render::plan_frame(scene, options, diagnostics);
   if (!made) ADD_FAILURE() << diagnostics.text();
   return made ? std::move(*made) : render::Plan();
 }
 
-inline render::Plan plan(const std::string& path, int width = 0, int height = 0, bool skip = true) {
-  return plan(load(path), width, height, skip);
+inline render::Plan plan(const std::string& path, int width = 0, int height = 0, bool skip = true,
+                         functions::Tier tier = functions::Tier::standard) {
+  return plan(load(path), width, height, skip, tier);
 }
 
 inline backends::Image draw(const render::Plan& plan, backends::Backend& backend) {

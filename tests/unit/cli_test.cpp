@@ -165,6 +165,32 @@ TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
       << "the file is the same from wherever it is used";
 }
 
+TEST_F(Cli, ComputesInThePrecisionThatIsAskedFor) {
+  const std::string golden = file("hashes.json");
+  const std::string command = "verify " + scene + " --backends cpu --golden " + golden;
+  EXPECT_EQ(run(command + " --update").exit, 0);
+  EXPECT_EQ(run(command + " --precision fast").exit, 1) << "none is recorded";
+  EXPECT_EQ(run(command + " --precision fast --update").exit, 0);
+  EXPECT_EQ(run(command + " --precision fast").exit, 0);
+  EXPECT_EQ(run(command).exit, 0) << "both are kept";
+  EXPECT_EQ(run(command + " --precision best").exit, 2);
+
+  std::ofstream(file("root.json"))
+      << R"({"isoshade": 1, "function": "root", "inputs": {"x": {"type": "float"}},
+    "nodes": {"r": {"type": "power", "in1": "x", "in2": 0.3}}, "outputs": {"out": "r"}})";
+  std::ofstream(file("x.csv")) << "x\n0.7\n";
+  const std::string eval = "eval " + file("root.json") + " --inputs " + file("x.csv");
+  const auto compile = "compile " + file("root.json") + " -o " + file("out") + " --target cpp";
+  const std::string fast = run(eval + " --precision fast").text,
+                    precise = run(eval + " --precision precise").text;
+  EXPECT_NE(fast, precise);
+  EXPECT_EQ(run(eval + " --precision fast --backend interpreter").text, fast);
+  EXPECT_EQ(run(compile + " --precision fast").exit, 0);
+  EXPECT_NE(read(folder_ / "out/root.json").find("\"precision\": \"fast\""), std::string::npos);
+  const std::string node = run("nodes power").text;
+  EXPECT_NE(node.find("with --precision fast"), std::string::npos) << node;
+}
+
 TEST_F(Cli, ShowsAnotherTime) {
   const auto hash_of = [](const std::string& time) {
     const Outcome outcome = run("verify " + graphs + "/scenes/surface_attributes.json --size 64x36 " +

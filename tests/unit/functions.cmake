@@ -5,6 +5,7 @@ isoshade_test(functions_test
     unit/functions_ir_test.cpp
     unit/functions_noise_test.cpp
     unit/functions_special_values_test.cpp
+    unit/functions_tiers_test.cpp
   LINKS isoshade_functions)
 target_compile_definitions(functions_test PRIVATE ISOSHADE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -103,7 +103,7 @@ TEST(HideFoldables, LeavesDriversNothingToFold) {
   for (uint64_t seed = 0; seed < 500; ++seed) {
     Module module = RandomModule(seed).make({.library_calls = true});
     Entries entries{module.find("main")};
-    run(optimisations(), module, entries, {}, true);
+    run(optimisations(), module, entries, functions::Tier::standard, {}, true);
     for (const Function& function : module.functions) {
       EXPECT_FALSE(function.is_declaration());
       expect_nothing_foldable(function);
@@ -116,7 +116,7 @@ TEST(Pipeline, DumpsAfterEveryPassAndGivesReasons) {
   Module module = RandomModule(3).make();
   Entries entries{module.find("main")};
   size_t dumps = 0;
-  run(optimisations(), module, entries,
+  run(optimisations(), module, entries, functions::Tier::standard,
       [&](std::string_view name, const Module&) { EXPECT_EQ(name, optimisations()[dumps++].name); });
   EXPECT_EQ(dumps, optimisations().size());
   for (const Pass& pass : optimisations()) EXPECT_FALSE(pass.reason.empty());
