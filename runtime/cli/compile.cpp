@@ -109,6 +109,15 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
 bool write_effect(const driver::Effect& effect, std::string_view precision, Writer& writer) {
   ordered_json reflection{{"effect", effect.name}, {"document", effect.document}, {"precision", precision}};
   reflection["parameters"] = reflect(effect.parameters);
+  // In the record they follow the parameters, one word each.
+  for (const driver::Image& image : effect.images) {
+    constexpr const char* decodings[] = {"linear", "srgb", "srgb if 8 bits"};
+    ordered_json row{{"name", image.slot.name}, {"file", image.file}};
+    if (!image.slot.parameter.empty()) row["parameter"] = image.slot.parameter;
+    row["decoding"] = decodings[static_cast<size_t>(image.slot.decoding)];
+    row["mips"] = image.slot.mips;
+    reflection["images"].push_back(row);
+  }
   for (const driver::Pass& pass : effect.passes) {
     const std::string stem = effect.name + "." + pass.name;
     constexpr const char* culls[] = {"none", "back", "front"};

@@ -357,6 +357,7 @@ std::optional<Plan> Planner::plan() {
   plan_.stats.compile_seconds = clock.lap();
   if (!make_objects()) return std::nullopt;
   textures_.store(plan_.frame);
+  plan_.stats.skips = unread_images(plan_.effects);
 
   backends::Frame& frame = plan_.frame;
   frame.width = options_.width > 0 ? options_.width : scene_.width;

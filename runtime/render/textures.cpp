@@ -27,6 +27,20 @@ bool is_srgb(lower::Decoding decoding, bool bytes) {
 
 }  // namespace
 
+std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects) {
+  std::vector<Skip> skips;
+  for (const driver::Effect& effect : effects) {
+    for (const driver::Field& field : effect.parameters) {
+      const bool read = std::ranges::any_of(
+          effect.images, [&](const driver::Image& image) { return image.slot.parameter == field.name; });
+      if (field.type == graph::type_name(graph::Type::filename) && !read)
+        skips.push_back(
+            {"the images of " + field.name + " of the effect " + effect.name, "no pass reads them"});
+    }
+  }
+  return skips;
+}
+
 bool TextureStore::fits(int64_t texels, const std::string& path, const support::Span& where,
                         support::Diagnostics& diagnostics) {
   for (const Texture& texture : textures_)

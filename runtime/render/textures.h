@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "backends/backend.h"
-#include "compiler/lower/image_slots.h"
+#include "compiler/driver/driver.h"
+#include "runtime/render/stats.h"
 #include "runtime/scene/texture.h"
 
 namespace isoshade::render {
@@ -25,6 +26,9 @@ struct ImageSource {
   std::shared_ptr<const std::string> bytes;  ///< of the file, if it is none on the disk
   support::Span where;                       ///< what names it
 };
+
+/// The parameters of effects that name images which no pass reads.
+std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects);
 
 class TextureStore {
  public:

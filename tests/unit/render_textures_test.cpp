@@ -180,6 +180,9 @@ TEST_F(Textures, WhatNoPassReadsIsNotLoaded) {
   const auto made = plan(square("plain"));  // its default is missing
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_TRUE(made->frame.texels.empty());
+  EXPECT_NE(
+      render::text(made->stats).find("skipped:  the images of map of the effect plain: no pass reads them"),
+      std::string::npos);
 }
 
 TEST_F(Textures, AreStoredOnceWithMipsForAllWhereOneAsks) {
