@@ -32,8 +32,8 @@ TEST(DamagedGltf, IsReadOrRefused) {
       all_attributes, R"([{"children": [1, 2], "scale": [2, 2, 2]}, {"mesh": 0}, {"mesh": 0, "matrix":
 [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])");
   // Of a .glb, bytes are damaged; of its JSON, words too, and its chunk is then as long as they need.
-  Mutator binaries({glb(json, square_data()), glb(nodes, square_data())}, 1), texts({json, nodes}, 2),
-      files({beside}, 3);
+  Mutator binaries({glb(json, square_data()), glb(nodes, square_data()), textured_glb("image")}, 1),
+      texts({json, nodes}, 2), files({beside}, 3);
   const int count = std::getenv("ISOSHADE_FULL") != nullptr ? 5000 : 200;
   int read = 0;
   for (int i = 0; i < count; ++i) {

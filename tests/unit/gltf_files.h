@@ -56,6 +56,24 @@ inline std::string glb(std::string json, const std::string& data) {
          word(data.size()) + std::string("BIN\0", 4) + data;
 }
 
+/// A .glb of the square, with an image as its base colour.
+inline std::string textured_glb(const std::string& image) {
+  std::string json = square_json();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    json.replace(json.find(from), from.size(), to);
+  };
+  std::string data = square_data() + image;
+  data.resize((data.size() + 3) / 4 * 4);
+  replace(R"("roughnessFactor": 0.5}})",
+          R"("roughnessFactor": 0.5, "baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}],
+"images": [{"mimeType": "image/png", "bufferView": 2})");
+  replace(R"("byteLength": 12})", R"("byteLength": 12},
+{"buffer": 0, "byteOffset": 156, "byteLength": )" +
+                                      std::to_string(image.size()) + "}");
+  replace(R"("byteLength": 156})", R"("byteLength": )" + std::to_string(data.size()) + "}");
+  return glb(json, data);
+}
+
 /// An empty folder while it lives.
 class Folder {
  public:

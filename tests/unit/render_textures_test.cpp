@@ -128,21 +128,8 @@ TEST_F(Textures, DerivativesAreTheSlopesBetweenTexels) {
 }
 
 TEST_F(Textures, OfAGltfAreThoseOfItsMaterial) {
-  std::string png = scene::png(1, 1, std::vector<uint8_t>{51, 102, 255, 255});
-  const std::string data = testing::square_data() + png;
-  std::string json = testing::square_json();
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    const size_t at = json.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    json.replace(at, from.size(), to);
-  };
-  replace(R"("roughnessFactor": 0.5}})",
-          R"("roughnessFactor": 0.5, "baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}],
-    "images": [{"mimeType": "image/png", "bufferView": 2})");
-  replace(R"("byteLength": 12})", R"("byteLength": 12}, {"buffer": 0, "byteOffset": 156, "byteLength": )" +
-                                      std::to_string(png.size()) + "}");
-  replace(R"("byteLength": 156})", R"("byteLength": )" + std::to_string(data.size()) + "}");
-  folder_.write("m.glb", testing::glb(json, data + std::string((4 - data.size() % 4) % 4, '\0')));
+  const std::string png = scene::png(1, 1, std::vector<uint8_t>{51, 102, 255, 255});
+  folder_.write("m.glb", testing::textured_glb(png));
   folder_.write("pbr.json", R"({"isoshade": 1, "effect": "pbr", "parameters": {
     "base_color": {"type": "color3", "value": [1, 1, 1]}, "base_color_texture": {"type": "filename", "value": ""}},
     "nodes": {"map": {"type": "image", "file": {"link": "base_color_texture"}, "colorspace": "linear"},

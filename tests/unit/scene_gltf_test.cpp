@@ -189,5 +189,27 @@ TEST_F(Gltf, RefusesFilesThatAreNone) {
   EXPECT_NE(diagnostics.text().find("missing-file"), std::string::npos);
 }
 
+TEST(GltfTextures, AreKeptAsTheyAre) {
+  const testing::Folder folder;
+  support::Diagnostics diagnostics;
+  const auto model =
+      scene::load_gltf(folder.write("m.glb", testing::textured_glb("no image")), {}, diagnostics);
+  ASSERT_TRUE(model && model->material) << diagnostics.text();
+  ASSERT_TRUE(model->material->textures.contains("base_color_texture"));
+  EXPECT_EQ(*model->material->textures.at("base_color_texture").bytes, "no image");
+}
+
+TEST(GltfTextures, ThatLeaveTheirBufferAreRefused) {
+  const testing::Folder folder;
+  std::string glb = testing::textured_glb("no image");
+  const size_t at = glb.find("\"byteOffset\": 156");
+  ASSERT_NE(at, std::string::npos);
+  glb.replace(at, 17, "\"byteOffset\": 165");
+  support::Diagnostics diagnostics;
+  EXPECT_FALSE(scene::load_gltf(folder.write("m.glb", glb), {}, diagnostics));
+  EXPECT_NE(diagnostics.text().find("the image 0 of a material cannot be read"), std::string::npos)
+      << diagnostics.text();
+}
+
 }  // namespace
 }  // namespace isoshade
