@@ -19,6 +19,13 @@ isoshade_test(tiers_test
   DEVICES)
 target_compile_definitions(tiers_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
+isoshade_test(cartoon_test
+  SOURCES equivalence/cartoon_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL equivalence
+  TIMEOUT 300)
+target_compile_definitions(cartoon_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
 isoshade_test(outline_test
   SOURCES equivalence/outline_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
