@@ -25,7 +25,8 @@ const Backends& all_backends() {
   static const Backends& all = *[] {
     auto* made = new Backends;
     support::Diagnostics diagnostics;
-    for (const char* lanes : {"16", "1"}) {
+    const bool wide = cpu::lane_count("16")->available();
+    for (const char* lanes : {wide ? "16" : "8x2", "1"}) {
       if (!cpu::lane_count(lanes)->available()) continue;
       cpu::Options options;
       options.lanes = lanes;
