@@ -76,26 +76,52 @@ size_t Subject::words_of(const std::vector<driver::Field>& fields) {
   return words;
 }
 
-std::optional<driver::Program> Subject::compile(bool reference) const {
+Subject::Subject(std::string name, std::string source, size_t arguments)
+    : name_(std::move(name)), source_(std::move(source)), arguments_(arguments) {
+  program_ = compile(functions::Tier::standard);
+}
+
+Subject Subject::in_tier(functions::Tier tier) const {
+  Subject other = *this;
+  other.program_ = compile(tier);
+  return other;
+}
+
+driver::Program Subject::compile(functions::Tier tier, bool reference) const {
+  if (source_.empty()) return compile_row(tier);
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
   driver::Options options;
   options.library = &library;
   options.reference = reference;
+  options.tier = tier;
   // Under its own name, from which it finds other documents.
   const auto source = std::make_shared<support::SourceFile>(graph_path(name_), source_);
   auto program = driver::compile_function(source, options, diagnostics);
   EXPECT_TRUE(program) << diagnostics.text();
-  return program;
+  return program ? *std::move(program) : driver::Program();
+}
+
+driver::Program Subject::compile_row(functions::Tier tier) const {
+  ir::Module module = lower::frame_module();
+  const auto index = static_cast<uint32_t>(module.functions.size());
+  ir::Function& function = module.functions.emplace_back();
+  function.name = "measured";
+  for (size_t i = 0; i < arguments_; ++i)
+    function.parameters.push_back({std::string(1, "xyz"[i]), ir::float_type, "", false});
+  function.results = {{"out", ir::float_type}};
+  ir::Builder b(module, index);
+  std::vector<ir::ValueId> parameters;
+  for (size_t i = 0; i < arguments_; ++i) parameters.push_back(b.parameter(i));
+  b.finish(functions::call_library(b, name_, parameters));
+  return driver::finish_eval(std::move(module), index, name_, tier);
 }
 
 Subject Subject::document(const std::string& name) {
   support::Diagnostics diagnostics;
   const support::Source source = graph::read_source(graph_path(name), diagnostics);
   EXPECT_NE(source, nullptr) << diagnostics.text();
-  Subject subject(name, source == nullptr ? "" : std::string(source->text()));
-  if (auto program = subject.compile(false)) subject.program_ = *std::move(program);
-  return subject;
+  return Subject(name, source == nullptr ? "{}" : std::string(source->text()));
 }
 
 Subject Subject::expression(const std::vector<std::string>& inputs, const std::string& code) {
@@ -107,29 +133,12 @@ Subject Subject::expression(const std::vector<std::string>& inputs, const std::s
     declared += (declared.empty() ? "" : ", ") + ("\"" + name + R"(": {"type": ")" + type + "\"}");
     ports += ", \"" + name + "\": \"" + name + "\"";
   }
-  Subject subject(code, R"({"isoshade": 1, "function": "measured", "inputs": {)" + declared +
-                            R"(}, "nodes": {"result": {"type": "expression", "code": ")" + code + "\"" +
-                            ports + R"(}}, "outputs": {"out": "result"}})");
-  if (auto program = subject.compile(false)) subject.program_ = *std::move(program);
-  return subject;
+  return Subject(code, R"({"isoshade": 1, "function": "measured", "inputs": {)" + declared +
+                           R"(}, "nodes": {"result": {"type": "expression", "code": ")" + code + "\"" +
+                           ports + R"(}}, "outputs": {"out": "result"}})");
 }
 
-Subject Subject::row(const std::string& name, size_t arguments) {
-  Subject subject(name, "");
-  ir::Module module = lower::frame_module();
-  const auto index = static_cast<uint32_t>(module.functions.size());
-  ir::Function& function = module.functions.emplace_back();
-  function.name = "measured";
-  for (size_t i = 0; i < arguments; ++i)
-    function.parameters.push_back({std::string(1, "xyz"[i]), ir::float_type, "", false});
-  function.results = {{"out", ir::float_type}};
-  ir::Builder b(module, index);
-  std::vector<ir::ValueId> parameters;
-  for (size_t i = 0; i < arguments; ++i) parameters.push_back(b.parameter(i));
-  b.finish(functions::call_library(b, name, parameters));
-  subject.program_ = driver::finish_eval(std::move(module), index, name);
-  return subject;
-}
+Subject Subject::row(const std::string& name, size_t arguments) { return Subject(name, "", arguments); }
 
 std::vector<float> Subject::operator()(const std::vector<float>& inputs) const {
   const size_t rows = inputs.size() / this->inputs();
@@ -150,9 +159,8 @@ std::vector<float> Subject::on_one_backend(const std::vector<float>& inputs) con
 }
 
 std::vector<reference::Real> Subject::exact(const std::vector<float>& inputs) const {
-  const auto program = compile(true);
-  if (!program) return {};
-  return reference::evaluate(*program, to_words(inputs), inputs.size() / this->inputs());
+  return reference::evaluate(compile(functions::Tier::standard, true), to_words(inputs),
+                             inputs.size() / this->inputs());
 }
 
 }  // namespace isoshade::accuracy

@@ -23,6 +23,9 @@ class Subject {
   /// A row of functions.def on floats.
   static Subject row(const std::string& name, size_t arguments);
 
+  /// The same function by the bodies of another tier; subjects are of the default one.
+  Subject in_tier(functions::Tier tier) const;
+
   const std::string& name() const { return name_; }
   /// How many words a row of inputs or results has.
   size_t inputs() const { return words_of(program_.inputs); }
@@ -39,12 +42,14 @@ class Subject {
   std::vector<reference::Real> exact(const std::vector<float>& inputs) const;
 
  private:
-  Subject(std::string name, std::string source) : name_(std::move(name)), source_(std::move(source)) {}
+  Subject(std::string name, std::string source, size_t arguments = 0);
   static size_t words_of(const std::vector<driver::Field>& fields);
-  std::optional<driver::Program> compile(bool reference) const;
+  driver::Program compile(functions::Tier tier, bool reference = false) const;
+  driver::Program compile_row(functions::Tier tier) const;
 
   std::string name_;
-  std::string source_;  ///< the text of a document; empty: a row
+  std::string source_;    ///< the text of a document; empty: a row
+  size_t arguments_ = 0;  ///< of a row
   driver::Program program_;
 };
 
