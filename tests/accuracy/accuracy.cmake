@@ -26,6 +26,7 @@ isoshade_test(stress_test
     accuracy/brdf_test.cpp
     accuracy/stress_brdf_test.cpp
     accuracy/stress_cases.cpp
+    accuracy/stress_comparison.cpp
     accuracy/stress_properties_test.cpp
     accuracy/stress_test.cpp
     accuracy/subject.cpp

@@ -11,6 +11,7 @@
 
 #include "compiler/support/parse_number.h"
 #include "tests/accuracy/stress_cases.h"
+#include "tests/accuracy/stress_comparison.h"
 
 namespace isoshade::accuracy {
 namespace {
@@ -144,6 +145,9 @@ std::string page_text() {
     else
       text += "| | | | |\n";
   }
+  text += "\n## Properties\n\n| | library | source |\n|---|---|---|\n";
+  for (const Comparison& row : comparisons())
+    text += "| " + row.what + " | " + row.library + " | " + row.source + " |\n";
   return text;
 }
 
