@@ -54,6 +54,17 @@ struct Frame {
   float background[4] = {0, 0, 0, 0};
 };
 
+/// A full-screen pass ready to be run: a program of Stage::post and its arrays of lower/frame_layout.h.
+struct ScreenPass {
+  const driver::Program* program = nullptr;
+  int width = 0;  ///< of the image that is made
+  int height = 0;
+  std::span<const float> frame;
+  std::span<const float> record;  ///< parameters and numbers of taps, as `objects`
+  std::span<const float> images;
+  std::span<const int32_t> image_records;
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -68,6 +79,8 @@ class Backend {
   /// each visible pixel once. `vertices` are frame.vertices with those that clipping made appended.
   virtual bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
                     Image& image, support::Diagnostics& diagnostics) = 0;
+  /// Runs a full-screen pass: `rgba` receives 4 floats a pixel, rows top down, NaN canonical.
+  virtual bool post(const ScreenPass& pass, std::vector<float>& rgba, support::Diagnostics& diagnostics) = 0;
   /// Runs an eval program over `rows` records of inputs; outputs are records of the program's result words.
   virtual bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                         std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) = 0;

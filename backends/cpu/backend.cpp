@@ -80,6 +80,7 @@ class CpuBackend final : public backends::Backend {
                  Diagnostics& diagnostics) override;
   bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
             Image& image, Diagnostics& diagnostics) override;
+  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override;
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override;
 
@@ -179,6 +180,28 @@ bool CpuBackend::draw(const Frame& frame, std::span<const float> vertices, std::
     const int tile = static_cast<int>(i);
     painter->paint(job, tile, tile % grid.columns * raster::tile_size,
                    tile / grid.columns * raster::tile_size);
+  });
+  return true;
+}
+
+bool CpuBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) {
+  const Program* const programs[] = {pass.program};
+  const auto kernels = kernels_.kernels(programs, diagnostics);
+  if (!kernels) return false;
+  Buffers buffers;
+  const bool fits = buffers.bind(FrameBuffer::frame, pass.frame) &&
+                    buffers.bind(FrameBuffer::objects, pass.record) &&
+                    buffers.bind(FrameBuffer::layers, pass.images) &&
+                    buffers.bind(FrameBuffer::layer_records, pass.image_records);
+  if (!fits) return report_too_long(diagnostics);
+  const auto width = static_cast<size_t>(pass.width), height = static_cast<size_t>(pass.height);
+  rgba.resize(4 * width * height);
+  // Rows that follow each other read almost the same pixels.
+  const size_t rows = std::max<size_t>(1, row_chunk / width);
+  workers_.for_each((height + rows - 1) / rows, [&](size_t chunk) {
+    for (size_t y = chunk * rows; y < std::min(height, (chunk + 1) * rows); ++y)
+      kernels->front()->post(buffers.views(), 0, static_cast<int>(y), pass.width,
+                             rgba.data() + 4 * width * y);
   });
   return true;
 }

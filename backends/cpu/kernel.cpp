@@ -67,6 +67,10 @@ std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stag
       function = dlsym(library, "isoshade_eval");
       kernel->eval = reinterpret_cast<EvalFunction*>(function);
       break;
+    case driver::Stage::post:
+      function = dlsym(library, "isoshade_post");
+      kernel->post = reinterpret_cast<PostFunction*>(function);
+      break;
     case driver::Stage::depth: support::bug("the CPU rasteriser computes depth itself");
   }
   support::check(function != nullptr, "generated C++ exports no function of its stage");

@@ -26,6 +26,7 @@ struct BufferView {
 using VertexFunction = void(const BufferView* buffers, int object, int first, int count, float* clip);
 using PixelFunction = void(const BufferView* buffers, int object, int light_count, int count, const int* x,
                            const int* y, const int* triangle, float* rgba);
+using PostFunction = void(const BufferView* buffers, int first, int y, int count, float* rgba);
 using EvalFunction = void(const BufferView* buffers, int first, int count, int* results);
 }
 
@@ -42,6 +43,7 @@ class Kernel {
   VertexFunction* vertex = nullptr;
   PixelFunction* pixel = nullptr;
   EvalFunction* eval = nullptr;
+  PostFunction* post = nullptr;
 
  private:
   explicit Kernel(void* library) : library_(library) {}

@@ -131,6 +131,25 @@ class InterpreterBackend final : public backends::Backend {
     return true;
   }
 
+  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics&) override {
+    Buffers buffers;
+    buffers.bind(FrameBuffer::frame, pass.frame);
+    buffers.bind(FrameBuffer::objects, pass.record);
+    buffers.bind(FrameBuffer::layers, pass.images);
+    buffers.bind(FrameBuffer::layer_records, pass.image_records);
+    Runner runner(make_, *pass.program, buffers);
+    rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
+    size_t next = 0;
+    for (int y = 0; y < pass.height; ++y) {
+      for (int x = 0; x < pass.width; ++x) {
+        std::array<uint32_t, 4> result;
+        runner.run({x, y}, result);
+        for (const uint32_t bits : result) rgba[next++] = std::bit_cast<float>(bits);
+      }
+    }
+    return true;
+  }
+
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics&) override {
     Buffers buffers;

@@ -64,6 +64,9 @@ class ReferenceBackend final : public backends::Backend {
             backends::Image& image, Diagnostics& diagnostics) override {
     return inner_->draw(frame, vertices, triangles, image, diagnostics);
   }
+  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
+    return inner_->post(pass, rgba, diagnostics);
+  }
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override {
     return inner_->evaluate(program, inputs, rows, outputs, diagnostics);

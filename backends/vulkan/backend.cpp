@@ -202,15 +202,37 @@ bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>
   });
 }
 
+/// Reports images that are larger than the device can make.
+bool VulkanBackend::check_size(int width, int height, Diagnostics& diagnostics) const {
+  if (std::max(width, height) <= device_->max_frame_side()) return true;
+  diagnostics.report(support::Id::device_limit, "a frame on " + device().name + " has at most " +
+                                                    std::to_string(device_->max_frame_side()) +
+                                                    " pixels a side");
+  return false;
+}
+
+bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba,
+                         Diagnostics& diagnostics) {
+  return guarded(diagnostics, [&] {
+    if (!check_size(pass.width, pass.height, diagnostics) ||
+        !upload(*device_, FrameBuffer::frame, pass.frame, diagnostics) ||
+        !upload(*device_, FrameBuffer::objects, pass.record, diagnostics) ||
+        !upload(*device_, FrameBuffer::layers, pass.images, diagnostics) ||
+        !upload(*device_, FrameBuffer::layer_records, pass.image_records, diagnostics))
+      return false;
+    const auto pipeline = device_->pipeline(
+        {Target::color, 1, full_screen_vertex(), options_.glsl(*pass.program, division_)}, diagnostics);
+    if (!pipeline) return false;
+    rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
+    device_->run_screen(*pipeline, pass.width, pass.height, rgba);
+    return true;
+  });
+}
+
 bool VulkanBackend::draw(const Frame& frame, std::span<const float> vertices,
                          std::span<const int32_t> triangles, Image& image, Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
-    if (std::max(frame.width, frame.height) > device_->max_frame_side()) {
-      diagnostics.report(support::Id::device_limit, "a frame on " + device().name + " has at most " +
-                                                        std::to_string(device_->max_frame_side()) +
-                                                        " pixels a side");
-      return false;
-    }
+    if (!check_size(frame.width, frame.height, diagnostics)) return false;
     image.resize(frame.width, frame.height);
     std::vector<Call> visibility, color;
     if (!triangles.empty()) {

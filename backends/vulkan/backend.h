@@ -32,7 +32,8 @@ struct Options {
   /// Instead of what the probe finds.
   std::optional<driver::Division> division;
   /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
-  /// one record after another, to `layout(std430, set = 0, binding = 8) writeonly buffer { int words[]; }`.
+  /// one record after another, to `layout(std430, set = 0, binding = N) writeonly buffer { int words[]; }` with
+  /// N = output_binding of limits.h.
   EvalStage eval_stage = EvalStage::fragment;
   /// The text of a program's stage; see emit/stages.h for the interface it must have. Empty: the driver's.
   std::function<std::string(const driver::Program&, driver::Division)> glsl;
@@ -49,6 +50,8 @@ class VulkanBackend : public backends::Backend {
                  support::Diagnostics& diagnostics) override;
   bool draw(const backends::Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
             backends::Image& image, support::Diagnostics& diagnostics) override;
+  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba,
+            support::Diagnostics& diagnostics) override;
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) override;
 
@@ -63,6 +66,7 @@ class VulkanBackend : public backends::Backend {
   template <class Work>
   bool guarded(support::Diagnostics& diagnostics, Work work);
   bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
+  bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
   bool upload_frame(const backends::Frame& frame, std::span<const float> vertices,
                     support::Diagnostics& diagnostics);
 

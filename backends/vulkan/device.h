@@ -94,6 +94,9 @@ class Device {
   void render(std::span<const Call> visibility, std::span<const Call> color, const float (&background)[4],
               backends::Image& image);
 
+  /// Runs a full-screen pipeline of Target::color over an image: `rgba` has 4 floats a pixel, rows top down.
+  void run_screen(PipelineIndex pipeline, int width, int height, std::span<float> rgba);
+
   /// Runs a full-screen pipeline of Target::words over `rows` <= max_table_rows rows: sets push.count and
   /// push.width. Record r of `output` receives the first `record_words` <= 4 * attachments words of row r.
   void run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows, size_t record_words,

@@ -136,6 +136,31 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
   }
 }
 
+void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span<float> rgba) {
+  impl_->prepare_frame(width, height);
+  const FrameTarget& frame = impl_->frame;
+  const size_t row_bytes = static_cast<size_t>(width) * pixel_bytes;
+  const int band =
+      static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
+  impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
+                 vk::MemoryPropertyFlagBits::eHostCached);
+  const Call call{.pipeline = pipeline, .scissor = {0, 0, width, height}};
+  for (int first = 0; first < height; first += band) {
+    const int rows = std::min(band, height - first);
+    impl_->submit([&](const vk::raii::CommandBuffer& commands) {
+      if (first == 0) {
+        const vk::ClearValue nothing{};
+        const Pass pass(commands, impl_->render_pass(Target::color, 1), frame.shading, area(width, height),
+                        {&nothing, 1});
+        impl_->record(commands, call);
+      }
+      copy_rows(commands, frame.color.image, color_format, first, rows, width, impl_->readback, 0);
+    });
+    std::memcpy(rgba.data() + static_cast<size_t>(first) * static_cast<size_t>(width) * 4,
+                impl_->readback.data, static_cast<size_t>(rows) * row_bytes);
+  }
+}
+
 TableTarget& Device::Impl::prepare_table(uint32_t attachments, int height) {
   TableTarget& table = tables[attachments];
   if (table.height >= height) return table;

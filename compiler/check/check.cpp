@@ -12,8 +12,6 @@ namespace {
 /// Reports what documents may ask for in later versions.
 void check_supported(Work& work) {
   const graph::Graph& graph = work.graph();
-  if (graph.kind == graph::DocumentKind::post)
-    work.report(Id::unsupported, graph.name_place, "post effects cannot be compiled yet");
   for (const graph::Input& input : graph.inputs) {
     const bool is_function = graph.kind == graph::DocumentKind::function;
     if (input.type == graph::Type::filename && graph.kind == graph::DocumentKind::effect) continue;

@@ -111,7 +111,8 @@ class NodeInference {
 
   void infer_row();
   void read_text(size_t i);
-  void read_component(size_t i);
+  void read_integer(size_t i);
+  void read_image(size_t i, std::string_view name);
   void read_type_name(size_t i, std::string_view text);
   void join(size_t i, Type type);
   void settle_by_links();
@@ -136,7 +137,9 @@ void NodeInference::infer_row() {
   const size_t count = node_.operand_count;
   for (size_t i = 0; i < count; ++i) {
     if (is_value(i)) continue;
-    port(i).type.kind == PortType::Kind::component ? read_component(i) : read_text(i);
+    const PortType::Kind kind = port(i).type.kind;
+    const bool is_number = kind == PortType::Kind::component || kind == PortType::Kind::integer;
+    is_number ? read_integer(i) : read_text(i);
   }
   if (!broken()) settle_by_links();
   if (!broken()) settle_by_literals();
@@ -164,6 +167,7 @@ void NodeInference::read_text(size_t i) {
   }
   if (is_type) return read_type_name(i, text);
   operand(i).from = Operand::From::setting;
+  if (port(i).type.kind == PortType::Kind::image) return read_image(i, text);
   const std::vector<std::string_view>& choices = port(i).choices;
   for (uint32_t choice = 0; choice < choices.size(); ++choice) {
     operand(i).index = choice;
@@ -172,6 +176,22 @@ void NodeInference::read_text(size_t i) {
   support::Diagnostic& wrong = report(Id::unknown_choice, i, of_node(i) + " cannot be " + quote(text));
   suggest_nearest(work_.diagnostics, wrong, text, choices);
   wrong.note("it can be " + listed(choices, "or"));
+}
+
+/// 0 for the image that a post goes over, else 1 + the number of one of its images.
+void NodeInference::read_image(size_t i, std::string_view name) {
+  if (given(i).port == nullptr) return;
+  const std::vector<graph::InputImage>& images = work_.graph().images;
+  std::vector<std::string_view> names;
+  for (uint32_t image = 0; image < images.size(); ++image) {
+    operand(i).index = image + 1;
+    if (images[image].name == name) return;
+    names.push_back(images[image].name);
+  }
+  support::Diagnostic& wrong = report(Id::unknown_image, i, "the document has no image " + quote(name));
+  suggest_nearest(work_.diagnostics, wrong, name, names);
+  wrong.note(names.empty() ? "\"images\" of a document lists those that a scene gives it"
+                           : "its images are " + listed(names));
 }
 
 void NodeInference::read_type_name(size_t i, std::string_view text) {
@@ -189,7 +209,7 @@ void NodeInference::read_type_name(size_t i, std::string_view text) {
   wrong.note("it can be " + described(port(i).type.accepts));
 }
 
-void NodeInference::read_component(size_t i) {
+void NodeInference::read_integer(size_t i) {
   int64_t index = 0;
   if (given(i).port != nullptr) {
     const Literal& written = *literal(i);
@@ -382,7 +402,7 @@ void infer_output(Work& work, size_t i) {
   if (!select(work, link, output)) return;
   output.needed = output.type;
   if (work.graph().kind == graph::DocumentKind::function) return;
-  if (i >= work.graph().passes.size()) {
+  if (i >= work.typed.values().size()) {
     if (output.type == Type::vector3) return;
     work.report(Id::type_mismatch, link.place, "\"position\" is a vector3, not " + name_of(output.type));
     return;

@@ -60,11 +60,13 @@ class NodeResolver {
       node_.callee = function();
       if (node_.callee == nullptr || !passes_few_numbers()) return fail();
     }
-    if (node_.row != nullptr && node_.row->belongs_to_effects() && in_function()) {
-      work_
-          .report(Id::misplaced_node, source_.type_place,
-                  "a function document cannot have the node " + quote(source_.label()))
-          .suggest("make it an input of the function");
+    if (node_.row != nullptr && !at_home(node_.row->home())) {
+      const DocumentKind kind = work_.graph().kind;
+      support::Diagnostic& report =
+          work_.report(Id::misplaced_node, source_.type_place,
+                       (kind == DocumentKind::effect ? "an " : "a ") + std::string(graph::kind_name(kind)) +
+                           " document cannot have the node " + quote(source_.label()));
+      if (in_function()) report.suggest("make it an input of the function");
       fail();
     }
     add_operands();
@@ -78,6 +80,13 @@ class NodeResolver {
   void fail() { work_.broken[index_] = true; }
   bool is_call() const { return source_.origin == graph::Node::Origin::call; }
   bool in_function() const { return work_.graph().kind == DocumentKind::function; }
+  bool at_home(nodes::Home home) const {
+    switch (work_.graph().kind) {
+      case DocumentKind::effect: return home != nodes::Home::posts;
+      case DocumentKind::post: return home != nodes::Home::effects;
+      default: return home == nodes::Home::anywhere;
+    }
+  }
   size_t port_count() const {
     return node_.row != nullptr ? node_.row->ports.size() : node_.callee->graph.inputs.size();
   }
@@ -198,8 +207,9 @@ class NodeResolver {
   }
 
   void check_left_out(uint32_t i) {
-    const bool required = node_.row != nullptr ? node_.row->ports[i].required(in_function())
-                                               : !node_.callee->graph.inputs[i].value.has_value();
+    const bool required = node_.row != nullptr
+                              ? node_.row->ports[i].required(work_.graph().kind == DocumentKind::effect)
+                              : !node_.callee->graph.inputs[i].value.has_value();
     if (!required) return;
     fail();
     if (is_call()) {

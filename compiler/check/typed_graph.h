@@ -51,7 +51,7 @@ struct Node {
   uint32_t operand_count = 0;
   uint32_t first_type = 0;  ///< of its outputs, in TypedGraph::types
   uint32_t output_count = 0;
-  bool per_light = false;  ///< depends on the light, and is no sum over them
+  bool per_turn = false;  ///< depends on the light or the tap, and is no sum over them
 };
 
 struct TypedGraph {

@@ -10,23 +10,23 @@ using support::Id;
 using support::quote;
 using From = Operand::From;
 
-bool is_sum(const Node& node) { return node.row != nullptr && node.row->is<nodes::SumLights>(); }
-bool is_light(const Node& node) { return node.row != nullptr && node.row->is<nodes::Light>(); }
+bool is_sum(const Node& node) { return node.row != nullptr && node.row->is_sum(); }
+bool is_summand(const Node& node) { return node.row != nullptr && node.row->is_summand(); }
 
 uint64_t size_of(const Node& node) { return node.callee != nullptr ? node.callee->expanded_nodes : 1; }
 
-void mark_per_light(TypedGraph& typed) {
+void mark_per_turn(TypedGraph& typed) {
   for (const uint32_t i : typed.order) {
     Node& node = typed.nodes[i];
-    node.per_light = is_light(node);
+    node.per_turn = is_summand(node);
     if (is_sum(node)) continue;
     for (const Operand& operand : typed.operands_of(node))
-      node.per_light |= operand.from == From::node && typed.nodes[operand.index].per_light;
+      node.per_turn |= operand.from == From::node && typed.nodes[operand.index].per_turn;
   }
 }
 
-/// Reports light nodes from which an output is reached on a way without sum_lights.
-void check_lights(Work& work) {
+/// Reports nodes of lights and taps from which an output is reached on a way without a sum.
+void check_summands(Work& work) {
   const TypedGraph& typed = work.typed;
   const graph::Graph& graph = work.graph();
   constexpr uint32_t not_reached = ~0u;
@@ -37,7 +37,7 @@ void check_lights(Work& work) {
   for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
     const Node& node = typed.nodes[*it];
     if (reader[*it] == not_reached) continue;
-    if (is_light(node)) {
+    if (is_summand(node)) {
       std::string path = graph.nodes[*it].id;
       for (uint32_t i = reader[*it], shown = 0; i != output; i = reader[i]) {
         if (++shown > 8) {
@@ -46,10 +46,12 @@ void check_lights(Work& work) {
         }
         path += " -> " + graph.nodes[i].id;
       }
-      work.report(Id::light_outside_sum, graph.nodes[*it].type_place,
-                  quote(graph.nodes[*it].type) + " is read outside of sum_lights")
+      const bool light = node.row->is<nodes::Light>();
+      const std::string sum = light ? "sum_lights" : "sum_taps";
+      work.report(light ? Id::light_outside_sum : Id::tap_outside_sum, graph.nodes[*it].type_place,
+                  quote(graph.nodes[*it].type) + " is read outside of " + sum)
           .note("it reaches an output by " + path)
-          .suggest("sum what depends on it with a node of type sum_lights");
+          .suggest("sum what depends on it with a node of type " + sum);
     }
     if (is_sum(node)) continue;
     for (const Operand& operand : typed.operands_of(node))
@@ -124,7 +126,7 @@ void check_derivatives(Work& work) {
   }
 }
 
-/// How many nodes are computed for each light, over all sums; stops counting beyond the limit.
+/// How many nodes are computed for each light or tap, over all sums; stops counting beyond the limit.
 uint64_t nodes_under_sums(const TypedGraph& typed) {
   uint64_t total = 0;
   std::vector<uint32_t> seen_by(typed.nodes.size(), ~0u);
@@ -138,7 +140,7 @@ uint64_t nodes_under_sums(const TypedGraph& typed) {
       total += size_of(node);
       for (const Operand& operand : typed.operands_of(node)) {
         if (operand.from != From::node || seen_by[operand.index] == sum) continue;
-        if (!typed.nodes[operand.index].per_light) continue;
+        if (!typed.nodes[operand.index].per_turn) continue;
         seen_by[operand.index] = sum;
         waiting.push_back(operand.index);
       }
@@ -180,8 +182,8 @@ void warn_unused(Work& work) {
 }  // namespace
 
 void check_usage(Work& work) {
-  mark_per_light(work.typed);
-  check_lights(work);
+  mark_per_turn(work.typed);
+  check_summands(work);
   check_positions(work);
   check_derivatives(work);
   check_size(work);

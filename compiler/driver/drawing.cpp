@@ -75,8 +75,8 @@ class Picture {
     for (const graph::Pass& pass : graph.graph.passes)
       if (pass.position) names_of_passes.push_back(pass.name + " position");
     for (size_t i = 0; i < graph.outputs.size(); ++i) {
-      const bool is_function = graph.graph.kind == graph::DocumentKind::function;
-      const std::string name = is_function ? graph.graph.outputs[i].name : names_of_passes[i];
+      const bool has_outputs = graph.graph.kind != graph::DocumentKind::effect;
+      const std::string name = has_outputs ? graph.graph.outputs[i].name : names_of_passes[i];
       edge(source_of(graph.outputs[i], drawn, inputs), output_box(name, graph.outputs[i].needed),
            graph.outputs[i]);
     }

@@ -5,6 +5,7 @@
 #include "compiler/driver/dumps.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/lower.h"
+#include "compiler/lower/screen.h"
 #include "compiler/passes/derivatives.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/check.h"
@@ -99,9 +100,9 @@ std::vector<Image> images_of(const check::TypedGraph& typed) {
 }
 
 /// Where each parameter of the emitted function lies in the object's record. A matrix is passed as its columns.
-lower::FieldOffsets offsets_of(const std::vector<Field>& parameters, const std::vector<Image>& images) {
+lower::FieldOffsets offsets_of(const std::vector<Field>& parameters, const std::vector<Image>& images,
+                               int word = lower::object_word::parameters) {
   lower::FieldOffsets offsets;
-  int word = lower::object_word::parameters;
   for (const Field& parameter : parameters) {
     const int columns = parameter.type == "matrix33" ? 3 : parameter.type == "matrix44" ? 4 : 0;
     if (columns == 0 && parameter.words > 0) offsets.emplace_back(parameter.name, word);
@@ -164,6 +165,38 @@ std::optional<Effect> compile_effect(const support::Source& source, const Option
                              pixel_program(*typed, i, effect, options)});
   }
   return effect;
+}
+
+std::optional<Post> compile_post(const support::Source& source, const Options& options,
+                                 Diagnostics& diagnostics) {
+  const auto typed = read_graph(source, graph::DocumentKind::post, options, diagnostics);
+  if (typed == nullptr) return std::nullopt;
+  Post post{
+      typed->graph.name, typed->document, parameters_of(*typed), {}, {}, {}, false, typed->graph.enabled, {}};
+  std::vector<std::string> prefixes{lower::image_prefix(*typed, 0)};
+  for (const graph::InputImage& image : typed->graph.images) {
+    post.images.push_back(image.name);
+    prefixes.push_back(lower::image_prefix(*typed, prefixes.size()));
+  }
+  ir::Module module = lower::lower(*typed);
+  const auto reads = [&](std::string_view prefix) {
+    return module.find(std::string(prefix) + "_at") != ir::none;
+  };
+  for (const std::string& prefix : prefixes) post.reads.push_back(reads(prefix));
+  post.reads_depth = reads(lower::depth_prefix);
+  lower::FieldOffsets record = offsets_of(post.parameters, {}, 0);
+  int word = 0;
+  for (const Field& parameter : post.parameters) word += parameter.words;
+  for (const auto& [node, count] : lower::tap_counts(*typed)) {
+    post.taps.push_back(field(node, graph::Type::integer));
+    post.taps.back().value = {static_cast<float>(count)};
+    record.emplace_back(lower::tap_field(node), word++);
+  }
+  module.buffers = lower::frame_module().buffers;
+  const uint32_t kernel = lower::add_post_kernel(module, prefixes, record);
+  post.program = {lower::Stage::post, post.name, post.document, std::move(module), 0, {}, {}, options.tier};
+  finish(post.program, kernel, options);
+  return post;
 }
 
 std::optional<Program> compile_function(const support::Source& source, const Options& options,

@@ -57,6 +57,20 @@ struct Effect {
   std::vector<Pass> passes;
 };
 
+/// A full-screen effect.
+struct Post {
+  std::string name;
+  std::string document;
+  std::vector<Field>
+      parameters;           ///< with defaults, in the order of its record: no other words stand before them
+  std::vector<Field> taps;  ///< after them the number of taps of each node that sums some: `value` has it
+  std::vector<std::string> images;  ///< that it asks for by name
+  std::vector<bool> reads;          ///< of the image that it goes over, then of `images`: whether it reads it
+  bool reads_depth = false;
+  std::optional<size_t> enabled;  ///< of `parameters`: where it is 0, the post does nothing
+  Program program;
+};
+
 /// Which kind of document a source holds.
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
@@ -67,6 +81,10 @@ std::shared_ptr<const check::TypedGraph> check_document(const support::Source& s
 /// `source` is an effect document.
 std::optional<Effect> compile_effect(const support::Source& source, const Options& options,
                                      support::Diagnostics& diagnostics);
+
+/// `source` is a post document.
+std::optional<Post> compile_post(const support::Source& source, const Options& options,
+                                 support::Diagnostics& diagnostics);
 
 /// `source` is a function document; the program is its eval kernel.
 std::optional<Program> compile_function(const support::Source& source, const Options& options,

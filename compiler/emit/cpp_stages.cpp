@@ -77,6 +77,21 @@ constexpr std::string_view pixel_main =
     "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
     "  }\n";
 
+constexpr std::string_view post_main =
+    "  using Ints = int_of<Lanes>;\n"
+    "  for (int begin = 0; begin < count; begin += batch) {\n"
+    "    const Ints x = lane_index<Ints>() + (first + begin);\n"
+    "    const vec4<Lanes> color = post<Lanes>(buffers, x, y);\n"
+    "    float words[4][batch];\n"
+    "    store_lanes(words[0], color.x);\n"
+    "    store_lanes(words[1], color.y);\n"
+    "    store_lanes(words[2], color.z);\n"
+    "    store_lanes(words[3], color.w);\n"
+    "    const int wanted = count - begin < batch ? count - begin : batch;\n"
+    "    for (int lane = 0; lane < wanted; ++lane)\n"
+    "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
+    "  }\n";
+
 std::string eval_main(const ir::Function& kernel) {
   const std::vector<ResultWord> words = result_words(kernel, "row_results");
   const std::string count = std::to_string(words.size());
@@ -127,6 +142,10 @@ std::string cpp_stage(const ir::Module& module, uint32_t entry, lower::Stage sta
     case lower::Stage::eval:
       signature = "isoshade_eval(const BufferView* views, int first, int count, int* results)";
       body = eval_main(module.functions[entry]);
+      break;
+    case lower::Stage::post:
+      signature = "isoshade_post(const BufferView* views, int first, int y, int count, float* rgba)";
+      body = post_main;
       break;
     case lower::Stage::depth: support::bug("depth has no C++ stage");
   }

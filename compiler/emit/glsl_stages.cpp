@@ -94,6 +94,15 @@ std::string pixel_main() {
          "}\n";
 }
 
+std::string post_main() {
+  return std::string(canonical_bits) + std::string(canonical_vector) +
+         "\nvoid main() {\n"
+         "  ivec2 at = ivec2(gl_FragCoord.xy);\n"
+         "  precise vec4 made = post(at.x, at.y);\n"
+         "  color = intBitsToFloat(canonical(made));\n"
+         "}\n";
+}
+
 std::string word_bits(const ResultWord& word) {
   switch (word.scalar) {
     case ir::Scalar::floating: return "canonical(" + word.text + ")";
@@ -176,6 +185,10 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
       }
       interface = push_constants;
       body = eval_main(module.functions[entry]);
+      break;
+    case lower::Stage::post:
+      interface = "layout(location = 0) out vec4 color;\n";
+      body = post_main();
       break;
   }
   if (uses_hidden_zero(module, entry)) interface.append(binding(2)).append(zero);

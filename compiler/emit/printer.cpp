@@ -100,7 +100,8 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
   // Library functions and stages are named by us; lowering keeps authors' names off `shade`.
   const auto is_ours = [](const ir::Function& function) {
-    return (function.document.empty() && function.name != "main") || function.name == "shade";
+    return (function.document.empty() && function.name != "main") || function.name == "shade" ||
+           function.name == "post_process";
   };
   for (uint32_t index : *order)
     if (is_ours(module.functions[index])) globals.hold(module.functions[index].name);

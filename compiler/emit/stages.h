@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole shaders and whole C++ files: a kernel with the stage around it.
 //
-// GLSL. Set 0: bindings 0-7 are the buffers of lower/frame_layout.h (only those used are declared), 8 `clip`
-// (uvec4, written by vertex), 9 `ids` (isampler2D, read by pixel), 10 a word that is 0.0 (see ir::Opcode). Push constants, six ints:
+// GLSL. Set 0: bindings 0 to n - 1 are the buffers of lower/frame_layout.h (only those used are declared), n `clip`
+// (uvec4, written by vertex), n + 1 `ids` (isampler2D, read by pixel), n + 2 a word that is 0.0 (see ir::Opcode). Push
+// constants, six ints:
 //   object, light_count, program, first, count, width
 //   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as
 //   bits at
@@ -12,6 +13,7 @@
 //   vec4 at 0. eval    a fragment shader: row = first + x + y * width; discards rows >= count; results as
 //   bits, four to an
 //           `out ivec4` at locations 0, 1, ...
+//   post    a fragment shader: out vec4 at 0
 //
 // C++. Lanes are chosen by the macros ISOSHADE_LANES (1, 4, 8, 16) and ISOSHADE_REGISTERS (1, 2). A file
 // exports one of
@@ -19,6 +21,7 @@
 //   void isoshade_pixel(const BufferView* buffers, int object, int light_count, int count, const int* x,
 //                       const int* y, const int* triangle, float* rgba)
 //   void isoshade_eval(const BufferView* buffers, int first, int count, int* results)
+//   void isoshade_post(const BufferView* buffers, int first, int y, int count, float* rgba)   x from `first` on
 // with BufferView { const void* data; int size; } for each buffer, and 4 floats a vertex or pixel, or the
 // result words of a row, written one after another. The caller holds an FpGuard.
 #pragma once
@@ -36,7 +39,7 @@ struct Heading {
 };
 
 /// Which shader an eval program becomes. As a vertex shader it stores the words of row gl_VertexIndex, one
-/// record after another, at binding 8 (ints).
+/// record after another, at the binding of `clip` (ints).
 enum class EvalIn : uint8_t { fragment_shader, vertex_shader };
 
 std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading,

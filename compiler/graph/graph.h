@@ -146,6 +146,15 @@ struct Pass {
   Place place;
 };
 
+/// The output of a post, and the image that it goes over.
+inline constexpr std::string_view post_output = "color";
+
+/// An image that a post reads beside the one that it goes over.
+struct InputImage {
+  std::string name;
+  Place place;
+};
+
 struct Graph {
   support::Source source;
   DocumentKind kind = DocumentKind::function;  ///< never scene
@@ -153,8 +162,11 @@ struct Graph {
   Place name_place;
   std::vector<Input> inputs;
   std::vector<Node> nodes;
-  std::vector<Output> outputs;  ///< of a function or post, at least one
-  std::vector<Pass> passes;     ///< of an effect, at least one
+  std::vector<Output> outputs;          ///< of a function or post, at least one
+  std::vector<Pass> passes;             ///< of an effect, at least one
+  std::vector<InputImage> images = {};  ///< of a post
+  std::optional<uint32_t> enabled =
+      {};  ///< of a post: the parameter in `inputs` that is 0 where it does nothing
   std::vector<Expression> expressions = {};
   uint32_t expression_nodes = 0;  ///< that expressions stand for, beside the nodes that were written
 

@@ -215,6 +215,7 @@ std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
   } else {
     if (const Json* outputs = reader.object("outputs")) read_outputs(*outputs);
   }
+  if (kind == DocumentKind::post) read_post(reader);
   reader.finish();
   if (diagnostics_.error_count() != errors_before) return std::nullopt;
   return std::move(graph_);

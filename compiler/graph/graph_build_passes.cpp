@@ -26,13 +26,14 @@ std::optional<uint32_t> GraphBuilder::switch_of(const Json& json) {
     if (one) return i;
     diagnostics_
         .report(Id::type_mismatch, document_.span(json),
-                "a pass is switched by a boolean, an integer or a float, not by a " +
+                "a " + std::string(graph_.kind == DocumentKind::post ? "post" : "pass") +
+                    " is switched by a boolean, an integer or a float, not by a " +
                     std::string(type_name(input.type)))
         .note(graph_.span(input.name_place), "the parameter");
     return std::nullopt;
   }
   diagnostics_.report_unknown(Id::unknown_parameter, document_.span(json),
-                              "the effect has no parameter " + quote(json.string), json.string, names);
+                              "the " + std::string(kind_name(graph_.kind)) + " has no parameter " + quote(json.string), json.string, names);
   return std::nullopt;
 }
 

@@ -41,6 +41,8 @@ class GraphBuilder {
   void read_passes(const Json& passes);
   void read_pass(const Json& json);
   std::optional<uint32_t> switch_of(const Json& json);
+  void read_post(ObjectReader& reader);
+  void read_images(const Json& images);
 
   const Document& document_;
   support::Diagnostics& diagnostics_;

@@ -65,6 +65,10 @@ class Body {
   void make_row(const nodes::Row& row, uint32_t node);
   void make_call(const Node& node);
   void make_sum(uint32_t node);
+  /// How often a sum over lights or taps turns.
+  ir::ValueId turns_of(uint32_t sum);
+  void make_fetch(const Node& node);
+  ir::ValueId offset(const Operand& operand);
   Value transform(nodes::Transform what, const Node& node);
   Value image(uint32_t node);
   std::vector<uint32_t> nodes_under(uint32_t sum);
@@ -79,11 +83,12 @@ class Body {
   ir::Builder& b_;
   const check::TypedGraph& graph_;
   const Environment& environment_;
-  std::vector<Value> values_;        ///< of TypedGraph::types; of per-light nodes, those of the last loop
+  std::vector<Value> values_;        ///< of TypedGraph::types; of per-turn nodes, those of the last loop
   std::vector<uint32_t> origins_;    ///< of Graph::nodes; 0 until there is one
-  std::vector<uint32_t> summed_by_;  ///< the last sum over lights that met a node
+  std::vector<uint32_t> summed_by_;  ///< the last sum that met a node
   std::vector<uint32_t> position_;   ///< in TypedGraph::order
   std::vector<ir::ValueId> light_;   ///< the results of light_at in the current loop
+  ir::ValueId tap_ = ir::none;       ///< the number of the tap in the current loop
 };
 
 Value Body::read(const Operand& operand) {
@@ -146,11 +151,27 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
     out[0] = light_[static_cast<size_t>(*what)];
     return;
   }
-  if (row.is<nodes::SumLights>()) return make_sum(index);
   if (row.is<nodes::Image>()) {
     out[0] = image(index);
     return;
   }
+  if (const auto* what = std::get_if<nodes::Screen>(&row.lowering)) {
+    out[0] = environment_.screen.values[static_cast<size_t>(*what)];
+    return;
+  }
+  if (row.is<nodes::TapIndex>()) {
+    out[0] = tap_;
+    return;
+  }
+  if (row.is<nodes::Fetch>()) return make_fetch(node);
+  if (row.is<nodes::WorldPosition>()) {
+    out[0] = relative_position(b_, environment_.screen);
+    constexpr auto eye = static_cast<size_t>(nodes::Screen::camera_position);
+    if (graph_.operands_of(node)[0].index == 0)
+      out[0] = b_.op(ir::Opcode::fadd, {environment_.screen.values[eye], out[0].id()});
+    return;
+  }
+  if (row.is_sum()) return make_sum(index);
   constexpr size_t most = 8;
   std::array<Value, most> in;
   std::array<Type, most> types{};
@@ -233,6 +254,28 @@ void Body::make_call(const Node& node) {
   }
 }
 
+/// An offset of an image; none where it is written as 0.
+ir::ValueId Body::offset(const Operand& operand) {
+  if (operand.from == From::words && graph_.words[operand.index] == 0) return ir::none;
+  return read(operand).id();
+}
+
+void Body::make_fetch(const Node& node) {
+  const std::span<const Operand> ports = graph_.operands_of(node);
+  const std::span<Value> out = results_of(node);
+  const auto edge = [](const Operand& port) { return static_cast<nodes::Edge>(port.index); };
+  if (std::get<nodes::Fetch>(node.row->lowering) == nodes::Fetch::color) {
+    const ReadImage& image = environment_.screen.images[ports[0].index];
+    const bool linear = ports[4].index == 1;
+    out[0] = fetch_color(b_, image, offset(ports[1]), offset(ports[2]), edge(ports[3]), linear);
+    return;
+  }
+  out[0] = fetch_depth(b_, environment_.screen.depth, offset(ports[0]), offset(ports[1]), edge(ports[2]));
+  const bool as_distance = environment_.screen.depth_numerator != ir::none;
+  if (as_distance) out[1] = distance_of(b_, environment_.screen, out[0].id());
+  out[2] = b_.op(ir::Opcode::feq, {out[0].id(), b_.constant(0.0f)});
+}
+
 std::vector<uint32_t> Body::nodes_under(uint32_t sum) {
   if (position_.empty()) {
     position_.resize(graph_.nodes.size());
@@ -242,7 +285,7 @@ std::vector<uint32_t> Body::nodes_under(uint32_t sum) {
   for (size_t next = 0; next < found.size(); ++next) {
     for (const Operand& operand : graph_.operands_of(graph_.nodes[found[next]])) {
       if (operand.from != From::node || summed_by_[operand.index] == sum) continue;
-      if (!graph_.nodes[operand.index].per_light) continue;
+      if (!graph_.nodes[operand.index].per_turn) continue;
       summed_by_[operand.index] = sum;
       found.push_back(operand.index);
     }
@@ -261,9 +304,13 @@ void Body::make_sum(uint32_t index) {
   });
   const std::vector<uint32_t> zero(graph::float_count(summand.needed), 0);
   const Value initial = nodes::constant(b_, summand.needed, zero);
-  const auto body = [&](ir::ValueId light_index, std::span<const ir::ValueId> carried) {
+  const auto body = [&](ir::ValueId turn, std::span<const ir::ValueId> carried) {
+    if (node.row->is<nodes::SumTaps>()) {
+      const auto first = static_cast<int32_t>(graph_.operands_of(node)[1].index);
+      tap_ = first == 0 ? turn : b_.op(ir::Opcode::iadd, {turn, b_.constant(first)});
+    }
     if (asks_light) {
-      const std::array arguments{light_index, environment_.surface[world_position.index()]};
+      const std::array arguments{turn, environment_.surface[world_position.index()]};
       b_.set_origin(b_.add_origin("light", b_.function().origins[origin_of(index)].line));
       light_ = b_.call(environment_.light_at, arguments);
     }
@@ -272,7 +319,14 @@ void Body::make_sum(uint32_t index) {
     const ir::ValueId added = read(summand).id();
     return std::vector{b_.op(ir::Opcode::fadd, {carried[0], added})};
   };
-  results_of(node)[0] = b_.loop(environment_.light_count, initial.ids(), body).front();
+  results_of(node)[0] = b_.loop(turns_of(index), initial.ids(), body).front();
+}
+
+ir::ValueId Body::turns_of(uint32_t sum) {
+  if (graph_.nodes[sum].row->is<nodes::SumLights>()) return environment_.light_count;
+  for (const auto& [node, count] : environment_.screen.tap_counts)
+    if (node == sum) return count;
+  support::bug("a sum over taps without a count");
 }
 
 void Body::name_value(const Value& value, uint32_t origin, ir::ValueId first_new) {
@@ -283,8 +337,8 @@ void Body::name_value(const Value& value, uint32_t origin, ir::ValueId first_new
 void Body::name_results(uint32_t index, ir::ValueId first_new) {
   const Node& node = graph_.nodes[index];
   const std::span<const Value> results = results_of(node);
-  const bool light = node.row != nullptr && node.row->is<nodes::Light>();
-  if (light) {
+  const bool summand = node.row != nullptr && node.row->is_summand();
+  if (summand) {
     b_.name(results[0].id(), origin_of(index));
   } else if (results.size() == 1) {
     name_value(results[0], origin_of(index), first_new);
@@ -306,6 +360,7 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     : nodes(graph.nodes.size()), inputs(graph.graph.inputs.size()) {
   const auto need = [&](const Operand& operand) {
     if (operand.from == From::node) nodes[operand.index] = true;
+    screen.add(graph, operand);
     if (operand.from == From::input && operand.needed != Type::filename) inputs[operand.index] = true;
     if (operand.from == From::surface) surface[operand.index] = true;
   };
@@ -325,6 +380,7 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     time |= node.row->is<nodes::Time>();
     lights |= node.row->is<nodes::SumLights>();
     light_at |= node.row->is<nodes::Light>();
+    screen.add(graph, *it);
   }
   surface[world_position.index()] |= light_at;
 }
@@ -332,9 +388,9 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
 std::vector<Value> build_body(ir::Builder& builder, const check::TypedGraph& graph, const Needs& needs,
                               const Environment& environment, std::span<const Operand> results) {
   Body body(builder, graph, environment);
-  // Nodes that depend on the light are made inside of the loops that sum them.
+  // Nodes that depend on the light or the tap are made inside of the loops that sum them.
   for (const uint32_t node : graph.order)
-    if (needs.nodes[node] && !graph.nodes[node].per_light) body.make(node);
+    if (needs.nodes[node] && !graph.nodes[node].per_turn) body.make(node);
   std::vector<Value> values;
   for (const Operand& result : results) values.push_back(body.read(result));
   return values;

@@ -10,6 +10,7 @@
 #include "compiler/ir/builder.h"
 #include "compiler/lower/image_slots.h"
 #include "compiler/lower/lower.h"
+#include "compiler/lower/screen.h"
 #include "compiler/nodes/site.h"
 
 namespace isoshade::lower {
@@ -23,6 +24,7 @@ struct Needs {
   bool time = false;
   bool lights = false;    ///< a sum over lights
   bool light_at = false;  ///< what a light gives
+  ScreenNeeds screen;
 
   Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
 };
@@ -38,6 +40,7 @@ struct Environment {
   const ImageSlots* images = nullptr;
   std::vector<ir::ValueId>
       image_slots;  ///< of the slots: the texture, negative for none; none where not needed
+  ScreenInputs screen;
   std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called
 };
 

@@ -11,7 +11,18 @@
 namespace isoshade::lower {
 
 /// The buffers of every module with stages, in this order; the index is the Vulkan binding (set 0).
-enum class FrameBuffer : uint32_t { vertices, triangles, objects, lights, frame, inputs, texels, textures };
+enum class FrameBuffer : uint32_t {
+  vertices,
+  triangles,
+  objects,
+  lights,
+  frame,
+  inputs,
+  texels,
+  textures,
+  layers,
+  layer_records
+};
 
 struct FrameBufferInfo {
   std::string_view name;
@@ -20,12 +31,14 @@ struct FrameBufferInfo {
 inline constexpr FrameBufferInfo frame_buffers[] = {
     {"vertices", ir::Scalar::floating},  ///< mesh vertices, object space
     {"triangles", ir::Scalar::integer},  ///< clipped and snapped, see runtime/raster
-    {"objects", ir::Scalar::floating},   ///< transforms and effect parameters
+    {"objects", ir::Scalar::floating},   ///< transforms and effect parameters; of `post` its parameters alone
     {"lights", ir::Scalar::floating},    //
     {"frame", ir::Scalar::floating},     ///< the camera and the time
     {"inputs", ir::Scalar::integer},     ///< of `eval`: one row a record, floats as bits
     {"texels", ir::Scalar::floating},    ///< of all textures: r g b a, linear, row by row from the top
     {"textures", ir::Scalar::integer},   ///< where each texture lies in `texels`
+    {"layers", ir::Scalar::floating},    ///< of `post`: images, rows top down; r g b a, or the depth alone
+    {"layer_records", ir::Scalar::integer},
 };
 
 /// vertices: one record a mesh vertex.
@@ -98,7 +111,28 @@ inline constexpr int projection = 29;    ///< 4 columns of 4: view space -> clip
 /// What a pixel covers vertically, in world units: a constant, and what is added for each unit of distance along the
 /// view. One of them is 0.
 inline constexpr int pixel_size = 45;
-inline constexpr int count = 47;
+// What posts know of the camera.
+inline constexpr int camera_position = 47;   ///< world space
+inline constexpr int camera_direction = 50;  ///< unit, world space: the way it looks
+/// World space, in the middle of the screen; then what is added from there to its right and to its lower edge: the way
+/// from the camera that reaches one unit of distance along the view further ...
+inline constexpr int view_ray = 53;
+/// ... and where it begins, from the camera's position: 0 in perspective.
+inline constexpr int ray_origin = 62;
+/// The distance along the view is (n0 + n1 * depth) / (d0 + d1 * depth).
+inline constexpr int depth_numerator = 71;
+inline constexpr int depth_denominator = 73;
+inline constexpr int count = 75;
 }  // namespace frame_word
+
+/// layer_records: one record an image, in this order: the one that is made, the scene's depth, the one that the post
+/// goes over, and the images that its document lists.
+namespace image_word {
+inline constexpr int made = 0, depth = 1, color = 2;  ///< records
+inline constexpr int first = 0;  ///< its first word in `layers`; not of the one that is made
+inline constexpr int width = 1;  ///< in pixels
+inline constexpr int height = 2;
+inline constexpr int stride = 3;
+}  // namespace image_word
 
 }  // namespace isoshade::lower

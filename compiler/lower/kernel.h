@@ -83,6 +83,9 @@ class Kernel {
   }
 };
 
+/// A value of the type in `objects`: floats, also for booleans (0, 1) and integers.
+ir::ValueId load_field(Kernel& k, ir::Type type, Int record, int offset);
+
 inline ir::Parameter int_parameter(std::string name) { return {std::move(name), ir::int_type, "", false}; }
 inline ir::Parameter uniform_int(std::string name) { return {std::move(name), ir::int_type, "", true}; }
 

@@ -21,9 +21,10 @@ using nodes::Value;
 
 /// What the stages around authored functions are called: no document takes these names.
 constexpr std::string_view names_of_stages[] = {
-    shade_name,     move_vertex_name, light_at_name, texel_at_name, texture_size_name,
-    "vertex",       "depth",          "pixel",       "eval",        "edges_at",
-    "edges_at_ddx", "edges_at_ddy",   "attribute2",  "attribute3",  "attribute4"};
+    shade_name,   move_vertex_name, light_at_name,  texel_at_name,  texture_size_name,
+    post_name,    "vertex",         "depth",        "pixel",        "eval",
+    "post",       "edges_at",       "edges_at_ddx", "edges_at_ddy", "attribute2",
+    "attribute3", "attribute4"};
 
 /// A name that neither the stages nor library functions have.
 std::string authored_name(const std::string& name) {
@@ -40,6 +41,7 @@ class ModuleLowering {
   }
   /// `name`: of the function that gives `root`.
   ir::Module lower_pass(const TypedGraph& graph, const Operand& root, const char* name, ir::Result result);
+  ir::Module lower_post(const TypedGraph& graph);
 
  private:
   struct Parameters {
@@ -83,6 +85,13 @@ Value parameter_value(ir::Builder& b, size_t first, Type type) {
   const size_t count = nodes::column_count(type);
   for (size_t i = 0; i < count; ++i) ids[i] = b.parameter(first + i);
   return Value(std::span<const ir::ValueId>(ids).first(count));
+}
+
+/// A colour with alpha 1 if it has none.
+ir::ValueId with_alpha(ir::Builder& b, ir::ValueId color) {
+  if (b.type(color).width == 4) return color;
+  return b.construct(
+      std::array{b.extract(color, 0), b.extract(color, 1), b.extract(color, 2), b.constant(1.0f)});
 }
 
 /// Keeps names apart where the columns of a matrix are called as another input is.
@@ -208,12 +217,45 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
   environment.images = &images;
   for (const bool read : reads) environment.image_slots.push_back(read ? b.parameter(next++) : ir::none);
   if (needs.lights) environment.light_count = b.parameter(last);
-  ir::ValueId result = build_body(b, graph, needs, environment, roots)[0].id();
-  if (root.needed == Type::color3) {
-    const std::array rgba{b.extract(result, 0), b.extract(result, 1), b.extract(result, 2), b.constant(1.0f)};
-    result = b.construct(rgba);
+  const ir::ValueId result = build_body(b, graph, needs, environment, roots)[0].id();
+  b.finish(std::array{root.needed == Type::color3 ? with_alpha(b, result) : result});
+  return std::move(module_);
+}
+
+ir::Module ModuleLowering::lower_post(const TypedGraph& graph) {
+  const Needs needs(graph, graph.outputs);
+  for (std::string& name : screen_function_names(graph)) names_.insert(std::move(name));
+  add_callees(graph, needs);
+  declare_reads(module_, graph, needs.screen);
+
+  const auto index = static_cast<uint32_t>(module_.functions.size());
+  ir::Function function;
+  function.name = post_name;
+  function.document = graph.document;
+  function.results = {{"color", ir::vector_type(4)}};
+  add_screen_parameters(function, graph, needs.screen);
+  const size_t time = function.parameters.size();
+  if (needs.time) function.parameters.push_back({"time", ir::float_type, "frame", true});
+  Parameters parameters{function};
+  std::vector<size_t> first(graph.graph.inputs.size());
+  for (size_t i = 0; i < first.size(); ++i) {
+    const graph::Input& input = graph.graph.inputs[i];
+    if (needs.inputs[i]) first[i] = parameters.add(input.name, input.type, "parameters", true);
   }
-  b.finish(std::array{result});
+  add_tap_parameters(function, graph, needs.screen);
+  module_.functions.push_back(std::move(function));
+
+  ir::Builder b(module_, index);
+  Environment environment;
+  environment.function_of = function_of();
+  environment.screen = screen_inputs(b, graph, needs.screen);
+  if (needs.time) environment.time = b.parameter(time);
+  for (size_t i = 0; i < first.size(); ++i) {
+    environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
+                                                 : Value());
+  }
+  const Value color = build_body(b, graph, needs, environment, graph.outputs)[0];
+  b.finish(std::array{with_alpha(b, color.id())});
   return std::move(module_);
 }
 
@@ -252,11 +294,13 @@ const std::vector<SurfaceField>& surface_fields() {
 }
 
 std::string entry_name(const TypedGraph& graph) {
-  return graph.graph.kind == DocumentKind::function ? authored_name(graph.graph.name) : shade_name;
+  if (graph.graph.kind == DocumentKind::function) return authored_name(graph.graph.name);
+  return graph.graph.kind == DocumentKind::post ? post_name : shade_name;
 }
 
 ir::Module lower(const TypedGraph& graph, const LowerOptions& options) {
   if (graph.graph.kind == DocumentKind::function) return ModuleLowering().lower_function(graph);
+  if (graph.graph.kind == DocumentKind::post) return ModuleLowering().lower_post(graph);
   support::check(options.pass < graph.graph.passes.size(), "the effect has no such pass");
   const Operand* position = graph.position_of(options.pass);
   if (options.part == PassPart::color) {

@@ -25,6 +25,8 @@ struct LowerOptions {
 inline constexpr const char* shade_name = "shade";
 inline constexpr const char* move_vertex_name = "move_vertex";
 inline constexpr const char* light_at_name = "light_at";
+/// That of a post's.
+inline constexpr const char* post_name = "post_process";
 
 /// The module of a function document or of one pass of an effect: the functions that it uses, one a document,
 /// and last its own. Nodes that the result does not depend on are left out. Calls to functions.def stay
@@ -48,6 +50,18 @@ inline constexpr const char* light_at_name = "light_at";
 ///
 /// Its position, if the pass has one, becomes `move_vertex` -> (position: vec3), with the same parameters but for
 /// light_count; the surface is that of the mesh at a vertex.
+///
+/// A post becomes `post_process` -> (color: vec4) with these parameters, as far as they are used:
+///   screen.pixel, .coordinate vec2, .view_ray, .relative_origin vec3 (the ray begins there, from the camera's position)
+///     and for each image NAME that is read .NAME_x, .NAME_y int (its pixel under the centre of the pixel that is made)
+///     and .NAME_inside vec2 (where in that pixel): "depth", "color" for the one that the post goes over, "image_NAME"
+///     for those that the document lists
+///   sizes.screen     vec2, uniform; and .NAME_width, .NAME_height int
+///   camera.position, .direction vec3, uniform; .depth_numerator, .depth_denominator vec2 (frame_word)
+///   frame.time, parameters.NAME  as in a pass
+///   taps.NODE        int, uniform: how many taps the node sums
+/// It reads images by NAME_at(x: int, y: int) -> (color: vec4), and the depth by depth_at -> (depth: float): declared
+/// without bodies (see add_post_kernel), only called for pixels that the image has.
 ir::Module lower(const check::TypedGraph& graph, const LowerOptions& options = {});
 
 /// A name that the kernels around `shade` and `move_vertex` understand.

@@ -58,15 +58,6 @@ Vec4 object_to_clip(Kernel& k, Int object, Vec3 position) {
   return to_clip(k, FrameBuffer::objects, object, object_word::projected, position);
 }
 
-ir::ValueId load_typed(Kernel& k, ir::Type type, Int object, int offset) {
-  const auto word = [&](int i) { return k.load(FrameBuffer::objects, object + Int(offset + i)); };
-  if (type == ir::int_type) return to_int(word(0)).value;
-  if (type == ir::bool_type) return (word(0) != Float(0.0f)).value;
-  std::vector<ir::ValueId> components;
-  for (int i = 0; i < type.width; ++i) components.push_back(word(i).value);
-  return k.b.construct(components);
-}
-
 /// What a kernel passes to an authored function for one of its parameters, but for light_count.
 /// `parameters`: where each effect parameter and image lies in the record.
 ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& surface, Int object,
@@ -82,7 +73,7 @@ ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& su
   for (const auto& [name, word] : parameters)
     if (name == parameter.name) offset = word;
   support::check(offset >= 0, parameter.name);
-  return k.named(parameter.name, load_typed(k, parameter.type, object, offset));
+  return k.named(parameter.name, load_field(k, parameter.type, object, offset));
 }
 
 /// glTF KHR_lights_punctual: inverse square, windowed by the range if there is one.
@@ -122,8 +113,17 @@ void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
 
 }  // namespace
 
+ir::ValueId load_field(Kernel& k, ir::Type type, Int object, int offset) {
+  const auto word = [&](int i) { return k.load(FrameBuffer::objects, object + Int(offset + i)); };
+  if (type == ir::int_type) return to_int(word(0)).value;
+  if (type == ir::bool_type) return (word(0) != Float(0.0f)).value;
+  std::vector<ir::ValueId> components;
+  for (int i = 0; i < type.width; ++i) components.push_back(word(i).value);
+  return k.b.construct(components);
+}
+
 std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"vertex", "depth", "pixel", "eval"};
+  constexpr std::string_view names[] = {"vertex", "depth", "pixel", "eval", "post"};
   return names[static_cast<size_t>(stage)];
 }
 

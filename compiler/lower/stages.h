@@ -19,8 +19,9 @@ namespace isoshade::lower {
 ///   depth  (x: int, y: int, triangle: int) -> (depth: float)                      the same for every scene
 ///   pixel  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform) -> (color: vec4)
 ///   eval   (row: int) -> (the function's results)
+///   post   (x: int, y: int uniform) -> (color: vec4)
 /// `object` is the first word of the object's record; x and y are whole pixels.
-enum class Stage : uint8_t { vertex, depth, pixel, eval };
+enum class Stage : uint8_t { vertex, depth, pixel, eval, post };
 std::string_view name(Stage stage);
 
 /// Which kinds of light a scene has: the others are not asked about.
@@ -52,5 +53,21 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
 
 /// Adds `eval` around `function`: its arguments are the words of record `row` of `inputs`, in order.
 uint32_t add_eval_kernel(ir::Module& module, uint32_t function);
+
+/// Adds `post` around the module's `post_process`, and the bodies of the functions that read images.
+/// `images`: how the names begin that tell of each image (image_prefix): the one that the post goes over, then those
+/// of its document. `record`: where each parameter lies in `objects`, and under tap_field() the number of taps of each
+/// sum.
+uint32_t add_post_kernel(ir::Module& module, const std::vector<std::string>& images,
+                         const FieldOffsets& record);
+/// No parameter has such a name.
+inline std::string tap_field(const std::string& node) { return node + " taps"; }
+
+/// The groups of parameters of `post_process`, and the prefix of names that tell of the depth.
+inline constexpr const char* screen_group = "screen";
+inline constexpr const char* sizes_group = "sizes";
+inline constexpr const char* camera_group = "camera";
+inline constexpr const char* taps_group = "taps";
+inline constexpr std::string_view depth_prefix = "depth";
 
 }  // namespace isoshade::lower

@@ -86,7 +86,9 @@ std::string type_text(const PortType& type) {
   switch (type.kind) {
     case PortType::Kind::type_name: return "the name of a type: " + types_text(type.accepts);
     case PortType::Kind::choice: return "one of its names";
-    case PortType::Kind::component: return "a whole number, written in place";
+    case PortType::Kind::component:
+    case PortType::Kind::integer: return "a whole number, written in place";
+    case PortType::Kind::image: return "the name of an image";
     case PortType::Kind::value: break;
   }
   constexpr std::string_view suffixes[] = {"", " (T)", " (U)"};
@@ -127,7 +129,9 @@ std::string expression_text() {
 std::string row_text(const Row& row) {
   std::string text =
       std::string(row.name) + " (" + std::string(row.group) + ")\n  " + std::string(row.doc) + "\n";
-  if (row.belongs_to_effects()) text += "  Only in effects.\n";
+  constexpr std::string_view homes[] = {"", "  Only in effects and posts.\n", "  Only in effects.\n",
+                                        "  Only in posts.\n"};
+  text += homes[static_cast<size_t>(row.home())];
   size_t width = 0;
   for (const Port& port : row.ports) width = std::max(width, port.name.size() + 2);
   for (const Output& output : row.outputs) width = std::max(width, output.name.size() + 2);
@@ -139,7 +143,7 @@ std::string row_text(const Row& row) {
     line += choices.empty() ? type_text(port.type) : joined(choices);
     const std::string value = default_text(port);
     if (!value.empty()) line += "; default " + value;
-    if (port.required(false)) line += "; required";
+    if (port.required(true)) line += "; required";
     text += line + "\n  " + std::string(width, ' ') + std::string(port.doc) + "\n";
   }
   text += "outputs\n";

@@ -67,8 +67,9 @@ struct Port {
   Default value = {};
   std::vector<std::string_view> choices = {};  ///< of a PortType::Kind::choice
 
-  bool required(bool in_function) const {
-    return value.index() == 0 || (in_function && std::holds_alternative<SurfaceValue>(value));
+  /// `has_surface`: in an effect.
+  bool required(bool has_surface) const {
+    return value.index() == 0 || (!has_surface && std::holds_alternative<SurfaceValue>(value));
   }
 };
 
@@ -97,6 +98,34 @@ enum class Light : uint8_t {
 /// Sums its input over the lights.
 struct SumLights {};
 
+/// What a post document knows of its pixel and of the camera.
+enum class Screen : uint8_t {
+  pixel,            ///< vec2, pixels: its centre
+  coordinate,       ///< vec2, 0 to 1, v down: its centre
+  size,             ///< vec2, pixels: of the image that is made
+  view_ray,         ///< vec3, world space, as long as one unit of distance along the view
+  relative_origin,  ///< vec3, world space: where its ray begins, from the camera's position
+  camera_position,  ///< vec3, world space
+  camera_direction  ///< vec3, unit, world space: the way the camera looks
+};
+inline constexpr size_t screen_value_count = 7;
+
+/// Reads an image of the post chain, or the scene's depth, near the pixel.
+enum class Fetch : uint8_t { color, depth };
+
+/// What is read beyond an image.
+enum class Edge : uint8_t { clamp, mirror, constant };
+inline const std::vector<std::string_view> edge_names{"clamp", "mirror", "constant"};
+
+inline constexpr int64_t max_taps = 64;  ///< of a sum
+
+/// The point that the pixel shows.
+struct WorldPosition {};
+
+/// Sums its input over taps, and the number of the tap below such a sum.
+struct SumTaps {};
+struct TapIndex {};
+
 /// Takes its first port from the space of the second to that of the third.
 enum class Transform : uint8_t { point, vector, normal };
 
@@ -109,8 +138,11 @@ enum class Derivative : uint8_t { x, y, width };
 /// Makes the outputs of a Site from its inputs.
 using Custom = void (*)(Site&);
 
-using Lowering =
-    std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative, Image, Custom>;
+using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative,
+                              Image, Screen, Fetch, WorldPosition, SumTaps, TapIndex, Custom>;
+
+/// Which documents a node has a meaning in.
+enum class Home : uint8_t { anywhere, drawn /**< effects and posts */, effects, posts };
 
 /// What a row demands of its ports beyond their types, and what is wrong there.
 struct Refusal {
@@ -135,11 +167,17 @@ struct Row {
   bool is() const {
     return std::holds_alternative<Kind>(lowering);
   }
-  /// Whether it speaks of the surface, its pixels, textures, the scene or its lights: function documents have none of
-  /// these.
-  bool belongs_to_effects() const {
-    return is<Surface>() || is<Transform>() || is<Time>() || is<Light>() || is<SumLights>() ||
-           is<Derivative>() || is<Image>();
+  /// Whether it computes its input again and again, and adds up.
+  bool is_sum() const { return is<SumLights>() || is<SumTaps>(); }
+  /// Whether it differs from one turn of a sum to the next.
+  bool is_summand() const { return is<Light>() || is<TapIndex>(); }
+  /// Nodes that speak of the surface, textures, the scene or the screen have no meaning in function documents.
+  Home home() const {
+    if (is<Time>()) return Home::drawn;
+    if (is<Surface>() || is<Transform>() || is<Light>() || is<SumLights>() || is<Derivative>() || is<Image>())
+      return Home::effects;
+    const bool screen = is<Screen>() || is<Fetch>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();
+    return screen ? Home::posts : Home::anywhere;
   }
 };
 

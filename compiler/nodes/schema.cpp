@@ -87,6 +87,8 @@ SchemaJson port_schema(const Port& port) {
     }
     case PortType::Kind::choice: return described(one_of(port.choices), doc);
     case PortType::Kind::component: return described({{"type", "integer"}, {"minimum", 0}}, doc);
+    case PortType::Kind::integer: return described({{"type", "integer"}}, doc);
+    case PortType::Kind::image: return described(reference("id"), doc);
     case PortType::Kind::value: break;
   }
   return described(value_schema(port.type.accepts), doc);
@@ -94,7 +96,7 @@ SchemaJson port_schema(const Port& port) {
 
 SchemaJson row_schema(const Row& row) {
   std::vector<SchemaKey> keys{{"type", true, true}, {"doc", string_schema()}};
-  for (const Port& port : row.ports) keys.push_back({port.name, port_schema(port), port.required(false)});
+  for (const Port& port : row.ports) keys.push_back({port.name, port_schema(port), port.required(true)});
   return object_schema(keys);
 }
 
@@ -182,7 +184,12 @@ std::string json_schema() {
       graph_schema("function", {{"inputs", map_schema(reference("input"))}, {"outputs", outputs, true}});
   definitions["effect"] = graph_schema(
       "effect", {{"parameters", parameters}, {"passes", array_schema(reference("pass"), 1, 64), true}});
-  definitions["post"] = graph_schema("post", {{"parameters", parameters}, {"outputs", outputs, true}});
+  definitions["post"] = graph_schema(
+      "post",
+      {{"parameters", parameters},
+       {"images", described(array_schema(reference("id"), 0, 8), "names of further images that it reads")},
+       {"enabled", described(reference("id"), "a parameter: where it is 0, the post is not run")},
+       {"outputs", object_schema({{"color", reference("link"), true}}), true}});
   SchemaJson scene = scene_schema(definitions);
   definitions["scene"] = std::move(scene);
   std::vector<SchemaJson> kinds;

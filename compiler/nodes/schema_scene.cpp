@@ -94,6 +94,14 @@ SchemaJson scene_schema(SchemaJson& definitions) {
                      {"transform", reference("transform")},
                      {"parameters", map_schema(reference("literal"))},
                      {"repeat", array_schema(reference("repeat"), 0, 3)}});
+  definitions["scenepost"] = object_schema(
+      {{"name", reference("id"), true},
+       {"effect", described(string_schema(), "path of the post's document"), true},
+       {"parameters", map_schema(reference("literal"))},
+       {"inputs", described(map_schema(reference("id")),
+                            "\"scene\" or an earlier post, for each image; \"color\" is "
+                            "the one that it goes over, if not that of the post before")},
+       {"size", described(number_schema(1.0 / 8192, 1), "of its image, as a fraction of the scene's")}});
   definitions["output"] = object_schema({{"encoding", one_of({"srgb", "linear"})}, {"exposure", brightness}});
   std::vector<SchemaKey> keys = document_keys("scene");
   const std::vector<SchemaKey> rest{
@@ -103,7 +111,7 @@ SchemaJson scene_schema(SchemaJson& definitions) {
       {"camera", reference("camera"), true},
       {"lights", map_schema(reference("light"))},
       {"objects", map_schema(reference("object"))},
-      {"posts", array_schema(SchemaJson::object(), 0, 0)},
+      {"posts", array_schema(reference("scenepost"), 0, 64)},
       {"output", reference("output")}};
   keys.insert(keys.end(), rest.begin(), rest.end());
   return object_schema(keys);

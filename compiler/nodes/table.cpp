@@ -25,6 +25,7 @@ const std::vector<Row>& table() {
     add("texture", texture_rows());
     add("geometry", geometry_rows());
     add("light", light_rows());
+    add("screen", screen_rows());
     return all;
   }();
   return rows;

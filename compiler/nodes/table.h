@@ -31,5 +31,6 @@ std::vector<Row> procedural_rows();
 std::vector<Row> texture_rows();
 std::vector<Row> geometry_rows();
 std::vector<Row> light_rows();
+std::vector<Row> screen_rows();
 
 }  // namespace isoshade::nodes

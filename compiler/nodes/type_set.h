@@ -31,7 +31,9 @@ struct PortType {
     value,      ///< a value of one of `accepts`
     type_name,  ///< a literal string: the name of the type that `variable` is
     choice,     ///< a literal string: one of the port's choices
-    component   ///< a literal integer: which component of the value of `variable`, or a number of things
+    component,  ///< a literal integer: which component of the value of `variable`, or a number of things
+    integer,    ///< a literal integer, also below 0
+    image       ///< a literal string: one of the document's images
   };
   TypeSet accepts;
   Variable variable = Variable::none;
@@ -63,6 +65,9 @@ inline constexpr PortType Any{value_types, Variable::t};
 inline constexpr PortType Other{value_types, Variable::u};  ///< of another type than Any
 inline constexpr PortType Choice{{}, Variable::none, PortType::Kind::choice};
 inline constexpr PortType WholeNumber{{}, Variable::none, PortType::Kind::component};
+
+inline constexpr PortType SignedNumber{{}, Variable::none, PortType::Kind::integer};
+inline constexpr PortType ImageName{{}, Variable::none, PortType::Kind::image};
 
 /// The same variable's name: "to": "color3".
 constexpr PortType name_of(PortType type) { return {type.accepts, type.variable, PortType::Kind::type_name}; }

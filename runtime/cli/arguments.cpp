@@ -143,7 +143,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   CompileArguments compile;
   CLI::App* compile_app =
       app.add_subcommand("compile", "Write the programs of a graph as GLSL, C++ and SPIR-V");
-  compile_app->add_option("GRAPH", compile.graph, "A function or effect document")->required();
+  compile_app->add_option("GRAPH", compile.graph, "A function, effect or post document")->required();
   compile_app->add_option("-o,--output", compile.output,
                           "The folder to write to; with --dump-after it may be left out");
   compile_app->add_option("--target", compile.targets, "What to write: glsl, cpp, spirv")
@@ -230,7 +230,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   DrawArguments draw;
   CLI::App* draw_app = app.add_subcommand("draw", "Draw a graph as a picture, by Graphviz");
-  draw_app->add_option("GRAPH", draw.graph, "A function or effect document")->required();
+  draw_app->add_option("GRAPH", draw.graph, "A function, effect or post document")->required();
   draw_app->add_option("-o,--output", draw.output, "FILE.svg, FILE.png or FILE.dot")->required();
   draw_app->add_option("--depth", draw.depth, "How deep called functions are drawn inside each other")
       ->check(CLI::Range(0, 16))

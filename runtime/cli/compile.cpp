@@ -134,6 +134,17 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
   });
 }
 
+bool write_post(const driver::Post& post, std::string_view precision, Writer& writer) {
+  ordered_json reflection{{"post", post.name}, {"document", post.document}, {"precision", precision}};
+  reflection["parameters"] = reflect(post.parameters);
+  reflection["taps"] = reflect(post.taps);
+  reflection["images"] = post.images;
+  reflection["reads_depth"] = post.reads_depth;
+  if (post.enabled) reflection["enabled"] = post.parameters[*post.enabled].name;
+  return writer.write(post.name + ".json", reflection.dump(2) + "\n") &&
+         writer.program(post.name + ".post", post.program);
+}
+
 bool write_function(const driver::Program& program, std::string_view precision, Writer& writer) {
   ordered_json reflection{
       {"function", program.name}, {"document", program.document}, {"precision", precision}};
@@ -170,6 +181,9 @@ int compile(const CompileArguments& arguments, const Common& common) {
   if (kind == graph::DocumentKind::function) {
     const auto program = driver::compile_function(source, options, diagnostics);
     done = program && write_function(*program, functions::tier_name(options.tier), writer);
+  } else if (kind == graph::DocumentKind::post) {
+    const auto post = driver::compile_post(source, options, diagnostics);
+    done = post && write_post(*post, functions::tier_name(options.tier), writer);
   } else if (kind) {
     const auto effect = driver::compile_effect(source, options, diagnostics);
     done = effect && write_effect(*effect, functions::tier_name(options.tier), writer);

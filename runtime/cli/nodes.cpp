@@ -81,7 +81,7 @@ int nodes(const NodesArguments& arguments, const Common& common) {
     return failure;
   }
   std::string text = nodes::row_text(*row);
-  if (!row->belongs_to_effects()) text += cost_text(*row);
+  if (row->home() == nodes::Home::anywhere) text += cost_text(*row);
   std::fputs(text.c_str(), stdout);
   return success;
 }

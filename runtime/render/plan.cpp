@@ -79,7 +79,8 @@ class Planner {
   };
 
   bool compile_effects();
-  support::Source read_effect(const scene::Object& object);
+  bool compile_posts();
+  support::Source read_document(const std::string& path, const support::Span& where);
   uint32_t add_program(const driver::Program& program);
   bool may_read(const std::string& path, const support::Span& where);
   bool make_objects();
@@ -112,6 +113,7 @@ class Planner {
   std::map<MeshKey, size_t> mesh_by_shape_;
   std::vector<size_t> mesh_of_object_;
   TextureStore textures_;
+  std::vector<const driver::Post*> posts_;  ///< of each post of the scene
 };
 
 bool Planner::compile_effects() {
@@ -123,7 +125,7 @@ bool Planner::compile_effects() {
     const auto [found, is_new] = known.try_emplace(object.effect, plan_.effects.size());
     effect_of_object_.push_back(found->second);
     if (!is_new) continue;
-    const support::Source source = read_effect(object);
+    const support::Source source = read_document(object.effect, object.effect_where);
     auto effect = source != nullptr ? driver::compile_effect(source, options, diagnostics_) : std::nullopt;
     if (!effect && !diagnostics_.full() && !diagnostics_.all().empty()) {
       diagnostics_.all().back().note(object.effect_where, "the effect of " + quote(object.name));
@@ -154,9 +156,30 @@ bool Planner::may_read(const std::string& path, const support::Span& where) {
   return false;
 }
 
-support::Source Planner::read_effect(const scene::Object& object) {
-  if (!may_read(object.effect, object.effect_where)) return nullptr;
-  return graph::read_source(object.effect, diagnostics_, object.effect_where);
+support::Source Planner::read_document(const std::string& path, const support::Span& where) {
+  if (!may_read(path, where)) return nullptr;
+  return graph::read_source(path, diagnostics_, where);
+}
+
+bool Planner::compile_posts() {
+  std::map<std::string, size_t> known;
+  std::vector<size_t> document_of_post;
+  bool good = true;
+  for (const scene::Post& post : scene_.posts) {
+    const auto [found, is_new] = known.try_emplace(post.effect, plan_.post_documents.size());
+    document_of_post.push_back(found->second);
+    if (!is_new) continue;
+    const support::Source source = read_document(post.effect, post.effect_where);
+    auto compiled =
+        source != nullptr ? driver::compile_post(source, options_.compiler, diagnostics_) : std::nullopt;
+    if (!compiled && !diagnostics_.full() && !diagnostics_.all().empty())
+      diagnostics_.all().back().note(post.effect_where, "the effect of post " + quote(post.name));
+    good = good && compiled.has_value();
+    plan_.post_documents.push_back(compiled ? *std::move(compiled) : driver::Post{});
+  }
+  // Only now, when no document moves any more.
+  for (const size_t document : document_of_post) posts_.push_back(&plan_.post_documents[document]);
+  return good;
 }
 
 /// Programs that do the same are run as one: the vertex programs of most effects are.
@@ -309,6 +332,7 @@ void Planner::store_frame() {
       words[static_cast<size_t>(word::projection + 4 * c + r)] = scene::canonical(view_.clip_from_view[c][r]);
   for (int i = 0; i < 2; ++i)
     words[static_cast<size_t>(word::pixel_size + i)] = scene::canonical(view_.pixel_size[i]);
+  scene::store_camera(scene_.camera, plan_.frame.width, plan_.frame.height, words);
 }
 
 void Planner::place_object(size_t o) {
@@ -353,7 +377,8 @@ void Planner::report_skips(size_t o, const std::vector<Skipped>& skipped) {
 
 std::optional<Plan> Planner::plan() {
   Clock clock;
-  if (!compile_effects()) return std::nullopt;
+  const bool effects = compile_effects();
+  if (!compile_posts() || !effects) return std::nullopt;
   plan_.stats.compile_seconds = clock.lap();
   if (!make_objects()) return std::nullopt;
   textures_.store(plan_.frame);
@@ -372,6 +397,10 @@ std::optional<Plan> Planner::plan() {
     }
     for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
     for (size_t i = 0; i < 4; ++i) frame.background[i] = scene::canonical(scene_.background[i]);
+    auto posts =
+        plan_posts(scene_, posts_, frame.width, frame.height, options_.skip, plan_.stats.skips, diagnostics_);
+    if (!posts) return std::nullopt;
+    plan_.posts = *std::move(posts);
   }
   frame.light_count = static_cast<int>(scene_.lights.size());
 
@@ -384,6 +413,7 @@ std::optional<Plan> Planner::plan() {
   stats.textures = static_cast<int64_t>(textures_.count());
   stats.texels = static_cast<int64_t>(frame.texels.size()) / 4;
   stats.lights = frame.light_count;
+  stats.posts = static_cast<int64_t>(plan_.posts.steps.size());
   stats.plan_seconds = clock.lap();
   return std::move(plan_);
 }

@@ -8,6 +8,7 @@
 
 #include "backends/backend.h"
 #include "compiler/driver/driver.h"
+#include "runtime/render/posts.h"
 #include "runtime/render/stats.h"
 #include "runtime/scene/gltf.h"
 #include "runtime/scene/mesh.h"
@@ -41,7 +42,9 @@ struct StoredMesh {
 struct Plan {
   std::vector<driver::Effect> effects;
   std::vector<StoredMesh> meshes;
+  std::vector<driver::Post> post_documents;
   backends::Frame frame;
+  PostChain posts;
   PlanStats stats;
 
   Plan() = default;

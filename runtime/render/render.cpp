@@ -45,6 +45,8 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
 
   if (!backend.draw(frame, vertices, triangles, image, diagnostics)) return false;
   stats.draw_seconds = clock.lap();
+  if (!run_posts(plan.posts, frame.frame, backend, image, stats, diagnostics)) return false;
+  stats.post_seconds = clock.lap();
   return true;
 }
 

@@ -18,17 +18,22 @@ std::string text(const PlanStats& stats) {
       stats.copies, stats.draws, stats.lights, stats.meshes, stats.mesh_vertices, stats.vertices,
       stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, textures,
       1e3 * stats.plan_seconds);
+  if (stats.posts > 0) text += fmt::format("posts:    {}\n", stats.posts);
   for (const Skip& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
   return text;
 }
 
 std::string text(const DrawStats& stats) {
-  return fmt::format(
+  std::string text = fmt::format(
       "vertices: {:.1f} ms\n"
       "clip:     {:.1f} ms; leaves {} triangles, makes {} vertices\n"
       "draw:     {:.1f} ms\n",
       1e3 * stats.transform_seconds, 1e3 * stats.clip_seconds, stats.triangles, stats.made_vertices,
       1e3 * stats.draw_seconds);
+  if (stats.kept_images > 0)
+    text += fmt::format("posts:    {:.1f} ms; at most {} images at a time\n", 1e3 * stats.post_seconds,
+                        stats.kept_images);
+  return text;
 }
 
 }  // namespace isoshade::render

@@ -22,6 +22,7 @@ struct PlanStats {
   int64_t effects = 0, programs = 0;      ///< compiled
   int64_t textures = 0, texels = 0;  ///< stored; with mip levels
   int64_t lights = 0;
+  int64_t posts = 0;  ///< that are run
   double compile_seconds = 0, plan_seconds = 0;
   std::vector<Skip> skips;
 };
@@ -29,7 +30,8 @@ struct PlanStats {
 struct DrawStats {
   int64_t triangles = 0;      ///< left by clipping and culling
   int64_t made_vertices = 0;  ///< by clipping
-  double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0;
+  int64_t kept_images = 0;    ///< by the post chain: the most at a time, with the one that is made
+  double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0, post_seconds = 0;
 };
 
 /// Lines of text, each with its end.

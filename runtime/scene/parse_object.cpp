@@ -73,17 +73,6 @@ Transform parse_transform(const Document& document, const Json& json, const std:
   return transform;
 }
 
-std::vector<Parameter> parse_parameters(const Document& document, const Json& json,
-                                        Diagnostics& diagnostics) {
-  std::vector<Parameter> parameters;
-  for (const Member& member : json.members) {
-    const std::optional<Literal> literal = parse_literal(document, member.value, diagnostics);
-    if (!literal) continue;
-    parameters.push_back({member.key, *literal, document.key_span(member), document.span(member.value)});
-  }
-  return parameters;
-}
-
 size_t number_count(const Literal& literal) {
   if (literal.kind == Literal::Kind::number) return 1;
   return literal.kind == Literal::Kind::numbers ? literal.numbers.size() : 0;
@@ -163,6 +152,17 @@ void check_parameter_names(const Object& object, Diagnostics& diagnostics) {
 
 std::string path_beside(const Document& document, const std::string& path) {
   return graph::path_beside(document.source->path(), path);
+}
+
+std::vector<Parameter> parse_parameters(const Document& document, const Json& json,
+                                        Diagnostics& diagnostics) {
+  std::vector<Parameter> parameters;
+  for (const Member& member : json.members) {
+    const std::optional<Literal> literal = parse_literal(document, member.value, diagnostics);
+    if (!literal) continue;
+    parameters.push_back({member.key, *literal, document.key_span(member), document.span(member.value)});
+  }
+  return parameters;
 }
 
 std::optional<Literal> parse_literal(const Document& document, const Json& json, Diagnostics& diagnostics) {

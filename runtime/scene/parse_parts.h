@@ -21,6 +21,11 @@ Light parse_light(const graph::Document& document, const graph::Member& member,
                   support::Diagnostics& diagnostics);
 Object parse_object(const graph::Document& document, const graph::Member& member,
                     support::Diagnostics& diagnostics);
+/// `before`: the posts that stand before it.
+Post parse_post(const graph::Document& document, const graph::Json& json, const std::vector<Post>& before,
+                support::Diagnostics& diagnostics);
+std::vector<Parameter> parse_parameters(const graph::Document& document, const graph::Json& json,
+                                        support::Diagnostics& diagnostics);
 /// A string ("sphere") or an object ({"type": "sphere", "radius": 2}).
 MeshShape parse_mesh(const graph::Document& document, const graph::Json& json,
                      support::Diagnostics& diagnostics);

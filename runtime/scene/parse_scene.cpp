@@ -21,32 +21,42 @@ namespace {
 /// Names that settings give to the scene's own parts.
 constexpr std::string_view reserved_names[] = {"camera", "output"};
 
-/// Objects and lights share their names, so that a setting means one thing.
+/// Objects, lights and posts share their names, so that a setting means one thing.
 class Names {
  public:
   Names(const Document& document, Diagnostics& diagnostics)
       : document_(document), diagnostics_(diagnostics) {}
 
   void enter(const Member& member, std::string_view what) {
-    const support::Span where = document_.key_span(member);
-    const bool reserved = std::find(std::begin(reserved_names), std::end(reserved_names), member.key) !=
-                          std::end(reserved_names);
-    if (!graph::is_id(member.key) || reserved) {
-      diagnostics_.report(Id::bad_id, where, quote(member.key) + " cannot name " + std::string(what))
+    enter(member.key, document_.key_span(member), what);
+  }
+
+  void enter(const std::string& name, const support::Span& where, std::string_view what) {
+    const bool reserved =
+        std::find(std::begin(reserved_names), std::end(reserved_names), name) != std::end(reserved_names);
+    if (!graph::is_id(name) || reserved) {
+      diagnostics_.report(Id::bad_id, where, quote(name) + " cannot name " + std::string(what))
           .note(reserved ? "it names a part of the scene itself"
                          : "names are letters, digits and '_', at most 128, and begin with no digit");
     }
-    const auto [found, is_new] = names_.emplace(member.key, where);
+    const auto [found, is_new] = names_.emplace(name, Named{where, std::string(what)});
     if (is_new) return;
+    const std::string& other = found->second.what;
     diagnostics_
-        .report(Id::duplicate_name, where, "a light and an object are both called " + quote(member.key))
-        .note(found->second, "also here");
+        .report(Id::duplicate_name, where,
+                other == what ? "two posts are called " + quote(name)
+                              : other + " and " + std::string(what) + " are both called " + quote(name))
+        .note(found->second.where, "also here");
   }
 
  private:
   const Document& document_;
   Diagnostics& diagnostics_;
-  std::unordered_map<std::string, support::Span> names_;
+  struct Named {
+    support::Span where;
+    std::string what;
+  };
+  std::unordered_map<std::string, Named> names_;
 };
 
 void parse_size(const Document& document, ObjectReader& reader, Scene& scene) {
@@ -100,6 +110,25 @@ void parse_objects(const Document& document, const Json& json, Names& names, Sce
   }
 }
 
+void parse_posts(const Document& document, const Json& json, Names& names, Scene& scene,
+                 Diagnostics& diagnostics) {
+  if (json.items.size() > max_posts) {
+    diagnostics.report(Id::too_large, document.span(json),
+                       "a scene has at most " + std::to_string(max_posts) + " posts");
+    return;
+  }
+  for (const Json& item : json.items) {
+    Post post = parse_post(document, item, scene.posts, diagnostics);
+    if (post.name == scene_image_name) {
+      diagnostics.report(Id::bad_id, post.name_where, "\"scene\" cannot name a post")
+          .note("it is the image that was drawn");
+    } else if (!post.name.empty()) {
+      names.enter(post.name, post.name_where, "a post");
+    }
+    scene.posts.push_back(std::move(post));
+  }
+}
+
 }  // namespace
 
 std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnostics) {
@@ -131,11 +160,8 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   if (const Json* output = reader.object("output", Need::optional))
     scene.output = parse_output(document, *output, diagnostics);
   // Under another key than the one that says what kind a document is.
-  const Json* posts = reader.array("posts", Need::optional);
-  if (posts != nullptr && !posts->items.empty()) {
-    diagnostics.report(Id::unsupported, document.span(*posts),
-                       "this version does not run post documents: \"posts\" must be empty");
-  }
+  if (const Json* posts = reader.array("posts", Need::optional))
+    parse_posts(document, *posts, names, scene, diagnostics);
   reader.finish();
   if (diagnostics.error_count() != errors_before) return std::nullopt;
   return scene;

@@ -41,6 +41,16 @@ glm::mat4 projection_matrix(const Camera& camera, float aspect) {
   return projection;
 }
 
+/// Unit vectors in world space.
+struct Axes {
+  glm::vec3 right, up, back;
+};
+Axes axes_of(const Camera& camera) {
+  const glm::vec3 back = normalize(camera.position - camera.target);
+  const glm::vec3 right = normalize(cross(camera.up, back));
+  return {right, cross(back, right), back};
+}
+
 glm::mat3 rotation_about(int axis, float degrees) {
   const SinCos angle = sin_cos_of_degrees(degrees);
   const int next = (axis + 1) % 3;
@@ -61,9 +71,7 @@ glm::mat3 rotation_of(const Transform& transform) {
 }  // namespace
 
 View make_view(const Camera& camera, int width, int height) {
-  const glm::vec3 back = normalize(camera.position - camera.target);
-  const glm::vec3 right = normalize(cross(camera.up, back));
-  const glm::vec3 up = cross(back, right);
+  const auto [right, up, back] = axes_of(camera);
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   View view;
   view.view = view_matrix(right, up, back, camera.position);
@@ -77,6 +85,36 @@ View make_view(const Camera& camera, int width, int height) {
   const float pixel = 2.0f / (view.clip_from_view[1][1] * static_cast<float>(height));
   view.pixel_size = perspective ? glm::vec2(0, pixel) : glm::vec2(pixel, 0);
   return view;
+}
+
+void store_camera(const Camera& camera, int width, int height, std::span<float> frame) {
+  namespace word = lower::frame_word;
+  const auto store = [&](int at, const glm::vec3& v) {
+    for (int i = 0; i < 3; ++i) frame[static_cast<size_t>(at + i)] = canonical(v[i]);
+  };
+  const auto store_over_screen = [&](int at, const glm::vec3& middle, const glm::vec3& across,
+                                     const glm::vec3& down) {
+    store(at, middle);
+    store(at + 3, across);
+    store(at + 6, down);
+  };
+  const auto store_pair = [&](int at, float a, float b) {
+    frame[static_cast<size_t>(at)] = canonical(a);
+    frame[static_cast<size_t>(at + 1)] = canonical(b);
+  };
+  const auto [right, up, back] = axes_of(camera);
+  const float aspect = static_cast<float>(width) / static_cast<float>(height);
+  const bool perspective = camera.projection == Projection::perspective;
+  const SinCos half_angle = sin_cos_of_degrees(camera.fov * 0.5f);
+  const float half = perspective ? half_angle.sin / half_angle.cos : camera.height * 0.5f;
+  const glm::vec3 across = right * (half * aspect), down = -up * half, nothing(0);
+  store(word::camera_position, camera.position);
+  store(word::camera_direction, -back);
+  store_over_screen(word::view_ray, -back, perspective ? across : nothing, perspective ? down : nothing);
+  store_over_screen(word::ray_origin, nothing, perspective ? nothing : across, perspective ? nothing : down);
+  const float depth = camera.far - camera.near;
+  store_pair(word::depth_numerator, perspective ? camera.near : camera.far, perspective ? 0 : -depth);
+  store_pair(word::depth_denominator, perspective ? 0.0f : 1.0f, perspective ? 1.0f : 0.0f);
 }
 
 glm::mat4 model_matrix(const Object& object, const Instance& instance) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
+#include <span>
 
 #include "compiler/lower/frame_layout.h"
 #include "runtime/scene/scene.h"
@@ -23,6 +24,9 @@ struct View {
   glm::vec2 pixel_size;  ///< frame_word::pixel_size
 };
 View make_view(const Camera& camera, int width, int height);
+
+/// Writes what posts know of the camera into an array of lower::frame_word.
+void store_camera(const Camera& camera, int width, int height, std::span<float> frame);
 
 /// Object space to world space.
 glm::mat4 model_matrix(const Object& object, const Instance& instance);

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/graph/document.h"
@@ -92,6 +93,31 @@ struct Object {
   support::Span mesh_where;  ///< nowhere if the user named its file
 };
 
+/// What stands for an image where the number of a post is expected.
+inline constexpr int scene_image = -1, no_image = -2;
+/// How posts call the image that was drawn.
+inline constexpr std::string_view scene_image_name = "scene";
+inline constexpr size_t max_posts = 64;
+
+/// An image that a post reads: what its document calls it ("color" is the one that it goes over), and which it is:
+/// that of an earlier post of the scene, or scene_image.
+struct PostInput {
+  std::string image;
+  int source = scene_image;
+  support::Span image_where, source_where;
+};
+
+/// A full-screen effect over the finished image. What is not among its inputs as "color" goes over the image of the
+/// post before.
+struct Post {
+  std::string name;
+  std::string effect;  ///< path of the post's document
+  std::vector<Parameter> parameters;
+  std::vector<PostInput> inputs;
+  float size = 1;  ///< of the image that it makes, as a fraction of the scene's; rounded up
+  support::Span name_where, effect_where, size_where;
+};
+
 struct Output {
   Encoding encoding = Encoding::srgb;
   float exposure = 1;  ///< what colours are multiplied by before the encoding
@@ -107,6 +133,7 @@ struct Scene {
   std::vector<Light> lights;
   std::array<float, 4> background{0, 0, 0, 1};  ///< linear RGBA
   std::vector<Object> objects;
+  std::vector<Post> posts;  ///< in the order in which they are run
   Output output;
 };
 
@@ -137,7 +164,9 @@ struct Scene {
 ///        "parameters": {"roughness": 0.5},
 ///        "repeat": [{"count": 10, "step": [..], "parameters": {"metallic": {"from": 0, "to": 1},
 ///                                                              "tint": {"values": [one a place]}}}]}},
-///      "posts": [], "output": {"encoding": "srgb" or "linear", "exposure": 1}}
+///      "posts": [{"name": "fog", "effect": "path beside the scene", "parameters": {"fog_density": 1},
+///                 "inputs": {"color": "scene", "glow": "name of an earlier post"}, "size": 0.5}],
+///      "output": {"encoding": "srgb" or "linear", "exposure": 1}}
 ///
 /// Only "isoshade", "scene" and "camera" with its position and target are needed.
 std::optional<Scene> parse_scene(const graph::Document& document, support::Diagnostics& diagnostics);

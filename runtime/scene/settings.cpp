@@ -95,6 +95,7 @@ class Editor {
   void set_member(const Json& object, std::string_view key, const std::string& value);
   void remove_member(const Json& object, const Member& member);
 
+  std::vector<std::pair<std::string_view, const Json*>> owners() const;
   std::vector<std::string_view> parameters_of(const Json& object);
   const std::vector<std::string>& parameters_of_effect(const std::string& path);
   /// A value for a parameter of an object, with a path in it from the root, as the user counts it from where he is.
@@ -117,6 +118,22 @@ const std::vector<std::string>& Editor::parameters_of_effect(const std::string& 
   if (const Json* parameters = find_object(effect->root, "parameters"))
     for (const Member& member : parameters->members) found->second.push_back(member.key);
   return found->second;
+}
+
+/// The objects of the scene, and its posts under the names that they have.
+std::vector<std::pair<std::string_view, const Json*>> Editor::owners() const {
+  std::vector<std::pair<std::string_view, const Json*>> all;
+  if (const Json* objects = find_object(document_.root, "objects")) {
+    for (const Member& member : objects->members)
+      if (member.value.kind == Json::Kind::object) all.emplace_back(member.key, &member.value);
+  }
+  const Json* posts = document_.root.find("posts");
+  if (posts == nullptr || posts->kind != Json::Kind::array) return all;
+  for (const Json& post : posts->items) {
+    const Json* name = post.kind == Json::Kind::object ? post.find("name") : nullptr;
+    if (name != nullptr && name->kind == Json::Kind::string) all.emplace_back(name->string, &post);
+  }
+  return all;
 }
 
 std::vector<std::string_view> Editor::parameters_of(const Json& object) {
@@ -194,21 +211,19 @@ void Editor::set_parameter(const Json& object, const Setting& setting) {
 
 bool Editor::set_named(const Setting& setting) {
   std::vector<std::string_view> names = {"camera", "output"};
-  if (const Json* objects = find_object(document_.root, "objects")) {
-    for (const Member& member : objects->members) {
-      names.push_back(member.key);
-      if (member.key != setting.name || member.value.kind != Json::Kind::object) continue;
-      const std::vector<std::string_view> parameters = parameters_of(member.value);
-      if (std::find(parameters.begin(), parameters.end(), setting.key) == parameters.end()) {
-        diagnostics_.report_unknown(Id::unknown_setting, {},
-                                    "--set " + quote(setting.text) + ": the effect of " +
-                                        quote(setting.name) + " has no parameter " + quote(setting.key),
-                                    setting.key, parameters);
-        return false;
-      }
-      set_parameter(member.value, setting);
-      return true;
+  for (const auto& [name, owner] : owners()) {
+    names.push_back(name);
+    if (name != setting.name) continue;
+    const std::vector<std::string_view> parameters = parameters_of(*owner);
+    if (std::find(parameters.begin(), parameters.end(), setting.key) == parameters.end()) {
+      diagnostics_.report_unknown(Id::unknown_setting, {},
+                                  "--set " + quote(setting.text) + ": the effect of " + quote(setting.name) +
+                                      " has no parameter " + quote(setting.key),
+                                  setting.key, parameters);
+      return false;
     }
+    set_parameter(*owner, setting);
+    return true;
   }
   if (const Json* lights = find_object(document_.root, "lights")) {
     for (const Member& member : lights->members) {
@@ -229,7 +244,7 @@ bool Editor::set_named(const Setting& setting) {
   }
   diagnostics_.report_unknown(
       Id::unknown_setting, {},
-      "--set " + quote(setting.text) + ": the scene has no object or light " + quote(setting.name),
+      "--set " + quote(setting.text) + ": the scene has no object, light or post " + quote(setting.name),
       setting.name, names);
   return false;
 }
@@ -239,31 +254,29 @@ bool Editor::set_bare(const Setting& setting) {
     set_member(document_.root, setting.key, setting.value);
     return true;
   }
-  std::vector<const Member*> owners;
+  std::vector<std::pair<std::string_view, const Json*>> having;
   std::vector<std::string_view> all_parameters = {"background", "size"};
-  if (const Json* objects = find_object(document_.root, "objects")) {
-    for (const Member& member : objects->members) {
-      const std::vector<std::string_view> parameters = parameters_of(member.value);
-      all_parameters.insert(all_parameters.end(), parameters.begin(), parameters.end());
-      if (std::find(parameters.begin(), parameters.end(), setting.key) != parameters.end())
-        owners.push_back(&member);
-    }
+  for (const auto& owner : owners()) {
+    const std::vector<std::string_view> parameters = parameters_of(*owner.second);
+    all_parameters.insert(all_parameters.end(), parameters.begin(), parameters.end());
+    if (std::find(parameters.begin(), parameters.end(), setting.key) != parameters.end())
+      having.push_back(owner);
   }
-  if (owners.size() == 1) {
-    set_parameter(owners[0]->value, setting);
+  if (having.size() == 1) {
+    set_parameter(*having[0].second, setting);
     return true;
   }
-  if (owners.empty()) {
+  if (having.empty()) {
     diagnostics_.report_unknown(
         Id::unknown_setting, {},
-        "--set " + quote(setting.text) + ": no object has a parameter " + quote(setting.key), setting.key,
-        all_parameters);
+        "--set " + quote(setting.text) + ": no object or post has a parameter " + quote(setting.key),
+        setting.key, all_parameters);
     return false;
   }
   diagnostics_
-      .report(Id::unknown_setting, "--set " + quote(setting.text) + ": " + std::to_string(owners.size()) +
-                                       " objects have a parameter " + quote(setting.key))
-      .suggest("name the object: --set " + support::visible(owners[0]->key) + "." +
+      .report(Id::unknown_setting, "--set " + quote(setting.text) + ": " + std::to_string(having.size()) +
+                                       " objects or posts have a parameter " + quote(setting.key))
+      .suggest("name the one: --set " + support::visible(std::string(having[0].first)) + "." +
                std::string(setting.text));
   return false;
 }

@@ -13,7 +13,8 @@ namespace isoshade::scene {
 /// Writes values into a scene document, each setting upon the one before, as if its author had written them:
 ///
 ///     object.parameter=value   a parameter of an object's effect, for all copies in its grid
-///     parameter=value          the same, where only one object has a parameter of that name
+///     post.parameter=value     a parameter of a post
+///     parameter=value          the same, where only one object or post has a parameter of that name
 ///     light.key=value          "sun.intensity=2"
 ///     camera.key=value         "camera.fov=30", and so output.key
 ///     key=value                background or size of the scene

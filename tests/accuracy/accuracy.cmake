@@ -50,3 +50,8 @@ isoshade_test(cycles_test
 target_compile_definitions(cycles_test PRIVATE
   ISOSHADE_ACCURACY_GRAPHS="${CMAKE_CURRENT_SOURCE_DIR}/accuracy/graphs"
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+isoshade_test(fog_test
+  SOURCES accuracy/fog_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
+  LABEL accuracy)
+target_compile_definitions(fog_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

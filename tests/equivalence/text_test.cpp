@@ -30,7 +30,7 @@ std::vector<fs::path> documents(const char* folder) {
   return paths;
 }
 
-/// The programs of all shipped functions and effects, by folder and name.
+/// The programs of all shipped functions, effects and posts, by folder and name.
 const std::vector<Texts>& shipped() {
   static const std::vector<Texts> all = [] {
     std::vector<Texts> texts;
@@ -50,6 +50,9 @@ const std::vector<Texts>& shipped() {
         if (kind == graph::DocumentKind::function) {
           if (const auto program = driver::compile_function(source, options, diagnostics))
             add(place + program->name, *program);
+        } else if (kind == graph::DocumentKind::post) {
+          if (const auto post = driver::compile_post(source, options, diagnostics))
+            add(place + post->name, post->program);
         } else if (kind == graph::DocumentKind::effect) {
           const auto effect = driver::compile_effect(source, options, diagnostics);
           if (!effect) continue;

@@ -22,6 +22,15 @@ void feed_effect(const support::Source& source, const driver::Options& options,
   }
 }
 
+void feed_post(const support::Source& source, const driver::Options& options,
+               support::Diagnostics& diagnostics) {
+  const auto post = driver::compile_post(source, options, diagnostics);
+  support::check(post.has_value() != diagnostics.has_errors(), "neither errors nor a program");
+  if (!post) return;
+  support::check(!driver::glsl(post->program, driver::Division::exact).empty(), "no GLSL");
+  support::check(!driver::cpp(post->program).empty(), "no C++");
+}
+
 void feed_function(const support::Source& source, const driver::Options& options,
                    support::Diagnostics& diagnostics) {
   const auto program = driver::compile_function(source, options, diagnostics);
@@ -48,6 +57,8 @@ support::Diagnostics feed(std::string_view text) {
     scene::parse_scene(*document, diagnostics);
   } else if (*kind == graph::DocumentKind::effect) {
     feed_effect(source, options, diagnostics);
+  } else if (*kind == graph::DocumentKind::post) {
+    feed_post(source, options, diagnostics);
   } else {
     feed_function(source, options, diagnostics);
   }

@@ -53,11 +53,6 @@ TEST(CheckLights, WhatCannotBeCompiledYetIsSaid) {
                 .find("error[unsupported]: a pass with the depth test \"always\""),
             std::string::npos);
   EXPECT_NE(
-      messages_of(R"({"isoshade": 1, "post": "p", "parameters": {"c": {"type": "color3", "value": [1, 1, 1]}},
-                           "outputs": {"color": "c"}})")
-          .find("error[unsupported]: post effects"),
-      std::string::npos);
-  EXPECT_NE(
       messages_of(R"({"isoshade": 1, "effect": "e", "parameters": {"f": {"type": "matrix33", "value": [1, 0, 0, 0, 1, 0, 0, 0, 1]},
                            "c": {"type": "color3", "value": [1, 1, 1]}}, "passes": [{"name": "p", "color": "c"}]})")
           .find("error[unsupported]: a parameter of type matrix33"),

@@ -240,6 +240,27 @@ TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
   EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
 }
 
+TEST_F(Cli, CompilesAPostToFiles) {
+  const Outcome outcome =
+      run("compile " + graphs + "/effects/bloom/blur.json --target glsl,cpp -o " + file("out"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  for (const char* name : {"bloom_blur.post.frag", "bloom_blur.post.cpp", "bloom_blur.json"})
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  const std::string reflection = read(folder_ / "out" / "bloom_blur.json");
+  EXPECT_NE(reflection.find("\"post\": \"bloom_blur\""), std::string::npos) << reflection;
+  EXPECT_NE(reflection.find("\"taps\""), std::string::npos) << reflection;
+}
+
+TEST_F(Cli, TellsOfPostsThatAreSwitchedOff) {
+  const std::string command = "render " + graphs +
+                              "/scenes/fog_balls.json --size 16x9 --backend interpreter --stats -o " +
+                              file("a.png");
+  EXPECT_NE(run(command).text.find("posts:    2"), std::string::npos);
+  const Outcome without = run(command + " --set fog.fog_density=0");
+  EXPECT_NE(without.text.find("skipped:  post fog: fog_density is 0"), std::string::npos) << without.text;
+  EXPECT_NE(without.text.find("posts:    1"), std::string::npos) << without.text;
+}
+
 TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;

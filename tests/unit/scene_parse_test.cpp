@@ -264,8 +264,53 @@ TEST(ParseScene, KeepsNamesApart) {
   EXPECT_TRUE(parse_members(R"("objects": {"a b": {"mesh": "box", "effect": "e"}})").fails_with("bad-id"));
 }
 
-TEST(ParseScene, SaysThatPostsAreNotRun) {
-  EXPECT_TRUE(parse_members(R"("posts": ["fog.json"])").fails_with("unsupported"));
+TEST(ParseScene, ReadsPostsInTheirOrder) {
+  const auto parsed = parse_members(R"("posts": [
+    {"name": "small", "effect": "blur.json", "size": 0.5, "parameters": {"radius": 3}},
+    {"name": "glow", "effect": "../fx/glow.json", "inputs": {"color": "scene", "blurred": "small"}}])");
+  ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+  const std::vector<scene::Post>& posts = parsed.scene->posts;
+  ASSERT_EQ(posts.size(), 2u);
+  EXPECT_EQ(posts[0].name, "small");
+  EXPECT_EQ(posts[0].effect, "scenes/blur.json");
+  EXPECT_EQ(posts[0].size, 0.5f);
+  ASSERT_EQ(posts[0].parameters.size(), 1u);
+  EXPECT_EQ(posts[0].parameters[0].value.number, 3.0f);
+  EXPECT_EQ(posts[1].effect, "fx/glow.json");
+  EXPECT_EQ(posts[1].size, 1.0f);
+  ASSERT_EQ(posts[1].inputs.size(), 2u);
+  EXPECT_EQ(posts[1].inputs[0].image, "color");
+  EXPECT_EQ(posts[1].inputs[0].source, scene::scene_image);
+  EXPECT_EQ(posts[1].inputs[1].image, "blurred");
+  EXPECT_EQ(posts[1].inputs[1].source, 0);
+}
+
+TEST(ParseScene, PostsReadOnlyWhatIsMadeBefore) {
+  const auto reading = [](const std::string& image) {
+    return parse_members(R"("posts": [{"name": "first", "effect": "e", "inputs": {"color": ")" + image +
+                         R"("}}, {"name": "second", "effect": "e"}])");
+  };
+  EXPECT_TRUE(reading("scene").scene);
+  EXPECT_TRUE(reading("second").fails_with("unknown-image"));
+  EXPECT_TRUE(reading("first").fails_with("unknown-image"));
+  EXPECT_TRUE(reading("frist").fails_with("unknown-image"));
+  EXPECT_TRUE(parse_members(R"("posts": [{"name": "a", "effect": "e", "inputs": {"color": 1}}])")
+                  .fails_with("wrong-type"));
+}
+
+TEST(ParseScene, PostsHaveNamesOfTheirOwnAndSizesUpToTheScenes) {
+  const auto posts = [](const std::string& list) { return parse_members("\"posts\": [" + list + "]"); };
+  EXPECT_TRUE(
+      posts(R"({"name": "a", "effect": "e"}, {"name": "a", "effect": "e"})").fails_with("duplicate-name"));
+  EXPECT_TRUE(posts(R"({"name": "scene", "effect": "e"})").fails_with("bad-id"));
+  EXPECT_TRUE(posts(R"({"name": "output", "effect": "e"})").fails_with("bad-id"));
+  EXPECT_TRUE(posts(R"({"effect": "e"})").fails_with("missing-key"));
+  EXPECT_TRUE(posts(R"({"name": "a", "effect": "e", "size": 0})").fails_with("out-of-range"));
+  EXPECT_TRUE(posts(R"({"name": "a", "effect": "e", "size": 1.5})").fails_with("out-of-range"));
+  EXPECT_TRUE(posts(R"("fog.json")").fails_with("wrong-type"));
+  EXPECT_TRUE(parse_members(R"("lights": {"fog": {"type": "directional", "direction": [0, -1, 0]}},
+    "posts": [{"name": "fog", "effect": "e"}])")
+                  .fails_with("duplicate-name"));
 }
 
 }  // namespace

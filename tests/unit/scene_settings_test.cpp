@@ -47,6 +47,20 @@ TEST(Settings, ApplyOneAfterAnother) {
   EXPECT_EQ(find(parsed.scene->objects[0], "gloss")->value.number, 0.3f);
 }
 
+TEST(Settings, ReplaceAParameterOfAPost) {
+  const std::string posts = std::string(members) + R"(,
+    "posts": [{"name": "fog", "effect": "e.json", "parameters": {"density": 1}},
+              {"name": "tone", "effect": "e.json", "parameters": {"gloss": 2}}])";
+  const ParsedScene parsed = parse_members(posts, {"fog.density=0.25", "density=0.5", "tone.gloss=3"});
+  ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+  EXPECT_EQ(parsed.scene->posts[0].parameters[0].value.number, 0.5f);
+  EXPECT_EQ(parsed.scene->posts[1].parameters[0].value.number, 3.0f);
+  EXPECT_EQ(find(parsed.scene->objects[0], "gloss")->value.number, 0.5f);
+  EXPECT_TRUE(
+      parse_members(posts, {"fog.glow=1"}).fails_with("the effect of \"fog\" has no parameter \"glow\""));
+  EXPECT_TRUE(parse_members(posts, {"gloss=1"}).fails_with("2 objects or posts have a parameter \"gloss\""));
+}
+
 TEST(Settings, ReachCameraLightsOutputAndTheSceneItself) {
   const ParsedScene parsed =
       parse_members(members, {"camera.fov=30", "camera.position=1,2,3", "sun.intensity=4",

@@ -19,7 +19,8 @@ int32_t bits(float x) { return std::bit_cast<int32_t>(x); }
 
 std::string transform_glsl() {
   return interface_glsl() + R"(
-layout(std430, set = 0, binding = 8) writeonly buffer clip_block { uvec4 clip[]; };
+layout(std430, set = 0, binding = )" +
+         std::to_string(output_binding) + R"() writeonly buffer clip_block { uvec4 clip[]; };
 void main() {
   vec4 position = vec4(float(gl_VertexIndex), objects[push.object], vertices[8 * (gl_VertexIndex % 4)], frame[0]);
   clip[gl_VertexIndex - push.first + push.count] = floatBitsToUint(position);
@@ -78,7 +79,8 @@ void main() {
 /// Shows the pixel, the triangle and the lights.
 std::string pixel_glsl(const std::string& alpha) {
   return interface_glsl() + R"(
-layout(set = 0, binding = 9) uniform isampler2D ids;
+layout(set = 0, binding = )" +
+         std::to_string(ids_binding) + R"() uniform isampler2D ids;
 layout(location = 0) out vec4 color;
 void main() {
   int triangle = texelFetch(ids, ivec2(gl_FragCoord.xy), 0).x - 1;
@@ -241,7 +243,8 @@ void main() {
 std::string vertex_eval_glsl(size_t words, size_t stride) {
   const std::string n = std::to_string(words);
   return interface_glsl() + R"(
-layout(std430, set = 0, binding = 8) writeonly buffer words_block { int words[]; };
+layout(std430, set = 0, binding = )" +
+         std::to_string(output_binding) + R"() writeonly buffer words_block { int words[]; };
 void main() {
   for (int k = 0; k < )" +
          n + "; ++k) words[gl_VertexIndex * " + n + " + k] = 100 * inputs[" + std::to_string(stride) +

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a post document reads: images, the depth, the camera; as parameters of `post_process`, and as reads.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "compiler/check/typed_graph.h"
+#include "compiler/ir/builder.h"
+#include "compiler/nodes/row.h"
+#include "compiler/nodes/site.h"
+
+namespace isoshade::lower {
+
+struct Needs;
+
+/// Of an image, what some nodes need.
+struct ImageNeeds {
+  bool read = false;
+  bool size = false;    ///< reads may lead beyond it
+  bool inside = false;  ///< reads are filtered
+};
+
+/// Of the screen, what some nodes need.
+struct ScreenNeeds {
+  std::array<bool, nodes::screen_value_count> values{};  ///< by nodes::Screen
+  std::vector<ImageNeeds> images;  ///< the one that the post goes over, then Graph::images
+  ImageNeeds depth;
+  bool distance = false;       ///< the depth as a distance along the view
+  std::vector<uint32_t> sums;  ///< nodes that sum over taps, as they are written
+
+  /// What a node needs, and one that something reads.
+  void add(const check::TypedGraph& graph, uint32_t node);
+  void add(const check::TypedGraph& graph, const check::Operand& operand);
+};
+
+/// An image that can be read: the pixel of it that lies under the centre of the pixel that is made, where in that
+/// pixel (vec2, 0 to 1), its size, and the function that reads it at a pixel that it has. What is not needed is none.
+struct ReadImage {
+  ir::ValueId x = ir::none, y = ir::none, inside = ir::none, width = ir::none, height = ir::none;
+  uint32_t at = ir::none;
+};
+
+/// The parameters of `post_process` that tell of the screen.
+struct ScreenInputs {
+  std::array<ir::ValueId, nodes::screen_value_count> values{};
+  ir::ValueId depth_numerator = ir::none, depth_denominator = ir::none;
+  ReadImage depth;
+  std::vector<ReadImage> images;                             ///< of ScreenNeeds::images
+  std::vector<std::pair<uint32_t, ir::ValueId>> tap_counts;  ///< of each sum over taps
+};
+
+/// Declares the functions that read images, without bodies.
+void declare_reads(ir::Module& module, const check::TypedGraph& graph, const ScreenNeeds& needs);
+/// Adds the parameters that `needs` asks for, but for "taps", which come last.
+void add_screen_parameters(ir::Function& function, const check::TypedGraph& graph, const ScreenNeeds& needs);
+void add_tap_parameters(ir::Function& function, const check::TypedGraph& graph, const ScreenNeeds& needs);
+/// The parameters that were added, found again.
+ScreenInputs screen_inputs(ir::Builder& b, const check::TypedGraph& graph, const ScreenNeeds& needs);
+
+/// How the names of a post's parameters and functions begin that tell of an image: "color", or "image_NAME".
+std::string image_prefix(const check::TypedGraph& graph, size_t image);
+/// The ids of the nodes that sum over taps, as they are written, and how many taps each has.
+std::vector<std::pair<std::string, int>> tap_counts(const check::TypedGraph& graph);
+/// Every name that functions of a post's module may have beside those of documents.
+std::vector<std::string> screen_function_names(const check::TypedGraph& graph);
+
+/// What nodes::Fetch::color and ::depth and nodes::WorldPosition give. `operands`: of the ports of the row.
+nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId offset_x, ir::ValueId offset_y,
+                         nodes::Edge edge, bool linear);
+/// The depth as it is stored; offsets that are none are 0.
+ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, ir::ValueId offset_x, ir::ValueId offset_y,
+                        nodes::Edge edge);
+/// The distance along the view of a depth.
+ir::ValueId distance_of(ir::Builder& b, const ScreenInputs& screen, ir::ValueId depth);
+/// The point that the pixel shows, from the camera's position.
+ir::ValueId relative_position(ir::Builder& b, const ScreenInputs& screen);
+
+}  // namespace isoshade::lower

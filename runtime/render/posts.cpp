@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/posts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "compiler/lower/frame_layout.h"
+#include "compiler/support/visible.h"
+#include "runtime/render/parameters.h"
+
+namespace isoshade::render {
+namespace {
+
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+
+/// The words of a post's parameters, then its numbers of taps.
+std::optional<std::vector<float>> record_of(const scene::Post& post, const driver::Post& document,
+                                            Diagnostics& diagnostics) {
+  // As an object has parameters of an effect.
+  scene::Object object;
+  object.name = post.name;
+  object.parameters = post.parameters;
+  driver::Effect effect;
+  effect.parameters = document.parameters;
+  const auto parameters = ObjectParameters::resolve(object, effect, nullptr, {}, diagnostics);
+  if (!parameters) return std::nullopt;
+  std::vector<float> record = parameters->words(object, {}, {});
+  for (const driver::Field& count : document.taps) record.push_back(count.value[0]);
+  return record;
+}
+
+bool is_switched_off(const driver::Post& document, const std::vector<float>& record) {
+  if (!document.enabled) return false;
+  size_t word = 0;
+  for (size_t i = 0; i < *document.enabled; ++i) word += static_cast<size_t>(document.parameters[i].words);
+  return record[word] == 0;
+}
+
+/// A side of an image that is this part of another's; exact, as a double holds the product.
+int part_of(int side, float part) {
+  return static_cast<int>(std::ceil(static_cast<double>(side) * static_cast<double>(part)));
+}
+
+class ChainPlanner {
+ public:
+  ChainPlanner(const scene::Scene& scene, const std::vector<const driver::Post*>& documents, int width,
+               int height, bool skip, std::vector<Skip>& skips, Diagnostics& diagnostics)
+      : scene_(scene),
+        documents_(documents),
+        width_(width),
+        height_(height),
+        skip_(skip),
+        skips_(skips),
+        diagnostics_(diagnostics) {}
+
+  std::optional<PostChain> plan();
+
+ private:
+  /// An image before it is known which posts run: that of a post of the scene, or scene::scene_image.
+  struct Planned {
+    std::vector<float> record;
+    std::vector<int> sources;
+    bool runs = true;
+  };
+
+  bool read_post(size_t p);
+  bool find_sources(size_t p, Planned& planned);
+  /// What an image is when posts that are switched off pass on the one that they would go over.
+  int passed_on(int image) const;
+  void drop_unread();
+  bool check_result(int result) const;
+  bool check_size(const PostChain& chain) const;
+
+  const scene::Scene& scene_;
+  const std::vector<const driver::Post*>& documents_;
+  int width_, height_;
+  bool skip_;
+  std::vector<Skip>& skips_;
+  Diagnostics& diagnostics_;
+  std::vector<Planned> planned_;
+};
+
+bool ChainPlanner::find_sources(size_t p, Planned& planned) {
+  const scene::Post& post = scene_.posts[p];
+  const driver::Post& document = *documents_[p];
+  bool good = true;
+  planned.sources.assign(1 + document.images.size(), scene::no_image);
+  planned.sources[0] = p == 0 ? scene::scene_image : static_cast<int>(p) - 1;
+  std::vector<std::string_view> names{graph::post_output};
+  names.insert(names.end(), document.images.begin(), document.images.end());
+  for (const scene::PostInput& input : post.inputs) {
+    const auto found = std::ranges::find(names, input.image);
+    if (found == names.end()) {
+      diagnostics_.report_unknown(
+          Id::unknown_image, input.image_where,
+          "the document of post " + quote(post.name) + " has no image " + quote(input.image), input.image,
+          names);
+      good = false;
+    } else {
+      planned.sources[static_cast<size_t>(found - names.begin())] = input.source;
+    }
+  }
+  for (size_t i = 0; i < planned.sources.size(); ++i) {
+    if (planned.sources[i] != scene::no_image) continue;
+    diagnostics_
+        .report(Id::unknown_image, post.name_where,
+                "post " + quote(post.name) + " is not given the image " + quote(names[i]))
+        .suggest("write \"inputs\": {\"" + std::string(names[i]) +
+                 "\": \"scene\"}, or the name of an earlier post");
+    good = false;
+  }
+  return good;
+}
+
+bool ChainPlanner::read_post(size_t p) {
+  Planned& planned = planned_.emplace_back();
+  const bool has_sources = find_sources(p, planned);
+  auto record = record_of(scene_.posts[p], *documents_[p], diagnostics_);
+  if (!record || !has_sources) return false;
+  planned.record = *std::move(record);
+  if (!skip_ || !is_switched_off(*documents_[p], planned.record)) return true;
+  planned.runs = false;
+  const std::string& parameter = documents_[p]->parameters[*documents_[p]->enabled].name;
+  skips_.push_back({"post " + scene_.posts[p].name, parameter + " is 0"});
+  return true;
+}
+
+int ChainPlanner::passed_on(int image) const {
+  while (image != scene::scene_image && !planned_[static_cast<size_t>(image)].runs)
+    image = planned_[static_cast<size_t>(image)].sources[0];
+  return image;
+}
+
+/// From the last post backwards: those that none reads which runs, nor the scene's result.
+void ChainPlanner::drop_unread() {
+  std::vector<bool> read(planned_.size());
+  const auto mark = [&](int image) {
+    if (const int real = passed_on(image); real != scene::scene_image) read[static_cast<size_t>(real)] = true;
+  };
+  mark(static_cast<int>(planned_.size()) - 1);
+  for (size_t p = planned_.size(); p-- > 0;) {
+    Planned& planned = planned_[p];
+    if (!planned.runs) continue;
+    if (!read[p]) {
+      planned.runs = false;
+      skips_.push_back({"post " + scene_.posts[p].name, "nothing reads its image"});
+      continue;
+    }
+    for (size_t i = 0; i < planned.sources.size(); ++i)
+      if (documents_[p]->reads[i]) mark(planned.sources[i]);
+  }
+}
+
+bool ChainPlanner::check_result(int result) const {
+  if (result == scene::scene_image) return true;
+  const scene::Post& post = scene_.posts[static_cast<size_t>(result)];
+  if (part_of(width_, post.size) == width_ && part_of(height_, post.size) == height_) return true;
+  diagnostics_
+      .report(Id::out_of_range, post.size_where,
+              "post " + quote(post.name) + " makes the scene's image, but not in its full size")
+      .suggest("leave out its \"size\", or add a post after it");
+  return false;
+}
+
+/// The images of the chain come and go as run_posts has them.
+bool ChainPlanner::check_size(const PostChain& chain) const {
+  std::vector<int64_t> kept{static_cast<int64_t>(width_) * height_};
+  for (size_t s = 0; s < chain.steps.size(); ++s) {
+    kept.push_back(static_cast<int64_t>(chain.steps[s].width) * chain.steps[s].height);
+    if (std::accumulate(kept.begin(), kept.end(), int64_t{0}) > max_kept_pixels) {
+      diagnostics_
+          .report(Id::too_large, scene_.posts.back().name_where,
+                  "the images of the posts have more than " + std::to_string(max_kept_pixels) +
+                      " pixels at a time")
+          .suggest("let posts read images that were made just before them");
+      return false;
+    }
+    for (size_t i = 0; i < kept.size(); ++i)
+      if (i <= s && chain.is_done(i, s)) kept[i] = 0;
+  }
+  return true;
+}
+
+std::optional<PostChain> ChainPlanner::plan() {
+  PostChain chain;
+  bool good = true;
+  for (size_t p = 0; p < scene_.posts.size() && !diagnostics_.full(); ++p) good = read_post(p) && good;
+  if (!good || diagnostics_.full()) return std::nullopt;
+  const int result = passed_on(static_cast<int>(planned_.size()) - 1);
+  if (!check_result(result)) return std::nullopt;
+  if (skip_) drop_unread();
+
+  std::vector<int> number(planned_.size());
+  const auto number_of = [&](int image) {
+    const int real = passed_on(image);
+    return real == scene::scene_image ? 0 : number[static_cast<size_t>(real)];
+  };
+  chain.last_reader.push_back(PostChain::none);
+  for (size_t p = 0; p < planned_.size(); ++p) {
+    if (!planned_[p].runs) continue;
+    const int this_step = static_cast<int>(chain.steps.size());
+    number[p] = this_step + 1;
+    PostStep step{documents_[p],
+                  std::move(planned_[p].record),
+                  part_of(width_, scene_.posts[p].size),
+                  part_of(height_, scene_.posts[p].size),
+                  {}};
+    for (size_t i = 0; i < planned_[p].sources.size(); ++i) {
+      const bool reads = documents_[p]->reads[i];
+      step.sources.push_back(reads ? number_of(planned_[p].sources[i]) : PostStep::not_read);
+      if (reads) chain.last_reader[static_cast<size_t>(step.sources.back())] = this_step;
+    }
+    chain.steps.push_back(std::move(step));
+    chain.last_reader.push_back(PostChain::none);
+  }
+  chain.result = number_of(static_cast<int>(planned_.size()) - 1);
+  if (!check_size(chain)) return std::nullopt;
+  return chain;
+}
+
+/// An image between the drawing and the end of the chain.
+struct Layer {
+  int width = 0, height = 0;
+  std::vector<float> rgba;
+};
+
+/// The arrays that a step reads.
+struct Arrays {
+  std::vector<float> images;
+  std::vector<int32_t> records;
+
+  Arrays(const PostStep& step, const std::vector<Layer>& layers, const backends::Image& image) {
+    namespace word = lower::image_word;
+    records.resize(word::stride * (word::color + step.sources.size()));
+    const auto describe = [&](size_t record, size_t first, int width, int height) {
+      int32_t* const to = &records[record * word::stride];
+      to[word::first] = static_cast<int32_t>(first);
+      to[word::width] = width;
+      to[word::height] = height;
+    };
+    describe(word::made, 0, step.width, step.height);
+    describe(word::depth, 0, image.width, image.height);
+    if (step.post->reads_depth) images = image.depth;
+    for (size_t i = 0; i < step.sources.size(); ++i) {
+      if (step.sources[i] == PostStep::not_read) continue;
+      const Layer& layer = layers[static_cast<size_t>(step.sources[i])];
+      // One that is read under two names is there once.
+      const auto same =
+          std::find(step.sources.begin(), step.sources.begin() + static_cast<ptrdiff_t>(i), step.sources[i]);
+      const auto earlier = static_cast<size_t>(same - step.sources.begin());
+      const size_t first =
+          earlier < i ? static_cast<size_t>(records[(word::color + earlier) * word::stride]) : images.size();
+      describe(word::color + i, first, layer.width, layer.height);
+      if (earlier == i) images.insert(images.end(), layer.rgba.begin(), layer.rgba.end());
+    }
+  }
+};
+
+}  // namespace
+
+std::optional<PostChain> plan_posts(const scene::Scene& scene,
+                                    const std::vector<const driver::Post*>& documents, int width, int height,
+                                    bool skip, std::vector<Skip>& skips, Diagnostics& diagnostics) {
+  return ChainPlanner(scene, documents, width, height, skip, skips, diagnostics).plan();
+}
+
+bool run_posts(const PostChain& chain, std::span<const float> frame, backends::Backend& backend,
+               backends::Image& image, DrawStats& stats, Diagnostics& diagnostics) {
+  if (chain.steps.empty()) return true;
+  std::vector<Layer> layers(1 + chain.steps.size());
+  layers[0] = {image.width, image.height, std::move(image.rgba)};
+  int64_t kept = 1;
+  for (size_t s = 0; s < chain.steps.size(); ++s) {
+    const PostStep& step = chain.steps[s];
+    Layer& made = layers[s + 1];
+    made.width = step.width;
+    made.height = step.height;
+    stats.kept_images = std::max(stats.kept_images, ++kept);
+    {
+      const Arrays arrays(step, layers, image);
+      const backends::ScreenPass pass{&step.post->program, step.width,    step.height,   frame,
+                                      step.record,         arrays.images, arrays.records};
+      if (!backend.post(pass, made.rgba, diagnostics)) return false;
+    }
+    for (size_t i = 0; i <= s; ++i) {
+      if (!chain.is_done(i, s) || layers[i].rgba.empty()) continue;
+      layers[i].rgba = {};
+      --kept;
+    }
+  }
+  image.rgba = std::move(layers[static_cast<size_t>(chain.result)].rgba);
+  return true;
+}
+
+}  // namespace isoshade::render

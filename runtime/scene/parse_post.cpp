@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The post chain of a scene.
+#include <algorithm>
+
+#include "compiler/support/visible.h"
+#include "runtime/scene/parse_parts.h"
+
+namespace isoshade::scene {
+
+using graph::Document;
+using graph::Json;
+using graph::Member;
+using graph::ObjectReader;
+using support::Diagnostics;
+using support::Id;
+using support::quote;
+using Need = ObjectReader::Need;
+
+namespace {
+
+/// The image that `name` means to the next post.
+int find_image(const std::vector<Post>& before, const std::string& name) {
+  for (size_t i = 0; i < before.size(); ++i)
+    if (before[i].name == name) return static_cast<int>(i);
+  return name == scene_image_name ? scene_image : no_image;
+}
+
+void parse_inputs(const Document& document, const Json& json, const std::vector<Post>& before, Post& post,
+                  Diagnostics& diagnostics) {
+  for (const Member& member : json.members) {
+    const support::Span where = document.span(member.value);
+    if (member.value.kind != Json::Kind::string) {
+      diagnostics.report(Id::wrong_type, where,
+                         "an input of post " + quote(post.name) + " is the name of an image, not " +
+                             std::string(kind_name(member.value.kind)));
+      continue;
+    }
+    const int image = find_image(before, member.value.string);
+    if (image == no_image) {
+      std::vector<std::string_view> names{scene_image_name};
+      for (const Post& other : before) names.push_back(other.name);
+      diagnostics
+          .report_unknown(Id::unknown_image, where,
+                          "no post before " + quote(post.name) + " is called " + quote(member.value.string),
+                          member.value.string, names)
+          .note("a post reads the images of posts before it, and \"scene\"");
+      continue;
+    }
+    post.inputs.push_back({member.key, image, document.key_span(member), where});
+  }
+}
+
+}  // namespace
+
+Post parse_post(const Document& document, const Json& json, const std::vector<Post>& before,
+                Diagnostics& diagnostics) {
+  Post post;
+  ObjectReader reader(document, json, "a post of the scene", diagnostics);
+  post.name = reader.string("name");
+  if (const Json* name = reader.value("name", Need::optional)) post.name_where = document.span(*name);
+  post.effect = path_beside(document, reader.string("effect"));
+  if (const Json* effect = reader.value("effect", Need::optional)) post.effect_where = document.span(*effect);
+  if (const Json* parameters = reader.object("parameters", Need::optional))
+    post.parameters = parse_parameters(document, *parameters, diagnostics);
+  if (const Json* inputs = reader.object("inputs", Need::optional))
+    parse_inputs(document, *inputs, before, post, diagnostics);
+  constexpr double smallest = 1.0 / max_size;
+  post.size = reader.number("size", {smallest, 1}, 1.0f);
+  const Json* size = reader.value("size", Need::optional);
+  post.size_where = size != nullptr ? document.span(*size) : post.name_where;
+  reader.finish();
+  return post;
+}
+
+}  // namespace isoshade::scene
