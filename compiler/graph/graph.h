@@ -115,6 +115,7 @@ struct Input {
   std::string name, doc;
   Type type = Type::floating;
   bool any = false;               ///< of a function: float, a vector or a colour, as the call has it
+  bool unit = false;              ///< of a function, a vector: its length is 1
   std::optional<Literal> value;   ///< always there in a parameter; fits the type and the range
   std::optional<float> min, max;  ///< of each component
   std::vector<std::string>

@@ -107,6 +107,9 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
                           "the max of " + what + " is less than its min");
     }
   }
+  const bool is_vector =
+      input.type == Type::vector2 || input.type == Type::vector3 || input.type == Type::vector4;
+  if (!is_parameter && is_vector) input.unit = reader.boolean("unit", false);
   const Json* value = reader.value("value", is_parameter ? Need::required : Need::optional);
   if (value != nullptr) {
     input.value = literal(*value, "value");

@@ -128,13 +128,15 @@ SchemaJson node_schema() {
 SchemaJson input_schema(bool is_parameter) {
   std::vector<std::string_view> types = graph::all_type_names();
   if (!is_parameter) types.push_back(graph::any_type_name);
-  return object_schema({{"type", one_of(types), true},
-                        {"min", described(number_schema(), "the least that a component may be")},
-                        {"max", described(number_schema(), "the greatest that a component may be")},
-                        {"enum", described(array_schema(reference("id"), 1, 64),
-                                           "what the values 0, 1, ... of an integer are called")},
-                        {"value", reference("literal"), is_parameter},
-                        {"doc", string_schema()}});
+  std::vector<SchemaKey> keys{{"type", one_of(types), true},
+                              {"min", described(number_schema(), "the least that a component may be")},
+                              {"max", described(number_schema(), "the greatest that a component may be")},
+                              {"enum", described(array_schema(reference("id"), 1, 64),
+                                                 "what the values 0, 1, ... of an integer are called")},
+                              {"value", reference("literal"), is_parameter},
+                              {"doc", string_schema()}};
+  if (!is_parameter) keys.push_back({"unit", described(boolean_schema(), "a vector of length 1")});
+  return object_schema(keys);
 }
 
 SchemaJson pass_schema() {

@@ -12,7 +12,8 @@ namespace isoshade::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check), 2 error.\n"
+    "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check) or not proved (check), 2 "
+    "error.\n"
     "\"-\" is standard input or output. Errors go to standard error.";
 
 bool parse_size(const std::string& text, Size& size) {
@@ -222,6 +223,13 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   add_precision(*eval_app, eval.precision);
   add_choice(*eval_app, eval.choice);
 
+  CheckArguments check;
+  CLI::App* check_app = app.add_subcommand(
+      "check", "Prove that documents give finite numbers for all inputs they allow, and bound their error");
+  check_app->add_option("DOCUMENT", check.documents, "Function and effect documents")->required();
+  check_app->add_option("-o,--output", check.output,
+                        "Write the counterexamples of a function to this CSV file, as a table for `eval`");
+
   FormatArguments format;
   CLI::App* format_app = app.add_subcommand("fmt", "Bring documents into canonical layout, in place");
   format_app->add_option("DOCUMENT", format.documents, "Documents; - reads stdin and writes stdout")
@@ -285,6 +293,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (render_app->parsed()) parsed.render = render;
   if (verify_app->parsed()) parsed.verify = verify;
   if (eval_app->parsed()) parsed.eval = eval;
+  if (check_app->parsed()) parsed.check = check;
   if (format_app->parsed()) parsed.format = format;
   if (draw_app->parsed()) parsed.draw = draw;
   if (devices_app->parsed()) parsed.devices = devices;

@@ -81,6 +81,11 @@ struct EvalArguments {
   BackendChoice choice;
 };
 
+struct CheckArguments {
+  std::vector<std::string> documents;
+  std::string output;  ///< a table of counterexamples; empty: none is written
+};
+
 struct FormatArguments {
   std::vector<std::string> documents;
   bool check = false;
@@ -118,6 +123,7 @@ struct Arguments {
   std::optional<RenderArguments> render;
   std::optional<VerifyArguments> verify;
   std::optional<EvalArguments> eval;
+  std::optional<CheckArguments> check;
   std::optional<FormatArguments> format;
   std::optional<DrawArguments> draw;
   std::optional<DevicesArguments> devices;

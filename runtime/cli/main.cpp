@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   if (arguments->render) return render(*arguments->render, arguments->common);
   if (arguments->verify) return verify(*arguments->verify, arguments->common);
   if (arguments->eval) return eval(*arguments->eval, arguments->common);
+  if (arguments->check) return check_documents(*arguments->check, arguments->common);
   if (arguments->format) return format(*arguments->format, arguments->common);
   if (arguments->draw) return draw(*arguments->draw, arguments->common);
   if (arguments->nodes) return nodes(*arguments->nodes, arguments->common);

@@ -49,6 +49,7 @@ int compile(const CompileArguments& arguments, const Common& common);
 int render(const RenderArguments& arguments, const Common& common);
 int verify(const VerifyArguments& arguments, const Common& common);
 int eval(const EvalArguments& arguments, const Common& common);
+int check_documents(const CheckArguments& arguments, const Common& common);
 int format(const FormatArguments& arguments, const Common& common);
 int draw(const DrawArguments& arguments, const Common& common);
 int devices(const DevicesArguments& arguments, const Common& common);

@@ -55,3 +55,9 @@ isoshade_test(fog_test
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
   LABEL accuracy)
 target_compile_definitions(fog_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
+
+isoshade_test(proved_test SOURCES accuracy/proved_test.cpp LINKS isoshade_analysis LABEL accuracy)
+target_compile_definitions(proved_test PRIVATE
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
+  ISOSHADE_PROVED="${PROJECT_SOURCE_DIR}/tests/accuracy/proved.txt")

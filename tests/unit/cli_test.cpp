@@ -261,10 +261,26 @@ TEST_F(Cli, TellsOfPostsThatAreSwitchedOff) {
   EXPECT_NE(without.text.find("posts:    1"), std::string::npos) << without.text;
 }
 
+TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
+  const Outcome proved = run("check " + ggx);
+  EXPECT_EQ(proved.exit, 0) << proved.text;
+  EXPECT_NE(proved.text.find("ggx_d.json: proved\n  out in ["), std::string::npos) << proved.text;
+  const std::string source_form = graphs + "/source_forms/ggx_d.json", table = file("found.csv");
+  const Outcome refuted = run("check " + source_form + " -o " + table);
+  EXPECT_EQ(refuted.exit, 1) << refuted.text;
+  EXPECT_NE(refuted.text.find("error[refuted]: in node \"d\", port \"in2\""), std::string::npos)
+      << refuted.text;
+  const Outcome evaluated = run("eval " + source_form + " --backend interpreter --inputs " + table);
+  EXPECT_EQ(evaluated.text, "out\nnan\n");
+  EXPECT_EQ(run("check " + scene).exit, 2);
+  const Outcome as_data = run("check " + source_form + " --diagnostics json");
+  EXPECT_NE(as_data.text.find("\"refuted\""), std::string::npos) << as_data.text;
+}
+
 TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("compile, render, verify, eval, fmt, draw, devices"), std::string::npos)
+  EXPECT_NE(outcome.text.find("compile, render, verify, eval, check, fmt, draw, devices"), std::string::npos)
       << outcome.text;
 }
 

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/analysis/bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "compiler/ir/evaluate.h"
+
+namespace isoshade::analysis {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double least_integer = -0x1p31, greatest_integer = 0x1p31 - 1;
+
+/// More than the exact value of a few sums and products of positive doubles that gave `x`.
+double up(double x) { return x * (1 + 0x1p-44); }
+/// 0 * infinity is 0 here: an error that is unknown does no harm where it is multiplied by nothing.
+double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
+struct Ends {
+  double lo, hi;
+};
+
+/// The ends of what an operation gives at the four corners.
+template <class Operation>
+Ends corners(const Bound& a, const Bound& b, Operation operation) {
+  const auto at = [&](double x, double y) {
+    return static_cast<double>(operation(static_cast<float>(x), static_cast<float>(y)));
+  };
+  const auto [lo, hi] = std::minmax({at(a.lo, b.lo), at(a.lo, b.hi), at(a.hi, b.lo), at(a.hi, b.hi)});
+  return {lo, hi};
+}
+
+bool same_sign(const Bound& a, const Bound& b) {
+  return (a.lo >= 0 && b.lo >= 0) || (a.hi <= 0 && b.hi <= 0);
+}
+
+/// Whether a - b is exact by Sterbenz's lemma: both of one sign, neither more than twice the other.
+bool difference_is_exact(const Bound& a, const Bound& b) {
+  if (!same_sign(a, b)) return false;
+  const double a_least = a.least_magnitude(), b_least = b.least_magnitude();
+  return a.magnitude() <= 2 * b_least && b.magnitude() <= 2 * a_least;
+}
+
+/// How much an exact value of the same sign as computed can have been moved to the other one's side.
+double beyond_zero(const Bound& a) {
+  if (a.slack == 0 && a.relative < 1) return 0;
+  return a.relative < 1 ? a.slack / (1 - a.relative) : infinity;
+}
+
+bool is_power_of_two(const Bound& a) {
+  int exponent = 0;
+  return a.is_point() && a.absolute == 0 && a.lo != 0 && std::abs(std::frexp(a.lo, &exponent)) == 0.5;
+}
+
+/// The product's error, where the computed product lies within [lo, hi].
+Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
+  Bound r{ends.lo, ends.hi};
+  const double u = rounds ? half_ulp : 0;
+  r.absolute = times(a.magnitude(), b.absolute) + times(b.magnitude(), a.absolute) +
+               times(a.absolute, b.absolute) + times(u, r.magnitude()) + smallest;
+  const double carried = a.relative + b.relative + times(a.relative, b.relative);
+  r.relative = carried + u * (1 + carried);
+  const double a_exact = a.magnitude() + a.absolute, b_exact = b.magnitude() + b.absolute;
+  r.slack = (times(times(a_exact, 1 + a.relative), b.slack) + times(times(b_exact, 1 + b.relative), a.slack) +
+             times(a.slack, b.slack)) *
+                (1 + u) +
+            smallest;
+  if (a.lo == 0 && a.hi == 0 && a.absolute == 0) return {exactly(0)};
+  if (b.lo == 0 && b.hi == 0 && b.absolute == 0) return {exactly(0)};
+  return settled(r);
+}
+
+Bound truth(bool can_be_false, bool can_be_true, bool may_differ) {
+  return {can_be_false ? 0.0 : 1.0, can_be_true ? 1.0 : 0.0, may_differ ? 1.0 : 0.0, 0, 0};
+}
+
+Outcome any_integer() { return {{least_integer, greatest_integer, infinity, infinity, infinity}}; }
+
+Outcome integer(double lo, double hi, double absolute) {
+  if (lo < least_integer || hi > greatest_integer) return any_integer();
+  return {{lo, hi, absolute, absolute == 0 ? 0 : infinity, absolute}};
+}
+
+}  // namespace
+
+double Bound::magnitude() const { return std::max(std::abs(lo), std::abs(hi)); }
+double Bound::least_magnitude() const {
+  return lo <= 0 && hi >= 0 ? 0 : std::min(std::abs(lo), std::abs(hi));
+}
+
+double Bound::relative_error() const {
+  const double least = least_magnitude() - absolute;
+  const double from_absolute = least > 0 ? up(absolute / least) : infinity;
+  return slack <= 0x1p-100 ? std::min(relative, from_absolute) : from_absolute;
+}
+
+std::string_view words(Breach breach) {
+  switch (breach) {
+    case Breach::none: break;
+    case Breach::division_by_zero: return "division by zero";
+    case Breach::root_of_negative: return "root of a negative number";
+    case Breach::logarithm: return "logarithm of a number that is not positive";
+    case Breach::power: return "power of a negative number, or of zero to a negative exponent";
+    case Breach::arc: return "arc sine or cosine of a number beyond 1";
+    case Breach::overflow: return "overflow to infinity";
+    case Breach::conversion: return "conversion to an integer that does not exist";
+    case Breach::unknown: return "an operation that is not understood";
+  }
+  return "nothing";
+}
+
+Outcome settled(Bound r) {
+  r.absolute = up(r.absolute);
+  r.relative = up(r.relative);
+  r.slack = up(r.slack);
+  const Breach breach = r.lo < -largest || r.hi > largest ? Breach::overflow : Breach::none;
+  r.lo = std::clamp(r.lo, -largest, largest);
+  r.hi = std::clamp(r.hi, -largest, largest);
+  if (r.relative < 1) {
+    const double exact = (r.magnitude() + r.slack) / (1 - r.relative);
+    r.absolute = std::min(r.absolute, up(r.relative * exact + r.slack));
+  }
+  if (r.absolute == 0) {
+    r.relative = r.slack = 0;
+    return {r, breach};
+  }
+  const double least = r.least_magnitude() - r.absolute;
+  const auto take = [&](double relative, double slack) {
+    r.relative = relative;
+    r.slack = slack;
+  };
+  if (least > 0 && r.slack / least <= 0.1 * r.relative) take(up(r.relative + r.slack / least), 0);
+  if (least > 0 && up(r.absolute / least) <= r.relative) take(up(r.absolute / least), 0);
+  if (r.relative == infinity || r.slack == infinity) take(0, r.absolute);
+  return {r, breach};
+}
+
+// Not inlined: where g++ 12 does this to two numbers at once, it takes the way to float and back for nothing.
+[[gnu::noinline]] double rounded(double value) { return static_cast<double>(static_cast<float>(value)); }
+
+Bound exactly(double value) { return {value, value}; }
+Bound between(double lo, double hi) { return {lo, hi}; }
+Bound anything() { return {-largest, largest, infinity, infinity, infinity}; }
+
+Outcome approximate(double lo, double hi, double relative_error, double carried) {
+  lo = std::clamp(lo, -4 * largest, 4 * largest);
+  hi = std::clamp(hi, -4 * largest, 4 * largest);
+  const double margin = std::max(std::abs(lo), std::abs(hi)) * relative_error + smallest;
+  Bound r{lo - std::abs(lo) * relative_error - smallest, hi + std::abs(hi) * relative_error + smallest};
+  if (lo >= 0) r.lo = std::max(r.lo, 0.0);  // no result here has another sign than the exact one
+  if (hi <= 0) r.hi = std::min(r.hi, 0.0);
+  r.absolute = margin + carried * (1 + relative_error);
+  r.relative = carried == 0 ? relative_error : infinity;
+  r.slack = carried == 0 ? smallest : infinity;
+  return settled(r);
+}
+
+Outcome add(const Bound& a, const Bound& b) {
+  Bound r{static_cast<double>(static_cast<float>(a.lo) + static_cast<float>(b.lo)),
+          static_cast<double>(static_cast<float>(a.hi) + static_cast<float>(b.hi))};
+  const bool nothing_added =
+      (a.magnitude() == 0 && a.absolute == 0) || (b.magnitude() == 0 && b.absolute == 0);
+  const bool exact = nothing_added || difference_is_exact(a, negate(b));
+  const double u = exact ? 0 : half_ulp;
+  r.absolute = a.absolute + b.absolute + times(u, r.magnitude()) + (nothing_added ? 0 : smallest);
+  r.relative = r.slack = infinity;
+  if (same_sign(a, b)) {
+    const double e = std::max(a.relative, b.relative);
+    r.relative = e + u * (1 + e);
+    r.slack = (a.slack + b.slack + 2 * times(e, beyond_zero(a) + beyond_zero(b))) * (1 + u);
+  }
+  return settled(r);
+}
+
+Outcome subtract(const Bound& a, const Bound& b) { return add(a, negate(b)); }
+
+Outcome multiply(const Bound& a, const Bound& b) {
+  const bool exact = is_power_of_two(a) || is_power_of_two(b);
+  return product(a, b, corners(a, b, [](float x, float y) { return x * y; }), !exact);
+}
+
+Outcome square(const Bound& a) {
+  const auto least = static_cast<float>(a.least_magnitude()), most = static_cast<float>(a.magnitude());
+  return product(a, a, {static_cast<double>(least * least), static_cast<double>(most * most)}, true);
+}
+
+Outcome divide(const Bound& a, const Bound& b) {
+  if (b.lo <= 0 && b.hi >= 0) return {anything(), Breach::division_by_zero};
+  const Ends ends = corners(a, b, [](float x, float y) { return x / y; });
+  Bound r{ends.lo, ends.hi};
+  const double u = is_power_of_two(b) ? 0 : half_ulp;
+  const double b_least = b.least_magnitude();
+  const double b_exact = std::max(b_least - b.absolute, (b_least - b.slack) / (1 + b.relative));
+  r.absolute = b_exact > 0 ? (times(r.magnitude(), b.absolute) + a.absolute) / b_exact : infinity;
+  r.absolute += times(u, r.magnitude()) + smallest;
+  const double e = b_exact > 0 ? b.relative + b.slack / b_exact : infinity;
+  r.relative = r.slack = infinity;
+  if (e < 1) {
+    const double carried = (a.relative + e) / (1 - e);
+    r.relative = carried + u * (1 + carried);
+    r.slack = a.slack / b_least * (1 + u) + smallest;
+  }
+  return settled(r);
+}
+
+Outcome square_root(const Bound& a) {
+  const Breach breach = a.lo < 0 ? Breach::root_of_negative : Breach::none;
+  const double lo = std::max(a.lo, 0.0);
+  Bound r{static_cast<double>(std::sqrt(static_cast<float>(lo))),
+          static_cast<double>(std::sqrt(static_cast<float>(std::max(a.hi, 0.0))))};
+  const auto moved = [&](double error) {
+    return std::min(std::sqrt(error), r.lo > 0 ? error / r.lo * (1 + half_ulp) : infinity);
+  };
+  r.absolute = moved(a.absolute) + half_ulp * r.hi;
+  r.relative = r.slack = infinity;
+  if (a.relative < 1) {
+    const double carried = a.relative / (1 + std::sqrt(1 - a.relative));
+    r.relative = carried + half_ulp * (1 + carried);
+    r.slack = moved(a.slack) * (1 + half_ulp);
+  }
+  Outcome outcome = settled(r);
+  outcome.breach = breach;
+  return outcome;
+}
+
+Bound negate(const Bound& a) { return {-a.hi, -a.lo, a.absolute, a.relative, a.slack}; }
+
+Bound magnitude(const Bound& a) {
+  return {a.least_magnitude(), a.magnitude(), a.absolute, a.relative, a.slack};
+}
+
+Bound floor_of(const Bound& a) {
+  Bound r{std::floor(a.lo), std::floor(a.hi)};
+  const bool same = a.absolute == 0 || std::floor(a.lo - a.absolute) == std::floor(a.hi + a.absolute);
+  if (!same) r.absolute = r.relative = r.slack = a.absolute + 1;
+  if (!same) r.relative = infinity;
+  return settled(r).bound;
+}
+
+namespace {
+
+/// The bound of the result that is one or the other, both computed and exactly.
+Bound either(const Bound& a, const Bound& b, double lo, double hi) {
+  Bound r{lo, hi, std::max(a.absolute, b.absolute), std::max(a.relative, b.relative),
+          std::max(a.slack, b.slack)};
+  return r;
+}
+
+bool surely_less(const Bound& a, const Bound& b) { return a.hi + a.absolute < b.lo - b.absolute; }
+
+}  // namespace
+
+Bound lesser(const Bound& a, const Bound& b) {
+  if (surely_less(a, b)) return a;
+  if (surely_less(b, a)) return b;
+  return either(a, b, std::min(a.lo, b.lo), std::min(a.hi, b.hi));
+}
+
+Bound greater(const Bound& a, const Bound& b) { return negate(lesser(negate(a), negate(b))); }
+
+Bound select(const Bound& condition, const Bound& then, const Bound& other) {
+  const bool one_side = condition.is_point() && condition.absolute == 0;
+  if (one_side) return condition.lo != 0 ? then : other;
+  Bound r = either(then, other, std::min(then.lo, other.lo), std::max(then.hi, other.hi));
+  if (condition.is_point()) {
+    r.lo = condition.lo != 0 ? then.lo : other.lo;
+    r.hi = condition.lo != 0 ? then.hi : other.hi;
+  }
+  if (condition.absolute == 0) return r;
+  // Exact arithmetic may have taken the other side.
+  r.absolute += std::max(then.hi - other.lo, other.hi - then.lo);
+  r.relative = r.slack = infinity;
+  return settled(r).bound;
+}
+
+Bound compare(ir::Opcode op, const Bound& a, const Bound& b) {
+  using enum ir::Opcode;
+  const bool surely_below = a.hi<b.lo, surely_above = a.lo> b.hi;
+  const bool never_below = a.lo >= b.hi, never_above = a.hi <= b.lo;
+  const double reach = a.absolute + b.absolute;
+  const bool apart = a.hi + reach < b.lo || a.lo - reach > b.hi;
+  const bool may_differ = reach != 0 && !apart;
+  switch (op) {
+    case flt:
+    case ilt: return truth(!surely_below, !never_below, may_differ);
+    case fle:
+    case ile: return truth(!never_above, !surely_above, may_differ);
+    case fgt:
+    case igt: return truth(!surely_above, !never_above, may_differ);
+    case fge:
+    case ige: return truth(!never_below, !surely_below, may_differ);
+    default: break;
+  }
+  const bool disjoint = surely_below || surely_above;
+  const bool one = a.is_point() && b.is_point() && a.lo == b.lo;
+  if (op == feq || op == ieq) return truth(!one, !disjoint, may_differ);
+  return truth(!disjoint, !one, may_differ);
+}
+
+Outcome other(ir::Opcode op, const Bound& a, const Bound& b) {
+  using enum ir::Opcode;
+  const double differs = std::max(a.absolute, b.absolute);
+  switch (op) {
+    case band: return {{std::min(a.lo, b.lo), std::min(a.hi, b.hi), differs}};
+    case bor: return {{std::max(a.lo, b.lo), std::max(a.hi, b.hi), differs}};
+    case bnot: return {{1 - a.hi, 1 - a.lo, a.absolute}};
+    case bxor:
+      if (a.is_point() && b.is_point()) return {exactly(a.lo != b.lo)};
+      return {{0, 1, differs}};
+    case iadd: return integer(a.lo + b.lo, a.hi + b.hi, a.absolute + b.absolute);
+    case isub: return integer(a.lo - b.hi, a.hi - b.lo, a.absolute + b.absolute);
+    case itof: {
+      Bound r{rounded(a.lo), rounded(a.hi)};
+      r.absolute = a.absolute + (a.magnitude() > 0x1p24 ? half_ulp * r.magnitude() : 0);
+      r.relative = r.slack = r.absolute == 0 ? 0 : infinity;
+      return settled(r);
+    }
+    case ftoi: {
+      if (a.lo < least_integer || a.hi >= 0x1p31) return {any_integer().bound, Breach::conversion};
+      const bool same = a.absolute == 0 || std::trunc(a.lo - a.absolute) == std::trunc(a.hi + a.absolute);
+      return integer(std::trunc(a.lo), std::trunc(a.hi), same ? 0 : a.absolute + 1);
+    }
+    case bitsf:
+    case bitsf_normal: return {anything(), Breach::unknown};
+    case ult: return {{0, 1, differs}};
+    default: return any_integer();
+  }
+}
+
+Outcome sum_of(const Bound& a, double count) {
+  // Each of the additions rounds a sum of at most `count` times the largest.
+  const double growth = 1 + 2 * count * half_ulp;
+  Bound r{std::min(0.0, a.lo * count * growth), std::max(0.0, a.hi * count * growth)};
+  r.absolute = count * (a.absolute + half_ulp * r.magnitude() + smallest);
+  r.relative = r.slack = infinity;
+  if (same_sign(a, exactly(0))) {
+    r.relative = a.relative + 2 * count * half_ulp * (1 + a.relative);
+    r.slack = growth * count * (a.slack + 2 * times(r.relative, beyond_zero(a)));
+  }
+  return settled(r);
+}
+
+}  // namespace isoshade::analysis

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `isoshade check` asks of a document: the tapes of what it computes, over the inputs that it allows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/analysis/prove.h"
+#include "compiler/check/typed_graph.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::analysis {
+
+/// Inputs without "min" or "max" go so far, and so do positions; see graphs/README.md for what else is assumed.
+inline constexpr double default_limit = 1e6;
+
+/// One thing that a document computes: a function, or the colour of a pass, or where it moves vertices to.
+struct Subject {
+  std::string name;  ///< of a function or post, its own; else "pass base", "pass outline, position"
+  Tape tape;
+};
+
+/// Nothing, and a report, where a document is too large.
+std::optional<std::vector<Subject>> subjects_of(const check::TypedGraph& graph,
+                                                support::Diagnostics& diagnostics);
+
+/// Reports what is not proved, at the node where it happens.
+void report(const check::TypedGraph& graph, const Subject& subject, const Proof& proof,
+            support::Diagnostics& diagnostics);
+
+}  // namespace isoshade::analysis

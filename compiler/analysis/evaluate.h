@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tape walked by bounds: what every operation may give for inputs in a box, and what is not proved of it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "compiler/analysis/tape.h"
+
+namespace isoshade::analysis {
+
+struct Side {
+  double lo = 0, hi = 0;
+};
+
+/// Where the inputs lie, and the operations that boxes are cut along too.
+using Box = std::vector<Side>;
+
+struct Finding {
+  uint32_t operation = none;
+  Breach breach = Breach::none;
+  double severity = 0;  ///< how far from being proved; comparable between boxes
+};
+
+class Evaluator {
+ public:
+  /// The tape must outlive it.
+  explicit Evaluator(const Tape& tape);
+
+  /// All inputs in their ranges.
+  Box whole() const;
+  /// Inputs, then scalar products: a box has a side for each.
+  size_t side_count() const { return tape_.inputs.size() + cuts_.size(); }
+  /// What a side was in the last walk: its range cut by what the operation gave there.
+  Side reached(const Box& box, size_t side) const;
+  std::string side_name(size_t side) const;
+  /// Whether an operation depends on a side.
+  bool depends(uint32_t operation, size_t side) const;
+
+  /// Walks operations up to `last`. False if the box holds no input at all. Needs lanes::FpGuard.
+  bool walk(const Box& box, uint32_t last);
+  bool walk(const Box& box) { return walk(box, static_cast<uint32_t>(tape_.operations.size() - 1)); }
+  /// What the last walk did not prove; of operations that read each other's results only the first.
+  const std::vector<Finding>& findings() const { return findings_; }
+  const Bound& bound(uint32_t operation) const { return bounds_[operation]; }
+  uint64_t steps() const { return steps_; }  ///< operations walked so far
+
+ private:
+  /// value >= factor * base - slack, where base >= 0
+  struct Proportion {
+    uint32_t base = none;
+    double factor = 0, slack = 0;
+  };
+  using Proportions = std::array<Proportion, 3>;
+  enum class State : uint8_t { good, doubtful, dead };
+
+  Outcome outcome_of(const Operation& operation, uint32_t index);
+  Outcome op_of(const Operation& operation, std::span<const uint32_t> in);
+  Outcome dot_of(std::span<const uint32_t> in) const;
+  Outcome select_of(std::span<const uint32_t> in);
+  bool narrow(const Operation& operation, uint32_t index);
+  void enter(const Operation& operation);
+  bool apply_facts(const Operation& operation, uint32_t index);
+  void carry_proportion(const Operation& operation, uint32_t index);
+  void limit_quotient(uint32_t index, const Proportion& of_divisor);
+  /// Keeps as many as there is room for.
+  void propose(uint32_t index, const Proportion& proportion);
+  bool restrict(uint32_t index, double lo, double hi);
+  bool units_possible(const Box& box) const;
+  double severity_of(const Operation& operation, Breach breach) const;
+
+  const Tape& tape_;
+  std::vector<uint32_t> cuts_;    ///< the scalar products
+  std::vector<uint32_t> cut_of_;  ///< of operations: which cut, or none
+  std::vector<std::vector<bool>> depends_;
+  std::vector<Bound> bounds_;
+  std::vector<State> states_;
+  std::vector<Proportions> proportions_;
+  std::vector<bool> guard_dead_;
+  std::vector<Finding> findings_;
+  uint64_t steps_ = 0;
+};
+
+}  // namespace isoshade::analysis

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Proves that a tape gives finite numbers for all its inputs, and bounds its error, by branch and bound: boxes of
+// inputs about which nothing is proved are cut, each along the side that helps most.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/analysis/sample.h"
+
+namespace isoshade::analysis {
+
+/// How much work a proof may be, in operations walked: so it ends alike on every machine.
+struct Effort {
+  uint64_t proof = 12'000'000;
+  uint64_t error = 4'000'000;
+  int tries = 1500;  ///< inputs tried for a counterexample, in a box that was not proved
+};
+
+struct Unproved {
+  uint32_t operation = none;
+  Breach breach = Breach::none;
+  std::vector<uint32_t> counterexample;  ///< words of the inputs; empty: none was found
+  size_t open_boxes = 0;                 ///< in which it is not proved
+  Box box;                               ///< one of them, as it was reached
+};
+
+/// Over all inputs, the whole result of one output component.
+struct Proof {
+  std::vector<Unproved> unproved;  ///< empty: all is proved
+  std::vector<Bound> outputs;      ///< of Tape::outputs; without meaning where not all is proved
+  uint64_t steps = 0;              ///< operations that were walked
+};
+
+Proof prove(const Tape& tape, const Effort& effort = {});
+
+}  // namespace isoshade::analysis

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tape run on floats, and the search for inputs on which it breaks.
+#pragma once
+
+#include <optional>
+
+#include "compiler/analysis/evaluate.h"
+#include "compiler/ir/interpreter.h"
+
+namespace isoshade::analysis {
+
+/// Runs a tape as the interpreter runs its function: the same floats.
+class Runner {
+ public:
+  /// The tape must outlive it.
+  explicit Runner(const Tape& tape);
+
+  struct Broken {
+    uint32_t operation = none;
+    Breach breach = Breach::none;
+  };
+  /// Runs on the words of the inputs; returns the first operation that is looked at and gives no finite number.
+  /// Needs lanes::FpGuard. Sums over lights are of one light.
+  std::optional<Broken> run(std::span<const uint32_t> inputs);
+  uint32_t word(uint32_t operation) const { return words_[operation]; }
+
+ private:
+  Breach breach_of(const Operation& operation, uint32_t index) const;
+  uint32_t row(const Operation& operation);
+  uint32_t dot(const Operation& operation) const;
+
+  const Tape& tape_;
+  ir::Interpreter interpreter_;
+  std::vector<uint32_t> words_;
+  std::vector<bool> guard_holds_;
+};
+
+struct Counterexample {
+  std::vector<uint32_t> inputs;  ///< words, one an input
+  Runner::Broken broken;
+};
+
+/// Tries inputs of a box: ends, middles, equal ones, vectors along each other. The same on every run.
+/// One counterexample for each operation that breaks.
+std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries);
+
+}  // namespace isoshade::analysis

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// A function of a module as one list of scalar operations, calls inlined, in an order in which it can be walked
+// over and over with other inputs: by floats, or by bounds.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/analysis/rules.h"
+#include "compiler/ir/module.h"
+
+namespace isoshade::analysis {
+
+inline constexpr uint32_t none = ir::none;
+/// What a scene has at most of lights, and a post of taps: sums over them are bounded by it.
+inline constexpr int most_lights = 256;
+/// Functions that would become more operations than this have no tape.
+inline constexpr size_t most_operations = 200'000;
+
+enum class Kind : uint8_t {
+  constant,
+  input,     ///< index: in Tape::inputs
+  op,        ///< a primitive op
+  least,     ///< the functions min
+  greatest,  ///< and max
+  dot,       ///< of the first half of its operands with the second
+  row,       ///< one component of another function of functions.def
+  sum,       ///< of its operand over at most most_lights lights
+  unknown,   ///< anything
+  narrow,    ///< its first operand, of which `op` with the second holds here
+  enter,     ///< index: in Tape::guards; from here on it is known whether it holds
+};
+
+struct Operation {
+  Kind kind{};
+  ir::Opcode op{};
+  ir::Scalar scalar = ir::Scalar::floating;
+  uint8_t component = 0;          ///< of a row
+  uint32_t index = 0;             ///< see Kind; of a row: in Tape::rows
+  uint32_t bits = 0;              ///< of a constant
+  uint32_t first = 0, count = 0;  ///< in Tape::operands
+  uint32_t place = 0;             ///< in Tape::places
+  uint32_t guard = 0;             ///< in Tape::guards: it is only looked at where this holds
+};
+
+/// The node that an operation comes from.
+struct Place {
+  std::string document;  ///< as ir::Function::document
+  std::string node;
+  uint32_t caller = none;  ///< the node that called the document's function, in Tape::places
+};
+
+/// A number from outside.
+struct Input {
+  std::string name;  ///< "f0.x", "surface.normal.x", "m.0"
+  ir::Scalar scalar = ir::Scalar::floating;
+  double lo = 0, hi = 0;
+  uint32_t vector = none;  ///< the number of the unit vector that it is a component of
+  double quotient = 0;     ///< as of Given
+};
+
+/// What is known of a value from outside, in each component.
+struct Given {
+  std::string name;
+  double lo = 0, hi = 0;
+  bool unit = false;  ///< a vector of length 1
+  int element = -1;   ///< of a matrix's column: the number of its first element in the matrix
+  double quotient =
+      0;  ///< not 0: what is divided by a sum that begins with it is from outside too, and from 0 to this
+};
+
+/// A truth under which operations are looked at. 0 always holds.
+struct Guard {
+  uint32_t parent = 0;
+  uint32_t condition = none;  ///< an operation
+  bool truth = true;
+};
+
+/// A row of functions.def at one set of types, and its body in the tape's module.
+struct Row {
+  const Rule* rule = nullptr;
+  uint32_t function = none;
+  uint32_t words = 1;  ///< of its result
+};
+
+/// What is known of an operation beside what its operands say. Other operations stand before it.
+struct Fact {
+  enum class Kind : uint8_t {
+    dot,         ///< |a . b| <= |a| |b|: first, second are a . a and b . b, or none
+    projection,  ///< n . l + n . v is near first, which is n . (l + v); second is how near
+    rotation,  ///< |u x w|^2 + (r (u . w))^2 >= min(1, r^2) |w|^2: first is w . w, second r, |u| = 1; if there
+               ///< is a third, |u| may be 0, but not where that one, a product of u, is not 0
+    half,      ///< max(a, b) >= first / 2, which is a + b
+  };
+  Kind kind{};
+  uint32_t first = none, second = none, third = none;
+  double first_length = 1e30, second_length = 1e30;  ///< of a dot: what |a| and |b| are at most
+};
+
+struct Tape {
+  ir::Module module;  ///< with bodies for all calls to functions.def
+  std::vector<Operation> operations;
+  std::vector<uint32_t> operands;  ///< operations
+  std::vector<Input> inputs;
+  std::vector<Guard> guards{{}};
+  std::vector<Row> rows;
+  std::vector<Place> places{{}};
+  std::unordered_map<uint32_t, std::vector<Fact>> facts;  ///< of operations
+  struct Output {
+    std::string name;  ///< "out.x"
+    uint32_t operation = none;
+  };
+  std::vector<Output> outputs;
+
+  std::span<const uint32_t> operands_of(const Operation& operation) const {
+    return {operands.data() + operation.first, operation.count};
+  }
+};
+
+/// How far the length of a unit vector is from 1 at most.
+inline constexpr double unit_tolerance = 0x1p-21;
+
+/// The tape of a function. `given`: of its parameters, one each. `outside`: what a function that no document has returns, one a
+/// result, by its name; nothing of one whose body tells. Nothing if it would be too long.
+std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
+                              const std::function<std::vector<Given>(std::string_view)>& outside);
+
+}  // namespace isoshade::analysis

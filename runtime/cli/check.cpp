@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade check: proofs over all inputs of a document.
+#include <cmath>
+#include <cstdio>
+
+#include "compiler/analysis/document.h"
+#include "compiler/driver/driver.h"
+#include "compiler/support/parse_number.h"
+#include "runtime/cli/session.h"
+#include "runtime/scene/output_file.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+std::string number(double value) { return support::format_float(static_cast<float>(value)); }
+
+void print_bounds(const analysis::Tape& tape, const analysis::Proof& proof) {
+  for (size_t i = 0; i < tape.outputs.size(); ++i) {
+    const analysis::Bound& bound = proof.outputs[i];
+    std::string error =
+        std::isfinite(bound.absolute) ? "error at most " + number(bound.absolute) : "error unknown";
+    const double ulps = bound.relative * 0x1p24;
+    if (ulps > 0 && ulps < 1e6) error += ", at most " + number(std::ceil(10 * ulps) / 10) + " ULP";
+    std::printf("  %s in [%s, %s], %s\n", tape.outputs[i].name.c_str(), number(bound.lo).c_str(),
+                number(bound.hi).c_str(), error.c_str());
+  }
+}
+
+/// The counterexamples as rows of a table for `isoshade eval`.
+std::string table_of(const analysis::Tape& tape, const analysis::Proof& proof) {
+  std::string text;
+  for (size_t i = 0; i < tape.inputs.size(); ++i) text += (i == 0 ? "" : ",") + tape.inputs[i].name;
+  text += "\n";
+  for (const analysis::Unproved& unproved : proof.unproved) {
+    for (size_t i = 0; i < unproved.counterexample.size(); ++i) {
+      const uint32_t word = unproved.counterexample[i];
+      text += i == 0 ? "" : ",";
+      text += tape.inputs[i].scalar == ir::Scalar::floating
+                  ? support::format_hex_float(std::bit_cast<float>(word))
+                  : std::to_string(static_cast<int32_t>(word));
+    }
+    text += unproved.counterexample.empty() ? "" : "\n";
+  }
+  return text;
+}
+
+enum class Result : uint8_t { proved, not_proved, error };
+
+Result check_one(const std::string& path, const CheckArguments& arguments, const Common& common,
+                 support::Diagnostics& diagnostics) {
+  check::Library library = make_library(common);
+  driver::Options options;
+  options.library = &library;
+  const support::Source source = graph::read_source(path, diagnostics);
+  if (source == nullptr) return Result::error;
+  const auto typed = driver::check_document(source, options, diagnostics);
+  if (typed == nullptr) return Result::error;
+  const auto subjects = analysis::subjects_of(*typed, diagnostics);
+  if (!subjects) return Result::error;
+  Result result = Result::proved;
+  for (const analysis::Subject& subject : *subjects) {
+    const analysis::Proof proof = analysis::prove(subject.tape);
+    const bool proved = proof.unproved.empty();
+    const bool is_effect = typed->graph.kind == graph::DocumentKind::effect;
+    const bool is_function = typed->graph.kind == graph::DocumentKind::function;
+    std::printf("%s%s: %s\n", path.c_str(), is_effect ? (", " + subject.name).c_str() : "",
+                proved ? "proved" : "not proved");
+    if (proved && !common.quiet) print_bounds(subject.tape, proof);
+    if (proved) continue;
+    result = Result::not_proved;
+    analysis::report(*typed, subject, proof, diagnostics);
+    if (is_function && !arguments.output.empty() &&
+        !scene::write_file(arguments.output, table_of(subject.tape, proof), diagnostics))
+      return Result::error;
+  }
+  return result;
+}
+
+}  // namespace
+
+int check_documents(const CheckArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  int exit = success;
+  if (!read_standard_input_once(arguments.documents, diagnostics) ||
+      (!arguments.output.empty() && !may_write(arguments.output, arguments.documents, diagnostics)))
+    exit = failure;
+  for (const std::string& document : arguments.documents) {
+    if (exit == failure) break;
+    switch (check_one(document, arguments, common, diagnostics)) {
+      case Result::proved: break;
+      case Result::not_proved: exit = different; break;
+      case Result::error: exit = failure; break;
+    }
+  }
+  flush(diagnostics, common);
+  return exit;
+}
+
+}  // namespace isoshade::cli

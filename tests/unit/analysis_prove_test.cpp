@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is proved of small documents, and that what is refuted breaks when it is run.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "compiler/analysis/document.h"
+#include "compiler/analysis/prove.h"
+#include "tests/unit/front_end.h"
+
+namespace isoshade {
+namespace {
+
+using analysis::Breach;
+using analysis::Proof;
+using analysis::Subject;
+
+struct Checked {
+  std::shared_ptr<const check::TypedGraph> graph;
+  Subject subject;
+  Proof proof;
+  std::string messages;
+};
+
+Checked checked(const std::string& text) {
+  FrontEnd front_end(ISOSHADE_GRAPHS "/library");
+  Checked checked;
+  checked.graph = front_end.check(text);
+  EXPECT_NE(checked.graph, nullptr) << front_end.diagnostics.text();
+  if (checked.graph == nullptr) return checked;
+  auto subjects = analysis::subjects_of(*checked.graph, front_end.diagnostics);
+  EXPECT_TRUE(subjects && !subjects->empty());
+  checked.subject = std::move(subjects->back());
+  checked.proof = analysis::prove(checked.subject.tape);
+  analysis::report(*checked.graph, checked.subject, checked.proof, front_end.diagnostics);
+  checked.messages = front_end.diagnostics.text();
+  return checked;
+}
+
+std::string function_of(const std::string& inputs, const std::string& nodes) {
+  return R"({"isoshade": 1, "function": "f", "inputs": {)" + inputs + R"(}, "nodes": {)" + nodes +
+         R"(}, "outputs": {"out": "r"}})";
+}
+
+const std::string x_and_y =
+    R"("x": {"type": "float", "min": -1, "max": 1}, "y": {"type": "float", "min": 0, "max": 1})";
+/// `ports`: the inputs that it reads.
+std::string code(const std::string& text, const std::string& ports = "xy") {
+  std::string node = R"("r": {"type": "expression", "code": ")" + text + "\"";
+  for (const char port : ports) node += std::string(", \"") + port + "\": \"" + port + "\"";
+  return node + "}";
+}
+
+/// Whether the function gives no finite number for the counterexample, by the interpreter.
+bool breaks(const Checked& c) {
+  std::vector<float> arguments;
+  for (const uint32_t word : c.proof.unproved.at(0).counterexample)
+    arguments.push_back(std::bit_cast<float>(word));
+  Program program(lower::lower(*c.graph));
+  bool finite = true;
+  for (const float result : program(arguments)) finite = finite && std::isfinite(result);
+  return !finite;
+}
+
+TEST(Proof, OfWhatIsAlwaysFinite) {
+  const Checked c = checked(function_of(x_and_y, code("sqrt(1 - x * x) / (2 + x * y)")));
+  EXPECT_TRUE(c.proof.unproved.empty()) << c.messages;
+  ASSERT_EQ(c.proof.outputs.size(), 1u);
+  EXPECT_GE(c.proof.outputs[0].lo, 0);
+  EXPECT_LE(c.proof.outputs[0].hi, 1);
+}
+
+TEST(Proof, RefutesByInputsThatBreak) {
+  struct Case {
+    const char* code;
+    const char* ports;
+    Breach breach;
+  };
+  for (const Case& wrong :
+       {Case{"1 / x", "x", Breach::division_by_zero}, Case{"1 / (x - y)", "xy", Breach::division_by_zero},
+        Case{"sqrt(x)", "x", Breach::root_of_negative}, Case{"log(y)", "y", Breach::logarithm},
+        Case{"pow(x, 2.5)", "x", Breach::power}, Case{"acos(x + y)", "xy", Breach::arc},
+        Case{"exp(x * 100)", "x", Breach::overflow}}) {
+    const Checked c = checked(function_of(x_and_y, code(wrong.code, wrong.ports)));
+    ASSERT_EQ(c.proof.unproved.size(), 1u) << wrong.code;
+    EXPECT_EQ(c.proof.unproved[0].breach, wrong.breach) << wrong.code;
+    ASSERT_FALSE(c.proof.unproved[0].counterexample.empty()) << wrong.code;
+    EXPECT_TRUE(breaks(c)) << wrong.code;
+    EXPECT_NE(c.messages.find("error[refuted]: in node \"r\""), std::string::npos) << c.messages;
+  }
+}
+
+TEST(Proof, NamesThePortAndTheCaller) {
+  const Checked c = checked(R"({"isoshade": 1, "function": "f",
+      "inputs": {"c": {"type": "float", "min": 0, "max": 1}},
+      "nodes": {"q": {"type": "divide", "in1": 1, "in2": "c"}}, "outputs": {"out": "q"}})");
+  EXPECT_NE(c.messages.find("in node \"q\", port \"in2\": division by zero"), std::string::npos)
+      << c.messages;
+  EXPECT_NE(c.messages.find("c = 0.0 (0x0p+0)"), std::string::npos) << c.messages;
+}
+
+TEST(Proof, KnowsWhatAChoiceSaysOfItsSides) {
+  // Only where y > 0 is the quotient looked at.
+  const std::string guarded = R"("q": {"type": "divide", "in1": "x", "in2": "y"},
+      "r": {"type": "ifgreater", "value1": "y", "value2": 0.5, "in1": "q", "in2": 0})";
+  EXPECT_TRUE(checked(function_of(x_and_y, guarded)).proof.unproved.empty());
+  const std::string wrong_side = R"("q": {"type": "divide", "in1": "x", "in2": "y"},
+      "r": {"type": "ifgreater", "value1": "y", "value2": 0.5, "in1": 0, "in2": "q"})";
+  EXPECT_FALSE(checked(function_of(x_and_y, wrong_side)).proof.unproved.empty());
+  const std::string looked_at_elsewhere = R"("q": {"type": "divide", "in1": "x", "in2": "y"},
+      "c": {"type": "ifgreater", "value1": "y", "value2": 0.5, "in1": "q", "in2": 0},
+      "r": {"type": "add", "in1": "c", "in2": "q"})";
+  EXPECT_FALSE(checked(function_of(x_and_y, looked_at_elsewhere)).proof.unproved.empty());
+}
+
+TEST(Proof, WhatTheLesserIsAboveBothAreAbove) {
+  const std::string inputs =
+      R"("x": {"type": "float", "min": -1, "max": 1}, "y": {"type": "float", "min": -1})";
+  const std::string both = R"("least": {"type": "min", "in1": "x", "in2": "y"},
+      "q": {"type": "expression", "code": "log(x) + log(y) + 0", "x": "x", "y": "y"},
+      "r": {"type": "ifgreater", "value1": "least", "value2": 0, "in1": "q", "in2": 0})";
+  EXPECT_TRUE(checked(function_of(inputs, both)).proof.unproved.empty());
+}
+
+TEST(Proof, KnowsUnitVectors) {
+  const auto inputs = [](const std::string& key) {
+    return R"("x": {"type": "vector3")" + key + R"(}, "y": {"type": "vector3")" + key + "}";
+  };
+  const std::string unit = R"(, "unit": true)";
+  const std::string cosine = code("1 / (1.001 - dot(x, y))");
+  EXPECT_TRUE(checked(function_of(inputs(unit), cosine)).proof.unproved.empty());
+  EXPECT_FALSE(checked(function_of(inputs(""), cosine)).proof.unproved.empty());
+  // The cosine may round to 1 and above.
+  const Checked c = checked(function_of(inputs(unit), code("1 / (1 - dot(x, y))")));
+  ASSERT_EQ(c.proof.unproved.size(), 1u);
+  EXPECT_TRUE(breaks(c));
+  // The half vector is as long as 2.
+  EXPECT_TRUE(
+      checked(function_of(inputs(unit), code("sqrt(4.001 - dot(x + y, x + y))"))).proof.unproved.empty());
+}
+
+TEST(Proof, SquaresAreNotNegative) {
+  const std::string inputs = R"("x": {"type": "vector3"}, "y": {"type": "float"})";
+  EXPECT_TRUE(checked(function_of(inputs, code("1 / (dot(x, x) + y * y + 1)"))).proof.unproved.empty());
+}
+
+TEST(Proof, OfASumOverLightsBoundsAnyNumberOfThem) {
+  const auto effect = [](const std::string& lit) {
+    return R"({"isoshade": 1, "effect": "e", "parameters": {}, "nodes": {"n": {"type": "normal"},
+        "l": {"type": "lightdirection"}, "c": {"type": "lightcolor"},
+        "lit": {"type": "expression", "code": ")" +
+           lit + R"(", "n": "n", "l": "l", "c": "c"}, "all": {"type": "sum_lights", "in": "lit"}},
+        "passes": [{"name": "base", "color": "all"}]})";
+  };
+  const Checked c = checked(effect("c * color3(max(dot(n, l), 0))"));
+  EXPECT_TRUE(c.proof.unproved.empty()) << c.messages;
+  EXPECT_GE(c.proof.outputs[0].hi, 256e6);
+  EXPECT_LT(c.proof.outputs[0].hi, 257e6);
+  EXPECT_FALSE(checked(effect("c / color3(dot(n, l))")).proof.unproved.empty());
+}
+
+TEST(Proof, IsTheSameEachTime) {
+  const std::string text = function_of(x_and_y, code("1 / (x * x - y * y * y + 0.149)"));
+  EXPECT_EQ(checked(text).messages, checked(text).messages);
+}
+
+TEST(Proof, SaysWhereItIsOpen) {
+  // It is never 0, but so near to it that no box shows it: x^2 + y^2 - 2 x y + 2^-40.
+  const Checked c = checked(function_of(x_and_y, code("1 / (x * x + y * y - 2 * x * y + 1e-5)")));
+  if (c.proof.unproved.empty()) return;  // it may become provable
+  EXPECT_NE(c.messages.find("is not ruled out"), std::string::npos) << c.messages;
+  EXPECT_NE(c.messages.find("x in ["), std::string::npos) << c.messages;
+}
+
+}  // namespace
+}  // namespace isoshade
