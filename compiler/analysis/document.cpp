@@ -33,12 +33,13 @@ constexpr Assumed assumptions[] = {
     {"screen", "", 0, 8192},
     {"sizes", "", 1, 8192},
     {"camera", "direction", -1, 1, true},
-    {"taps", "", 0, most_lights},
+    {taps_group, "", 0, most_lights},
     {"", "light_count", 0, most_lights},
 };
 
 Given given_of(const ir::Parameter& parameter) {
   const std::string name = parameter.group.empty() ? parameter.name : parameter.group + "." + parameter.name;
+  if (parameter.name.ends_with("_inside")) return {name, 0, 1};
   for (const Assumed& a : assumptions)
     if (a.group == parameter.group && parameter.name.starts_with(a.name)) return {name, a.lo, a.hi, a.unit};
   Given given{name, -default_limit, default_limit};

@@ -57,7 +57,7 @@ class Flattener {
   Words primitive(const ir::Instruction& i, ir::Type type, const std::vector<Words>& in, uint32_t place);
   void branch(Frame& frame, const ir::Instruction& i, uint32_t condition, uint32_t place);
   void loop(Frame& frame, const ir::Instruction& i, const std::vector<Words>& in, uint32_t place);
-  uint32_t summed(uint32_t initial, uint32_t carried, uint32_t next, uint32_t place);
+  uint32_t summed(uint32_t initial, uint32_t carried, uint32_t next, bool fixed, uint32_t place);
   double quotient_by(uint32_t divisor) const;
   uint32_t place_of(Frame& frame, uint32_t origin);
   uint32_t unknown(Scalar scalar, uint32_t place);
@@ -286,23 +286,27 @@ void Flattener::loop(Frame& frame, const ir::Instruction& i, const std::vector<W
   }
   block(frame, i.blocks[0]);
   if (pool_.too_long()) return;
+  const Operation& count = pool_[in[0][0]];
+  const bool fixed =
+      count.kind == Kind::input && pool_.tape().inputs[count.index].name.starts_with(taps_group);
   for (uint32_t r = 0; r < i.result_count; ++r) {
     const Words& carried = frame.values[body.parameters[r + 1]];
     const Words& next = frame.values[body.yields[r]];
     Words& out = frame.values[i.first_result + r];
     for (size_t c = 0; c < carried.size(); ++c)
-      out.push_back(summed(in[r + 1][c], carried[c], next[c], place));
+      out.push_back(summed(in[r + 1][c], carried[c], next[c], fixed, place));
   }
 }
 
 /// What a loop makes of `initial`: if each round adds to it, the sum.
-uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, uint32_t place) {
+uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, bool fixed, uint32_t place) {
   const Operation& added = pool_[next];
   const auto operands = pool_.operands(next);
   const bool adds = added.kind == Kind::op && added.op == Opcode::fadd && operands[0] == carried;
   if (!adds || initial != pool_.constant(Scalar::floating, 0)) return unknown(Scalar::floating, place);
   // What is added reads nothing of former rounds: else the unknown of `carried` stays in it.
-  return pool_.make({.kind = Kind::sum, .place = place}, std::array{pool_.operands(next)[1]});
+  return pool_.make({.kind = Kind::sum, .bits = fixed ? 1u : 0u, .place = place},
+                    std::array{pool_.operands(next)[1]});
 }
 
 }  // namespace

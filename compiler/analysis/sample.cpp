@@ -212,12 +212,20 @@ std::optional<Runner::Broken> Runner::run(std::span<const uint32_t> inputs) {
 }
 
 std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries) {
+  // A sum of a fixed number of terms is not what one of them is.
+  std::vector<bool> is_doubtful(tape.operations.size());
+  for (uint32_t i = 0; i < tape.operations.size(); ++i) {
+    const Operation& operation = tape.operations[i];
+    is_doubtful[i] = operation.kind == Kind::sum && operation.bits != 0;
+    for (const uint32_t operand : tape.operands_of(operation))
+      if (is_doubtful[operand]) is_doubtful[i] = true;
+  }
   std::vector<Counterexample> found;
   Points points(tape, box);
   for (int i = 0; i < tries; ++i) {
     const std::vector<uint32_t>& inputs = points.next();
     const auto broken = runner.run(inputs);
-    if (!broken) continue;
+    if (!broken || is_doubtful[broken->operation]) continue;
     const auto known = std::ranges::find_if(
         found, [&](const Counterexample& c) { return c.broken.operation == broken->operation; });
     if (known == found.end()) found.push_back({inputs, *broken});

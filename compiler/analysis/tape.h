@@ -29,7 +29,7 @@ enum class Kind : uint8_t {
   greatest,  ///< and max
   dot,       ///< of the first half of its operands with the second
   row,       ///< one component of another function of functions.def
-  sum,       ///< of its operand over at most most_lights lights
+  sum,       ///< of its operand over at most most_lights turns; bits: 1 where their number is not free
   unknown,   ///< anything
   narrow,    ///< its first operand, of which `op` with the second holds here
   enter,     ///< index: in Tape::guards; from here on it is known whether it holds
@@ -100,6 +100,9 @@ struct Fact {
   uint32_t first = none, second = none, third = none;
   double first_length = 1e30, second_length = 1e30;  ///< of a dot: what |a| and |b| are at most
 };
+
+/// The group of parameters that say how many taps a post sums: as many as it is written for, no fewer.
+inline constexpr std::string_view taps_group = "taps";
 
 struct Tape {
   ir::Module module;  ///< with bodies for all calls to functions.def
