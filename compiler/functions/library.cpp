@@ -97,20 +97,19 @@ void set_body(Variant& variant, Types<T...>) {
   variant.bodies[static_cast<size_t>(Body::tier)] = &build<Body, T...>;
 }
 
+void set_accuracy(std::vector<Variant>& table, std::string_view row, Tier tier, const Accuracy& accuracy) {
+  for (Variant& variant : table)
+    if (variant.row == row) variant.accuracy[static_cast<size_t>(tier)] = accuracy;
+}
+
 /// Wider variants of rows on floats call the row for each component, and so follow its tier.
 template <class Body, class First, class... Rest>
 void add_tier(std::vector<Variant>& table, std::string_view row, Types<First, Rest...>) {
   auto variant = std::ranges::find(table, row, &Variant::row);
   support::check(variant != table.end(), row);
-  for (auto& wider : std::ranges::subrange(variant, variant + 1 + sizeof...(Rest)))
-    wider.accuracy[static_cast<size_t>(Body::tier)] = Body::accuracy;
+  set_accuracy(table, row, Body::tier, Body::accuracy);
   set_body<Body>(*variant, First{});
   if constexpr (!Body::on_floats) (set_body<Body>(*++variant, Rest{}), ...);
-}
-
-void set_accuracy(std::vector<Variant>& table, std::string_view row, Tier tier, const Accuracy& accuracy) {
-  for (Variant& variant : table)
-    if (variant.row == row) variant.accuracy[static_cast<size_t>(tier)] = accuracy;
 }
 
 }  // namespace
