@@ -11,8 +11,8 @@ packages=(
   glslang-dev spirv-tools spirv-headers libvulkan-dev
   # running: Vulkan on the CPU, and the loader of whatever other devices there are
   mesa-vulkan-drivers libvulkan1
-  # drawing graphs
-  graphviz
+  # drawing graphs and plots
+  graphviz gnuplot-nox
   # testing
   libgtest-dev libbenchmark-dev glslang-tools clang vulkan-validationlayers python3-jsonschema
 )

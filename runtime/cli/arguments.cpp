@@ -244,6 +244,21 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
 
+  BenchArguments bench;
+  CLI::App* bench_app = app.add_subcommand(
+      "bench", "Measure run time against error: forms, precisions, lane counts, vulkan and GLSL's built-ins");
+  bench_app->add_option("-o,--output", bench.output,
+                        "A folder for bench.csv, bench.json, bench.gp and bench.svg (by gnuplot)");
+  bench_app->add_option("--only", bench.only, "Only effects, functions and scenes with this in their names");
+  bench_app->add_flag("--quick", bench.quick, "Few rows and repetitions: a look, not a measurement");
+  bench_app->add_flag("--no-picture", bench.without_picture, "The tables alone: gnuplot is not needed");
+  bench_app->add_flag("--no-vulkan", bench.without_vulkan, "The cpu alone");
+  bench_app
+      ->add_option("--lanes", bench.lanes, "Lane counts of the cpu backend (default: all of the machine)")
+      ->delimiter(',')
+      ->check(lane_names);
+  add_choice(*bench_app, bench.choice, false);
+
   DevicesArguments devices;
   CLI::App* devices_app =
       app.add_subcommand("devices", "List Vulkan devices and what the probe finds on each");
@@ -296,6 +311,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (check_app->parsed()) parsed.check = check;
   if (format_app->parsed()) parsed.format = format;
   if (draw_app->parsed()) parsed.draw = draw;
+  if (bench_app->parsed()) parsed.bench = bench;
   if (devices_app->parsed()) parsed.devices = devices;
   if (nodes_app->parsed()) parsed.nodes = nodes;
   if (schema_app->parsed()) parsed.schema.emplace();

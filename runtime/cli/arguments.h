@@ -97,6 +97,16 @@ struct DrawArguments {
   int depth = 1;  ///< of called functions that are drawn inside
 };
 
+struct BenchArguments {
+  std::string output;  ///< a folder; empty: only the summary
+  std::string only;    ///< a part of the names of effects; empty: all
+  bool quick = false;
+  bool without_picture = false;
+  bool without_vulkan = false;
+  std::vector<std::string> lanes;  ///< of the cpu; empty: all of the machine
+  BackendChoice choice;
+};
+
 struct DevicesArguments {
   BackendChoice choice;
 };
@@ -126,6 +136,7 @@ struct Arguments {
   std::optional<CheckArguments> check;
   std::optional<FormatArguments> format;
   std::optional<DrawArguments> draw;
+  std::optional<BenchArguments> bench;
   std::optional<DevicesArguments> devices;
   std::optional<NodesArguments> nodes;
   std::optional<SchemaArguments> schema;

@@ -3,7 +3,8 @@ add_dependencies(cli_test isoshade)
 target_compile_definitions(cli_test PRIVATE
   ISOSHADE_COMMAND="$<TARGET_FILE:isoshade>"
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
-  ISOSHADE_VERSION="${PROJECT_VERSION}")
+  ISOSHADE_VERSION="${PROJECT_VERSION}"
+  $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
 # python3-jsonschema
 find_package(Python3 REQUIRED COMPONENTS Interpreter)

@@ -191,6 +191,31 @@ TEST_F(Cli, ComputesInThePrecisionThatIsAskedFor) {
   EXPECT_NE(node.find("with --precision fast"), std::string::npos) << node;
 }
 
+TEST_F(Cli, MeasuresEveryFormPrecisionAndBackend) {
+  const Outcome outcome =
+      run("bench --quick --only toon_highlight --lanes 1,4 --no-picture -o " + file("bench"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  std::istringstream csv(read(folder_ / "bench/bench.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line,
+            "effect,form,precision,backend,lanes,nanoseconds,spread,transfer,max_ulp,mean_ulp,max_absolute,"
+            "identical");
+  int points = 0;
+  for (; std::getline(csv, line); ++points) {
+    const bool same = line.ends_with(",yes"), yardstick = line.find(",built-ins,") != std::string::npos;
+    EXPECT_TRUE(same || yardstick) << line;
+  }
+#ifdef ISOSHADE_VULKAN
+  EXPECT_EQ(points, 2 * 3 * 3 + 1)
+      << "two forms, three precisions, three backends; built-ins of the source's form";
+#else
+  EXPECT_EQ(points, 2 * 3 * 2);
+#endif
+  EXPECT_NE(read(folder_ / "bench/bench.json").find("\"max_ulp\""), std::string::npos);
+  EXPECT_EQ(run("bench --only no_such_effect").exit, 2);
+}
+
 TEST_F(Cli, ShowsAnotherTime) {
   const auto hash_of = [](const std::string& time) {
     const Outcome outcome = run("verify " + graphs + "/scenes/surface_attributes.json --size 64x36 " +
@@ -280,7 +305,7 @@ TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
 TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("compile, render, verify, eval, check, fmt, draw, devices"), std::string::npos)
+  EXPECT_NE(outcome.text.find("compile, render, verify, eval, check, fmt, draw, bench, devices"), std::string::npos)
       << outcome.text;
 }
 

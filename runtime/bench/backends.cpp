@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/bench/backends.h"
+
+#include "backends/cpu/backend.h"
+#include "backends/cpu/lane_count.h"
+#include "compiler/support/check.h"
+#ifdef ISOSHADE_VULKAN
+#include "backends/vulkan/backend.h"
+#endif
+
+namespace isoshade::bench {
+
+namespace {
+
+using support::Diagnostics;
+
+/// A function of a program that is called once for each.
+template <class Make>
+auto remembered(Make make) {
+  auto known = std::make_shared<std::map<const driver::Program*, std::string>>();
+  return [known, make](const driver::Program& program, auto... rest) {
+    const auto [found, is_new] = known->try_emplace(&program);
+    if (is_new) found->second = make(program, rest...);
+    return found->second;
+  };
+}
+
+bool add_cpu(const Options& options, std::vector<Contestant>& all, Diagnostics& diagnostics) {
+  std::vector<std::string> lanes = options.lanes;
+  if (lanes.empty())
+    for (const cpu::LaneCount& count : cpu::lane_counts())
+      if (count.available()) lanes.emplace_back(count.name);
+  for (const std::string& count : lanes) {
+    cpu::Options cpu;
+    cpu.lanes = count;
+    cpu.threads = options.threads;
+    cpu.compiler = options.compiler;
+    cpu.cpp = remembered([](const driver::Program& program) { return driver::cpp(program); });
+    auto device = cpu::create(cpu, diagnostics);
+    if (device == nullptr) return false;
+    all.push_back({"cpu", count, false, std::move(device)});
+  }
+  return true;
+}
+
+#ifdef ISOSHADE_VULKAN
+bool add_vulkan(const Options& options, const BuiltIns* built_ins, std::vector<Contestant>& all,
+                Diagnostics& diagnostics) {
+  vulkan::Options vulkan;
+  vulkan.device = options.device;
+  vulkan.glsl = remembered([built_ins](const driver::Program& program, driver::Division division) {
+    if (built_ins == nullptr) return driver::glsl(program, division);
+    const auto found = built_ins->find(&program);
+    // As a device divides by itself.
+    std::string text = driver::glsl(program, driver::Division::native);
+    return found != built_ins->end() ? with_built_ins(std::move(text), found->second) : text;
+  });
+  auto device = vulkan::create(vulkan, diagnostics);
+  if (device == nullptr) return false;
+  all.push_back({"vulkan", "", built_ins != nullptr, std::move(device)});
+  return true;
+}
+#endif
+
+/// "float f(float a) {" tells f; nothing where a line begins no definition.
+std::string_view defined_name(std::string_view line) {
+  const size_t open = line.find('('), space = line.find(' ');
+  if (line.empty() || line[0] == ' ' || !line.ends_with(" {") || open == line.npos || space > open) return {};
+  return line.substr(space + 1, open - space - 1);
+}
+
+void erase_all(std::string& text, std::string_view what) {
+  for (size_t at = 0; (at = text.find(what, at)) != std::string::npos;) text.erase(at, what.size());
+}
+
+}  // namespace
+
+std::string with_built_ins(std::string glsl, const std::string& definitions) {
+  erase_all(glsl, "precise ");
+  constexpr std::string_view close = "\n}\n";
+  for (size_t at = 0; at < definitions.size();) {
+    const size_t end = definitions.find(close, at) + close.size();
+    support::check(end >= close.size(), "a definition without its end");
+    std::string definition = definitions.substr(at, end - at);
+    at = end;
+    const size_t line = definition.rfind('\n', definition.find(" {\n"));
+    const size_t start = line == std::string::npos ? 0 : line + 1;
+    const std::string_view head =
+        std::string_view(definition).substr(start, definition.find(" {\n", start) + 2 - start);
+    const std::string_view name = defined_name(head);
+    support::check(!name.empty(), definition);
+    // The generated definition's line: type, name, parenthesis.
+    const size_t call = glsl.find(" " + std::string(name) + "(");
+    if (call == std::string::npos) continue;  // this tier has no call of it
+    const size_t begin = glsl.rfind('\n', call) + 1;
+    glsl.replace(begin, glsl.find(close, begin) + close.size() - begin, definition);
+  }
+  return glsl;
+}
+
+std::vector<Contestant> contestants(const Options& options, [[maybe_unused]] const BuiltIns& built_ins,
+                                    Diagnostics& diagnostics) {
+  std::vector<Contestant> all;
+  bool good = add_cpu(options, all, diagnostics);
+#ifdef ISOSHADE_VULKAN
+  if (options.vulkan)
+    good = good && add_vulkan(options, nullptr, all, diagnostics) &&
+           add_vulkan(options, &built_ins, all, diagnostics);
+#endif
+  if (!good) all.clear();
+  return all;
+}
+
+}  // namespace isoshade::bench

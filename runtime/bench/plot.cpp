@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+#include "runtime/bench/report.h"
+
+namespace isoshade::bench {
+
+namespace {
+
+constexpr int columns = 4;
+
+/// Marks by precision: gnuplot's hollow one, the filled one of the same shape follows it.
+struct Mark {
+  const char* precision;
+  int shape;
+};
+constexpr Mark marks[] = {{"fast", 8}, {"default", 6}, {"precise", 4}, {"built-ins", 2}};
+
+/// The lanes that are drawn: the last, which are the fastest.
+std::string drawn_lanes(const Report& report) {
+  std::string lanes;
+  for (const Point& point : report.points)
+    if (point.backend == "cpu") lanes = point.lanes;
+  return lanes;
+}
+
+/// Where a point is drawn: an exact result has no place on a logarithmic axis.
+double time_of(const Point& point) { return point.nanoseconds; }
+double error_of(const Point& point) { return std::max(point.max_ulp, 0.1); }
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+class Plot {
+ public:
+  explicit Plot(const Report& report) : report_(report), lanes_(drawn_lanes(report)) {
+    for (const Point& point : report.points)
+      if (std::ranges::find(effects_, point.effect) == effects_.end()) effects_.push_back(point.effect);
+  }
+
+  std::string text(const std::string& output) {
+    const int rows = static_cast<int>(effects_.size() + columns) / columns;  // one panel more: the key
+    text_ = fmt::format(
+        "set terminal svg size {},{} font \"sans-serif,12\" background \"white\"\nset output {}\n"
+        "set multiplot layout {},{} title \"Time against error; below and to the left is better\"\n"
+        "set logscale xy\nset grid back lc rgb \"#dddddd\"\nset format y \"10^{{%T}}\"\nset key off\n"
+        "set tics nomirror\nset border 3\nset offsets graph 0.1, graph 0.15, graph 0.1, graph 0.1\n",
+        columns * 310, rows * 270 + 40, quoted(output), rows, columns);
+    for (size_t i = 0; i < effects_.size(); ++i) panel(effects_[i], i);
+    key();
+    return text_ + "unset multiplot\n";
+  }
+
+ private:
+  /// Without those whose time is lost in what reading and writing take.
+  std::vector<const Point*> points_of(const std::string& effect, bool vulkan) const {
+    std::vector<const Point*> points;
+    for (const Point& point : report_.points)
+      if (point.effect == effect && point.nanoseconds > 0 &&
+          (vulkan ? point.backend == "vulkan" : point.lanes == lanes_))
+        points.push_back(&point);
+    return points;
+  }
+
+  void add_series(const std::string& data, const std::string& style) {
+    const std::string name = fmt::format("$d{}", series_++);
+    blocks_ += name + " << EOD\n" + data + "EOD\n";
+    plots_.push_back(name + " " + style);
+  }
+
+  void panel(const std::string& effect, size_t index) {
+    blocks_.clear();
+    plots_.clear();
+    for (const bool vulkan : {false, true}) {
+      const std::vector<const Point*> points = points_of(effect, vulkan);
+      const char* color = vulkan ? "#b3541e" : "#1f4e9c";
+      std::vector<const Point*> ours;
+      for (const Point* point : points)
+        if (point->precision != "built-ins") ours.push_back(point);
+      if (ours.empty()) continue;
+      std::string front;
+      for (const Point* point : pareto_front(ours))
+        front += fmt::format("{} {}\n", time_of(*point), error_of(*point));
+      add_series(front, fmt::format("with fsteps lc rgb \"{}\" lw 1.5 dt {}", color, vulkan ? 2 : 1));
+      for (const Mark& mark : marks) {
+        std::string data, letters;
+        for (const Point* point : points) {
+          if (point->precision != mark.precision) continue;
+          data += fmt::format("{} {}\n", time_of(*point), error_of(*point));
+          if (point->form == "source") letters += fmt::format("{} {} s\n", time_of(*point), error_of(*point));
+        }
+        const bool built_ins = mark.precision == std::string_view("built-ins");
+        const int shape = mark.shape + (vulkan || built_ins ? 0 : 1);
+        if (!data.empty())
+          add_series(data, fmt::format("with points pt {} ps 1.1 lw 1.5 lc rgb \"{}\"", shape,
+                                       built_ins ? "#333333" : color));
+        if (!letters.empty())
+          add_series(letters, "with labels offset 0.9,0.5 font \",10\" textcolor rgb \"#333333\"");
+      }
+    }
+    text_ +=
+        blocks_ + fmt::format("set title {} noenhanced\nset xlabel \"{}\"\nset ylabel \"{}\"\n",
+                              quoted(effect), "ns a pixel", index % columns == 0 ? "largest error, ULP" : "");
+    if (plots_.empty()) plots_.push_back("NaN");
+    text_ += "plot ";
+    for (size_t i = 0; i < plots_.size(); ++i) text_ += (i ? ", \\\n  " : "") + plots_[i];
+    text_ += "\n";
+  }
+
+  /// A panel without axes that shows each mark with its meaning.
+  void key() {
+    text_ +=
+        "unset logscale\nunset tics\nunset border\nunset grid\nset title \"\"\nset xlabel \"\"\nset ylabel "
+        "\"\"\n"
+        "set offsets 0,0,0,0\nset xrange [0:1]\nset yrange [0:1]\n";
+    std::string marks_text, labels;
+    const auto line = [&](double y, const std::string& text) {
+      labels += fmt::format("set label {} at 0.22,{} left noenhanced\n", quoted(text), y);
+    };
+    std::string plots;
+    const auto mark = [&](double x, double y, int shape, const char* color) {
+      const std::string name = fmt::format("$k{}", series_++);
+      marks_text += fmt::format("{} << EOD\n{} {}\nEOD\n", name, x, y);
+      plots += fmt::format("{}{} with points pt {} ps 1.1 lw 1.5 lc rgb \"{}\"",
+                           plots.empty() ? "" : ", \\\n  ", name, shape, color);
+    };
+    const auto rule = [&](double y, int dash, const char* color) {
+      const std::string name = fmt::format("$k{}", series_++);
+      marks_text += fmt::format("{} << EOD\n0.02 {}\n0.18 {}\nEOD\n", name, y, y);
+      plots += fmt::format(", \\\n  {} with lines lw 1.5 dt {} lc rgb \"{}\"", name, dash, color);
+    };
+    double y = 0.95;
+    for (const Mark& m : marks) {
+      const bool built_ins = m.precision == std::string_view("built-ins");
+      if (!built_ins) mark(0.06, y, m.shape + 1, "#1f4e9c");
+      mark(0.14, y, m.shape, built_ins ? "#333333" : "#b3541e");
+      line(y, built_ins ? "GLSL's built-ins (bits differ)" : std::string("precision ") + m.precision);
+      y -= 0.11;
+    }
+    line(y, "filled: cpu, lanes " + lanes_);
+    line(y -= 0.11, "hollow: vulkan");
+    labels += fmt::format("set label \"s\" at 0.1,{} center font \",10\"\n", y -= 0.11);
+    line(y, "form of the source");
+    rule(y -= 0.11, 1, "#1f4e9c");
+    line(y, "front, cpu");
+    rule(y -= 0.11, 2, "#b3541e");
+    line(y, "front, vulkan");
+    text_ += marks_text + labels + "plot " + plots + "\n";
+  }
+
+  const Report& report_;
+  std::string lanes_;
+  std::vector<std::string> effects_;
+  std::string text_, blocks_;
+  std::vector<std::string> plots_;
+  int series_ = 0;
+};
+
+}  // namespace
+
+std::string gnuplot_text(const Report& report, const std::string& output) {
+  return Plot(report).text(output);
+}
+
+}  // namespace isoshade::bench

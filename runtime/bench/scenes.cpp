@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/bench/scenes.h"
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+
+#include "backends/reference/backend.h"
+#include "compiler/graph/document.h"
+#include "runtime/bench/errors.h"
+#include "runtime/render/render.h"
+#include "runtime/scene/scene.h"
+
+namespace isoshade::bench {
+
+namespace {
+
+using functions::Tier;
+using support::Diagnostics;
+
+constexpr const char* scenes[] = {"material_balls"};
+
+struct Size {
+  int width, height;
+};
+constexpr Size timed{640, 360};
+constexpr Size exact{96, 54};
+
+class SceneBench {
+ public:
+  SceneBench(const Options& options, const std::vector<Contestant>& devices, std::deque<render::Plan>& plans,
+             Report& report, Diagnostics& diagnostics)
+      : options_(options),
+        devices_(devices),
+        plans_(plans),
+        report_(report),
+        diagnostics_(diagnostics),
+        library_(options.library) {}
+
+  bool run(const std::string& name) {
+    const support::Source source =
+        graph::read_source(options_.graphs + "/scenes/" + name + ".json", diagnostics_);
+    const auto document = source ? graph::parse_document(source, diagnostics_) : std::nullopt;
+    const auto scene = document ? scene::parse_scene(*document, diagnostics_) : std::nullopt;
+    if (!scene) return false;
+    options_.progress("reference of " + name);
+    if (!draw_reference(*scene)) return false;
+    struct Race {
+      const Contestant* contestant;
+      const render::Plan* plan;
+      size_t point;
+      std::vector<double> samples = {};
+    };
+    std::vector<Race> races;
+    for (const Tier tier : functions::tiers) {
+      const render::Plan* small = plan(*scene, exact, tier);
+      const render::Plan* large = plan(*scene, timed, tier);
+      if (small == nullptr || large == nullptr) return false;
+      std::optional<backends::Image> first;
+      for (const Contestant& contestant : devices_) {
+        if (contestant.built_ins) continue;
+        backends::Image image;
+        if (!draw(*small, contestant, image)) return false;
+        if (!first) first = image;
+        Point point{name, "scene", std::string(functions::tier_name(tier)), contestant.backend,
+                    contestant.lanes};
+        point.identical = bits_of(image) == bits_of(*first);
+        const Errors errors = errors_of(bits_of(image), reference_);
+        point.max_ulp = errors.max_ulp;
+        point.mean_ulp = errors.mean_ulp;
+        point.max_absolute = errors.max_absolute;
+        races.push_back({&contestant, large, report_.points.size()});
+        report_.points.push_back(std::move(point));
+      }
+    }
+    options_.progress("timing " + name);
+    const int repetitions = std::max(3, options_.repetitions / 4);
+    for (int i = 0; i < repetitions; ++i)
+      for (Race& race : races) {
+        backends::Image image;
+        const auto seconds = draw(*race.plan, *race.contestant, image);
+        if (!seconds) return false;
+        race.samples.push_back(*seconds * 1e9 / (timed.width * timed.height));
+      }
+    for (Race& race : races) {
+      std::ranges::sort(race.samples);
+      const size_t n = race.samples.size();
+      report_.points[race.point].nanoseconds = race.samples[n / 2];
+      report_.points[race.point].spread = race.samples[3 * n / 4] - race.samples[n / 4];
+    }
+    return true;
+  }
+
+ private:
+  const render::Plan* plan(const scene::Scene& scene, Size size, Tier tier, bool reference = false) {
+    render::Options options;
+    options.width = size.width;
+    options.height = size.height;
+    options.compiler.library = &library_;
+    options.compiler.tier = tier;
+    options.compiler.reference = reference;
+    auto made = render::plan_frame(scene, options, diagnostics_);
+    return made ? &plans_.emplace_back(*std::move(made)) : nullptr;
+  }
+
+  /// What the backend's draw took, in seconds.
+  std::optional<double> draw(const render::Plan& plan, const Contestant& contestant, backends::Image& image) {
+    render::DrawStats stats;
+    if (!render::render(plan, *contestant.device, image, stats, diagnostics_)) return std::nullopt;
+    return stats.draw_seconds;
+  }
+
+  bool draw_reference(const scene::Scene& scene) {
+    const render::Plan* made = plan(scene, exact, Tier::standard, true);
+    backends::Image image;
+    render::DrawStats stats;
+    const auto backend = reference::create();
+    if (made == nullptr || !render::render(*made, *backend, image, stats, diagnostics_)) return false;
+    reference_.assign(image.rgba.begin(), image.rgba.end());
+    return true;
+  }
+
+  static std::vector<int32_t> bits_of(const backends::Image& image) {
+    std::vector<int32_t> bits;
+    for (const float value : image.rgba) bits.push_back(std::bit_cast<int32_t>(value));
+    return bits;
+  }
+
+  const Options& options_;
+  const std::vector<Contestant>& devices_;
+  std::deque<render::Plan>& plans_;
+  Report& report_;
+  Diagnostics& diagnostics_;
+  check::Library library_;
+  std::vector<reference::Real> reference_;
+};
+
+}  // namespace
+
+bool measure_scenes(const Options& options, const std::vector<Contestant>& devices,
+                    std::deque<render::Plan>& plans, Report& report, Diagnostics& diagnostics) {
+  for (const char* name : scenes) {
+    if (std::string_view(name).find(options.filter) == std::string_view::npos) continue;
+    if (!SceneBench(options, devices, plans, report, diagnostics).run(name)) return false;
+  }
+  return true;
+}
+
+}  // namespace isoshade::bench

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/bench/subject.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "backends/reference/backend.h"
+#include "backends/reference/functions.h"
+#include "compiler/graph/document.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/support/check.h"
+
+namespace isoshade::bench {
+
+namespace {
+
+using support::Diagnostics;
+
+struct Effect {
+  const char* name;
+  const char* library;  ///< below library/
+  const char* source;   ///< below source_forms/
+};
+
+constexpr Effect effects[] = {
+    {"cook_torrance", "brdf/cook_torrance", "cook_torrance"},
+    {"ggx_d", "brdf/ggx_d", "ggx_d"},
+    {"schlick_f", "brdf/schlick_f", "schlick_f"},
+    {"toon_highlight", "toon/highlight", "toon_highlight"},
+    {"fog", "fog/height_density", "fog_density"},
+};
+
+/// What GLSL has of its own, under the names of generated functions: of rows of functions.def, of a power with a
+/// constant exponent, and of a whole effect.
+constexpr const char* built_ins = R"(float iso_rsqrt(float a) {
+  return inversesqrt(a);
+}
+float iso_exp2(float a) {
+  return exp2(a);
+}
+float iso_exp(float a) {
+  return exp(a);
+}
+float iso_log2(float a) {
+  return log2(a);
+}
+float iso_log(float a) {
+  return log(a);
+}
+float iso_pow(float a, float b) {
+  return pow(a, b);
+}
+float iso_pow_1(float a) {
+  return pow(a, 5.0);
+}
+float iso_sin(float a) {
+  return sin(a);
+}
+float iso_cos(float a) {
+  return cos(a);
+}
+float iso_srgb_encode(float a) {
+  return a < 0.0031308 ? 12.92 * a : 1.055 * pow(a, 1.0 / 2.4) - 0.055;
+}
+float iso_srgb_decode(float a) {
+  return a <= 0.04045 ? a / 12.92 : pow((a + 0.055) / 1.055, 2.4);
+}
+vec3 iso_normalize_v3(vec3 a) {
+  return normalize(a);
+}
+float iso_length_v3(vec3 a) {
+  return length(a);
+}
+float iso_dot_v3(vec3 a, vec3 b) {
+  return dot(a, b);
+}
+float iso_min(float a, float b) {
+  return min(a, b);
+}
+float iso_max(float a, float b) {
+  return max(a, b);
+}
+float toon_highlight(float spec, float scale, float width, float least_scale) {
+  return smoothstep(-width, width, spec + scale - 1.0) * step(least_scale, scale);
+}
+)";
+
+/// Functions of three components where there are several widths.
+bool is_measured(const functions::Variant& variant) {
+  if (!variant.has_own_body(functions::Tier::fast) && !variant.has_own_body(functions::Tier::precise))
+    return false;
+  const ir::Type type = variant.parameters[0];
+  return type.width == 1 || type.width == 3;
+}
+
+ir::Module row_module(const functions::Variant& variant) {
+  ir::Module module = lower::frame_module();
+  ir::Function function;
+  function.name = "row_" + variant.name;  // GLSL knows the name itself
+  for (size_t i = 0; i < variant.parameters.size(); ++i)
+    function.parameters.push_back({std::string(1, "xyzuv"[i]), variant.parameters[i], "", false});
+  for (size_t i = 0; i < variant.results.size(); ++i)
+    function.results.push_back({"out" + std::to_string(i), variant.results[i]});
+  module.functions.push_back(std::move(function));
+  ir::Builder b(module, 0);
+  std::vector<ir::ValueId> arguments;
+  for (size_t i = 0; i < variant.parameters.size(); ++i) arguments.push_back(b.parameter(i));
+  b.finish(functions::call_library(b, variant.row, arguments));
+  return module;
+}
+
+}  // namespace
+
+std::vector<Subject> subjects(const std::string& graphs, const std::string& filter) {
+  std::vector<Subject> found;
+  const auto wanted = [&](std::string_view name) { return name.find(filter) != std::string_view::npos; };
+  for (const Effect& effect : effects) {
+    const std::string library = graphs + "/library/" + effect.library + ".json";
+    const std::string source = graphs + "/source_forms/" + effect.source + ".json";
+    if (!wanted(effect.name) || !std::filesystem::exists(library) || !std::filesystem::exists(source))
+      continue;
+    found.push_back({effect.name, "library", library, nullptr, ""});
+    found.push_back({effect.name, "source", source, nullptr, built_ins});
+  }
+  for (const functions::Variant& variant : functions::variants()) {
+    if (!is_measured(variant) || !wanted(variant.row)) continue;
+    found.push_back({std::string(variant.row), "function", "", &variant, built_ins});
+  }
+  return found;
+}
+
+std::optional<driver::Program> compile(const Subject& subject, functions::Tier tier, check::Library& library,
+                                       Diagnostics& diagnostics) {
+  if (subject.variant != nullptr)
+    return driver::finish_eval(row_module(*subject.variant), 0, subject.effect, tier);
+  const support::Source source = graph::read_source(subject.document, diagnostics);
+  if (source == nullptr) return std::nullopt;
+  driver::Options options;
+  options.library = &library;
+  options.tier = tier;
+  return driver::compile_function(source, options, diagnostics);
+}
+
+driver::Program idle_program(const driver::Program& program) {
+  ir::Module module = lower::frame_module();
+  ir::Function function;
+  function.name = "idle";
+  const auto type_of = [](const driver::Field& field) {
+    support::check(field.words <= 4, "an eval column of a matrix");
+    return ir::vector_type(field.words);
+  };
+  for (const driver::Field& field : program.inputs)
+    function.parameters.push_back({field.name, type_of(field), "", false});
+  for (const driver::Field& field : program.results) function.results.push_back({field.name, type_of(field)});
+  const auto parameters = function.parameters;
+  const auto results = function.results;
+  module.functions.push_back(std::move(function));
+  ir::Builder b(module, 0);
+  ir::ValueId sum = ir::none;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    for (uint32_t c = 0; c < parameters[i].type.width; ++c) {
+      const ir::ValueId whole = b.parameter(i);
+      const ir::ValueId word = parameters[i].type.width == 1 ? whole : b.extract(whole, c);
+      sum = sum == ir::none ? word : b.op(ir::Opcode::fadd, {sum, word});
+    }
+  }
+  std::vector<ir::ValueId> values;
+  for (const ir::Result& result : results)
+    values.push_back(result.type.width == 1 ? sum
+                                            : b.construct(std::vector<ir::ValueId>(result.type.width, sum)));
+  b.finish(values);
+  return driver::finish_eval(std::move(module), 0, "idle");
+}
+
+std::optional<std::vector<reference::Real>> exact_results(const Subject& subject, check::Library& library,
+                                                          const std::vector<int32_t>& inputs, size_t rows,
+                                                          Diagnostics& diagnostics) {
+  if (subject.variant == nullptr) {
+    const support::Source source = graph::read_source(subject.document, diagnostics);
+    if (source == nullptr) return std::nullopt;
+    driver::Options options;
+    options.library = &library;
+    options.reference = true;
+    const auto program = driver::compile_function(source, options, diagnostics);
+    if (!program) return std::nullopt;
+    return reference::evaluate(*program, inputs, rows);
+  }
+  size_t words = 0, results = 0;
+  for (const ir::Type type : subject.variant->parameters) words += type.width;
+  for (const ir::Type type : subject.variant->results) results += type.width;
+  std::vector<reference::Real> exact(rows * results), arguments(words);
+  for (size_t row = 0; row < rows; ++row) {
+    for (size_t i = 0; i < words; ++i) arguments[i] = __builtin_bit_cast(float, inputs[row * words + i]);
+    reference::evaluate(*subject.variant, arguments, std::span(exact).subspan(row * results, results));
+  }
+  return exact;
+}
+
+}  // namespace isoshade::bench

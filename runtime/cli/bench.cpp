@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade bench: run time against error, as tables and as a picture.
+#include <cstdio>
+#include <filesystem>
+
+#include "compiler/support/process.h"
+#include "compiler/support/visible.h"
+#include "runtime/bench/measure.h"
+#include "runtime/bench/report.h"
+#include "runtime/cli/session.h"
+#include "runtime/scene/output_file.h"
+
+namespace isoshade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where gnuplot is; reports that it is not there, before anything takes its time.
+std::optional<std::string> find_gnuplot(support::Diagnostics& diagnostics) {
+  const std::string program = support::find_program("gnuplot");
+  if (!program.empty()) return program;
+  diagnostics.report(support::Id::no_gnuplot, "there is no `gnuplot` on PATH")
+      .suggest("install the package gnuplot-nox, or leave the picture out by --no-picture");
+  return std::nullopt;
+}
+
+bool draw_picture(const std::string& gnuplot, const std::string& script, support::Diagnostics& diagnostics) {
+  const auto end = support::run_process({gnuplot, script});
+  if (end && end->status == 0) return true;
+  diagnostics.report(support::Id::no_gnuplot,
+                     "`gnuplot` failed: " + (end ? support::quote(end->output) : "it cannot be run"));
+  return false;
+}
+
+bench::Options options_of(const BenchArguments& arguments, const Common& common) {
+  bench::Options options;
+  options.library = library_root(common);
+  options.graphs = fs::path(options.library).parent_path().string();
+  options.filter = arguments.only;
+  options.lanes = arguments.lanes;
+  options.threads = arguments.choice.threads > 0 ? arguments.choice.threads : 1;
+  options.compiler = arguments.choice.compiler;
+  options.device = arguments.choice.device;
+  options.vulkan = !arguments.without_vulkan;
+  options.progress = [&common](const std::string& line) { progress(common, line); };
+  if (arguments.quick) {
+    options.rows = 1 << 12;
+    options.vulkan_rows = 1 << 13;
+    options.exact_rows = 128;
+    options.repetitions = 3;
+  }
+  return options;
+}
+
+bool bench_to_folder(const BenchArguments& arguments, const Common& common, support::Diagnostics& diagnostics,
+                     bool& identical) {
+  const bool draws = !arguments.output.empty() && !arguments.without_picture;
+  const auto gnuplot = draws ? find_gnuplot(diagnostics) : std::nullopt;
+  if (draws && !gnuplot) return false;
+  const auto report = bench::measure(options_of(arguments, common), diagnostics);
+  if (!report) return false;
+  if (report->points.empty()) {
+    diagnostics
+        .report(support::Id::missing_argument,
+                "there is nothing to measure whose name contains " + support::quote(arguments.only))
+        .suggest("leave out --only to see all");
+    return false;
+  }
+  identical = bench::all_identical(*report);
+  if (!common.quiet) std::fputs(bench::summary(*report).c_str(), stdout);
+  if (arguments.output.empty()) return true;
+  std::error_code error;
+  fs::create_directories(arguments.output, error);  // write_file tells what cannot be written
+  const std::string stem = arguments.output + "/bench";
+  return scene::write_file(stem + ".csv", bench::csv_text(*report), diagnostics) &&
+         scene::write_file(stem + ".json", bench::json_text(*report), diagnostics) &&
+         (!draws ||
+          (scene::write_file(stem + ".gp", bench::gnuplot_text(*report, stem + ".svg"), diagnostics) &&
+           draw_picture(*gnuplot, stem + ".gp", diagnostics)));
+}
+
+}  // namespace
+
+int bench(const BenchArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  bool identical = true;
+  const bool done = bench_to_folder(arguments, common, diagnostics, identical);
+  if (flush(diagnostics, common) || !done) return failure;
+  if (!identical) std::printf("not every point has the same bits on all backends\n");
+  return identical ? success : different;
+}
+
+}  // namespace isoshade::cli

@@ -1,0 +1,1 @@
+PATH=/nowhere "$ISOSHADE" bench --only ggx_d -o "$OUT/bench"
