@@ -27,12 +27,12 @@ struct Image {
 
 enum class Cull : uint8_t { none, back, front };
 
-/// One object under one pass.
+/// One part of an object under one pass.
 struct Draw {
   uint32_t vertex_program = 0;  ///< indices into Frame::programs
   uint32_t pixel_program = 0;
   int object = 0;             ///< the first word of its record in Frame::objects
-  uint32_t first_vertex = 0;  ///< its mesh in Frame::vertices
+  uint32_t first_vertex = 0;  ///< its vertices in Frame::vertices
   uint32_t vertex_count = 0;
   std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
   Cull cull = Cull::back;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/render/plan.h"
 
-#include <algorithm>
 #include <map>
-#include <tuple>
 #include <utility>
 
 #include "compiler/ir/printer.h"
@@ -11,10 +9,12 @@
 #include "compiler/support/visible.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/render/clock.h"
+#include "runtime/render/meshes.h"
 #include "runtime/render/parameters.h"
+#include "runtime/render/records.h"
+#include "runtime/render/skips.h"
 #include "runtime/render/textures.h"
 #include "runtime/render/visibility.h"
-#include "runtime/scene/gltf.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/placement.h"
 
@@ -39,12 +39,6 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
   return kinds;
 }
 
-/// The upper three rows, column by column.
-void store_affine(const glm::mat4& matrix, float* words) {
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 3; ++r) words[3 * c + r] = scene::canonical(matrix[c][r]);
-}
-
 /// What culling means for a mesh that a mirroring transform turns inside out.
 backends::Cull cull_of(graph::Cull cull, bool mirrored) {
   switch (cull) {
@@ -61,10 +55,6 @@ size_t word_of(const driver::Effect& effect, size_t parameter) {
   for (size_t i = 0; i < parameter; ++i) word += static_cast<size_t>(effect.parameters[i].words);
   return word;
 }
-
-/// A MeshShape, in an order.
-using MeshKey = std::tuple<scene::MeshKind, float, float, float, int, int, bool,
-                           std::vector<scene::ProfilePoint>, std::string, bool>;
 
 class Planner {
  public:
@@ -84,22 +74,19 @@ class Planner {
   uint32_t add_program(const driver::Program& program);
   bool may_read(const std::string& path, const support::Span& where);
   bool make_objects();
-  const StoredMesh* make_mesh(const Object& object);
+  std::optional<size_t> find_mesh(const Object& object);
+  bool resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
+                     const FindTexture& find_texture);
   void place_object(size_t o);
-  void store_frame();
   /// One copy of an object and where it stands.
   struct Copy {
     Instance instance;
-    glm::mat4 model;
-    glm::mat4 projected;
+    Place place;
     bool outside;  ///< of the view: passes that leave vertices in their place draw nothing
   };
-  /// How many copies a pass left out.
-  struct Skipped {
-    int64_t unseen = 0, disabled = 0;
-  };
-  void place_copy(size_t o, const Copy& copy, std::vector<Skipped>& skipped);
-  void report_skips(size_t o, const std::vector<Skipped>& skipped);
+  void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
+  void place_draw(const Place& place, const PassPrograms& programs, backends::Cull cull, const MeshPart& part,
+                  const std::vector<float>& parameters);
 
   const Scene& scene_;
   const Options& options_;
@@ -109,8 +96,8 @@ class Planner {
   std::vector<size_t> effect_of_object_;
   std::vector<std::vector<PassPrograms>> programs_of_effect_;
   std::map<std::string, uint32_t> program_by_text_;
-  std::vector<ObjectParameters> parameters_;
-  std::map<MeshKey, size_t> mesh_by_shape_;
+  std::vector<std::vector<ObjectParameters>> parameters_;  ///< of each object, for each part of its mesh
+  MeshStore meshes_;
   std::vector<size_t> mesh_of_object_;
   TextureStore textures_;
   std::vector<const driver::Post*> posts_;  ///< of each post of the scene
@@ -192,6 +179,25 @@ uint32_t Planner::add_program(const driver::Program& program) {
   return found->second;
 }
 
+std::optional<size_t> Planner::find_mesh(const Object& object) {
+  const bool is_file = object.mesh.kind == scene::MeshKind::gltf;
+  if (is_file && !may_read(object.mesh.file, object.mesh_where)) return std::nullopt;
+  return meshes_.find(object, plan_.meshes, plan_.frame.vertices, diagnostics_);
+}
+
+/// What the next object and the materials of its mesh give to the effect.
+bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
+                            const FindTexture& find_texture) {
+  std::vector<ObjectParameters>& parameters = parameters_.emplace_back();
+  for (const MeshPart& part : mesh.parts) {
+    const scene::GltfMaterial* material = part.material ? &*part.material : nullptr;
+    auto resolved = ObjectParameters::resolve(object, effect, material, find_texture, diagnostics_);
+    if (!resolved) return false;  // further parts would report the same again
+    parameters.push_back(*std::move(resolved));
+  }
+  return true;
+}
+
 /// The mesh and the parameters of each object, one after the other, so that no more is made than fits the
 /// limits.
 bool Planner::make_objects() {
@@ -203,6 +209,7 @@ bool Planner::make_objects() {
   Count vertices{"vertices", max_drawn_vertices};
   Count triangles{"triangles", max_drawn_triangles};
   Count words{"words of object records", max_object_words};
+  const StoredMesh no_mesh{{MeshPart{}}};
   bool good = true;
   const FindTexture find_texture = [&](const ImageSource& source,
                                        const lower::ImageSlot& slot) -> std::optional<int> {
@@ -214,19 +221,21 @@ bool Planner::make_objects() {
     const Object& object = scene_.objects[o];
     const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
     // After an error the rest is read for further ones, but nothing more is made.
-    const StoredMesh* mesh = good ? make_mesh(object) : nullptr;
-    const auto* material = mesh != nullptr && mesh->material ? &*mesh->material : nullptr;
-    auto parameters = ObjectParameters::resolve(object, effect, material, find_texture, diagnostics_);
-    good = good && mesh != nullptr && parameters.has_value();
+    const auto number = good ? find_mesh(object) : std::nullopt;
+    const StoredMesh& mesh = number ? plan_.meshes[*number] : no_mesh;
+    const bool resolved = resolve_parts(object, effect, mesh, find_texture);
+    good = good && number.has_value() && resolved;
     if (!good) {
       if (diagnostics_.full()) return false;
       continue;
     }
     const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
-    vertices.total += draws * mesh->vertex_count;
-    triangles.total += draws * static_cast<int64_t>(mesh->indices.size() / 3);
-    words.total += draws * (lower::object_word::parameters + parameters->word_count());
-    parameters_.push_back(*std::move(parameters));
+    mesh_of_object_.push_back(*number);
+    for (size_t part = 0; part < mesh.parts.size(); ++part) {
+      vertices.total += draws * mesh.parts[part].vertex_count;
+      triangles.total += draws * static_cast<int64_t>(mesh.parts[part].indices.size() / 3);
+      words.total += draws * (lower::object_word::parameters + parameters_.back()[part].word_count());
+    }
     for (const Count* count : {&vertices, &triangles, &words}) {
       if (count->total <= count->limit) continue;
       diagnostics_
@@ -240,139 +249,68 @@ bool Planner::make_objects() {
   return good;
 }
 
-/// The mesh of the next object: that of an earlier one of the same shape, or a new one; null if its file has
-/// none.
-const StoredMesh* Planner::make_mesh(const Object& object) {
-  const scene::MeshShape& shape = object.mesh;
-  const auto [found, is_new] =
-      mesh_by_shape_.try_emplace(MeshKey{shape.kind, shape.size.x, shape.size.y, shape.size.z, shape.segments,
-                                         shape.rings, shape.caps, shape.profile, shape.file, shape.fit},
-                                 plan_.meshes.size());
-  mesh_of_object_.push_back(found->second);
-  if (!is_new) return &plan_.meshes[found->second];
-  scene::GltfModel model;
-  if (shape.kind == scene::MeshKind::gltf) {
-    if (!may_read(shape.file, object.mesh_where)) return nullptr;
-    auto loaded = scene::load_gltf(shape.file, object.mesh_where, diagnostics_);
-    if (!loaded) return nullptr;
-    model = *std::move(loaded);
-    if (shape.fit) scene::fit_to_unit_size(model.mesh);
-  } else {
-    model.mesh = scene::make_mesh(shape);
-  }
-  std::vector<float>& vertices = plan_.frame.vertices;
-  StoredMesh& stored = plan_.meshes.emplace_back();
-  stored.first_vertex = static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride);
-  stored.vertex_count = static_cast<uint32_t>(model.mesh.vertices.size() / lower::vertex_word::stride);
-  stored.indices = std::move(model.mesh.indices);
-  stored.low = model.mesh.low;
-  stored.high = model.mesh.high;
-  stored.material = model.material;
-  vertices.insert(vertices.end(), model.mesh.vertices.begin(), model.mesh.vertices.end());
-  return &stored;
-}
-
-void Planner::place_copy(size_t o, const Copy& copy, std::vector<Skipped>& skipped) {
-  namespace word = lower::object_word;
+/// One pass after the other, each over all parts.
+void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped) {
   const Object& object = scene_.objects[o];
-  const glm::mat3 normal = scene::normal_matrix(copy.model);
-  const glm::mat4 inverse = scene::affine_inverse(copy.model);
-  const std::vector<float> parameters =
-      parameters_[o].words(object, copy.instance, [&](int number) { return textures_.record(number); });
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+  std::vector<std::vector<float>> parameters;
+  for (const ObjectParameters& part : parameters_[o]) {
+    parameters.push_back(
+        part.words(object, copy.instance, [&](int number) { return textures_.record(number); }));
+  }
   const glm::vec3& scale = object.transform.scale;
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
   for (size_t p = 0; p < effect.passes.size(); ++p) {
     const driver::Pass& pass = effect.passes[p];
-    const bool disabled = pass.enabled && parameters[word_of(effect, *pass.enabled)] == 0;
     const bool unseen = copy.outside && !pass.moves_vertices;
-    if (disabled || unseen) {
-      ++(disabled ? skipped[p].disabled : skipped[p].unseen);
-      continue;
+    bool left_out = false;
+    for (size_t part = 0; part < mesh.parts.size(); ++part) {
+      if (pass.enabled && parameters[part][word_of(effect, *pass.enabled)] == 0) {
+        ++skipped[p].disabled;
+      } else if (unseen) {
+        left_out = true;
+      } else {
+        place_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p], cull_of(pass.cull, mirrored),
+                   mesh.parts[part], parameters[part]);
+      }
     }
-    const PassPrograms& programs = programs_of_effect_[effect_of_object_[o]][p];
-    const size_t first = plan_.frame.objects.size();
-    plan_.frame.objects.resize(first + word::parameters);
-    float* record = &plan_.frame.objects[first];
-    store_affine(copy.model, record + word::model);
-    store_affine(inverse, record + word::inverse);
-    for (int c = 0; c < 3; ++c)
-      for (int r = 0; r < 3; ++r) record[word::normal + 3 * c + r] = scene::canonical(normal[c][r]);
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r)
-        record[word::projected + 4 * c + r] = scene::canonical(copy.projected[c][r]);
-    record[word::program] = static_cast<float>(programs.pixel);
-    plan_.frame.objects.insert(plan_.frame.objects.end(), parameters.begin(), parameters.end());
-
-    backends::Draw draw;
-    draw.vertex_program = programs.vertex;
-    draw.pixel_program = programs.pixel;
-    draw.object = static_cast<int>(first);
-    draw.first_vertex = mesh.first_vertex;
-    draw.vertex_count = mesh.vertex_count;
-    draw.indices = mesh.indices;
-    draw.cull = cull_of(pass.cull, mirrored);
-    plan_.frame.draws.push_back(draw);
-    plan_.stats.vertices += draw.vertex_count;
-    plan_.stats.triangles += static_cast<int64_t>(mesh.indices.size() / 3);
+    if (left_out) ++skipped[p].unseen;
   }
 }
 
-void Planner::store_frame() {
-  namespace word = lower::frame_word;
-  std::vector<float>& words = plan_.frame.frame;
-  words.resize(word::count);
-  for (int i = 0; i < 4; ++i) words[word::eye + i] = scene::canonical(view_.eye[i]);
-  store_affine(view_.view, &words[word::view]);
-  store_affine(view_.inverse, &words[word::inverse_view]);
-  words[word::time] = scene::canonical(scene_.time);
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r)
-      words[static_cast<size_t>(word::projection + 4 * c + r)] = scene::canonical(view_.clip_from_view[c][r]);
-  for (int i = 0; i < 2; ++i)
-    words[static_cast<size_t>(word::pixel_size + i)] = scene::canonical(view_.pixel_size[i]);
-  scene::store_camera(scene_.camera, plan_.frame.width, plan_.frame.height, words);
+void Planner::place_draw(const Place& place, const PassPrograms& programs, backends::Cull cull,
+                         const MeshPart& part, const std::vector<float>& parameters) {
+  const size_t first = plan_.frame.objects.size();
+  append_object(place, programs.pixel, parameters, plan_.frame.objects);
+  backends::Draw draw;
+  draw.vertex_program = programs.vertex;
+  draw.pixel_program = programs.pixel;
+  draw.object = static_cast<int>(first);
+  draw.first_vertex = part.first_vertex;
+  draw.vertex_count = part.vertex_count;
+  draw.indices = part.indices;
+  draw.cull = cull;
+  plan_.frame.draws.push_back(draw);
+  plan_.stats.vertices += draw.vertex_count;
+  plan_.stats.triangles += static_cast<int64_t>(part.indices.size() / 3);
 }
 
 void Planner::place_object(size_t o) {
   const Object& object = scene_.objects[o];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
   const int64_t count = scene::instance_count(object);
-  std::vector<Skipped> skipped(plan_.effects[effect_of_object_[o]].passes.size());
+  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+  std::vector<PassSkips> skipped(effect.passes.size());
   for (int64_t i = 0; i < count; ++i) {
-    Copy copy{scene::instance(object, i), {}, {}, false};
-    copy.model = scene::model_matrix(object, copy.instance);
-    copy.projected = scene::multiply(view_.projection, copy.model);
-    copy.outside = options_.skip &&
-                   outside_view(mesh.low, mesh.high, copy.projected, plan_.frame.width, plan_.frame.height);
-    place_copy(o, copy, skipped);
+    const Instance instance = scene::instance(object, i);
+    const Place place = place_of(object, instance, view_);
+    const bool outside = options_.skip && outside_view(mesh.low, mesh.high, place.projected,
+                                                       plan_.frame.width, plan_.frame.height);
+    place_copy(o, {instance, place, outside}, skipped);
   }
   plan_.stats.copies += count;
-  report_skips(o, skipped);
-}
-
-void Planner::report_skips(size_t o, const std::vector<Skipped>& skipped) {
-  const Object& object = scene_.objects[o];
-  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
-  const int64_t total = scene::instance_count(object);
-  const auto report = [&](int64_t count, const std::string& pass, std::string reason) {
-    if (count == 0) return;
-    const std::string copies =
-        total == 1 ? object.name
-                   : std::to_string(count) + " of " + std::to_string(total) + " copies of " + object.name;
-    plan_.stats.skips.push_back({pass.empty() ? copies : pass + " of " + copies, std::move(reason)});
-  };
-  const bool alike = std::ranges::all_of(
-      skipped, [&](const Skipped& pass) { return pass.unseen == skipped.front().unseen; });
-  if (alike) report(skipped.front().unseen, "", "outside of the view");
-  for (size_t p = 0; p < skipped.size(); ++p) {
-    const driver::Pass& pass = effect.passes[p];
-    if (!alike) report(skipped[p].unseen, pass.name, "outside of the view");
-    if (!pass.enabled) continue;
-    const driver::Field& field = effect.parameters[*pass.enabled];
-    report(skipped[p].disabled, pass.name, field.name + " is " + (field.type == "boolean" ? "false" : "0"));
-  }
+  report_skips(object, effect, static_cast<int64_t>(mesh.parts.size()), skipped, plan_.stats.skips);
 }
 
 std::optional<Plan> Planner::plan() {
@@ -390,7 +328,7 @@ std::optional<Plan> Planner::plan() {
   {
     const lanes::FpGuard guard;
     view_ = scene::make_view(scene_.camera, frame.width, frame.height);
-    store_frame();
+    frame.frame = frame_words(scene_, view_, frame.width, frame.height);
     for (const scene::Light& light : scene_.lights) {
       const auto record = scene::light_record(light);
       frame.lights.insert(frame.lights.end(), record.begin(), record.end());

@@ -8,10 +8,9 @@
 
 #include "backends/backend.h"
 #include "compiler/driver/driver.h"
+#include "runtime/render/meshes.h"
 #include "runtime/render/posts.h"
 #include "runtime/render/stats.h"
-#include "runtime/scene/gltf.h"
-#include "runtime/scene/mesh.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::render {
@@ -26,15 +25,6 @@ struct Options {
   int height = 0;
   bool skip = true;          ///< leave out what cannot be seen; off, the image has the same bits
   driver::Options compiler;  ///< `lights` is set by the scene
-};
-
-/// A mesh of the frame: where its vertices lie in Frame::vertices, and what its draws point to.
-struct StoredMesh {
-  uint32_t first_vertex = 0;
-  uint32_t vertex_count = 0;
-  std::vector<uint32_t> indices;
-  glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the box around it
-  std::optional<scene::GltfMaterial> material;
 };
 
 /// A frame and all that it points into; made once, drawn by as many backends as are asked. Can be moved: what
@@ -53,7 +43,8 @@ struct Plan {
 };
 
 /// Compiles the effects, each once, makes the meshes, each once, and fills the arrays of the frame: one
-/// record for each pass of each copy of each object that the camera may see, in the order of the scene.
+/// record for each pass over each part of each copy of each object that the camera may see, in the order of the
+/// scene; all parts before the next pass.
 /// Reports effects that do not compile, parameters that an effect has not or that do not fit, and scenes
 /// beyond the limits.
 std::optional<Plan> plan_frame(const scene::Scene& scene, const Options& options,

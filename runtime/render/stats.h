@@ -16,11 +16,11 @@ struct Skip {
 
 struct PlanStats {
   int64_t copies = 0;                     ///< of all objects, those skipped too
-  int64_t draws = 0;                      ///< passes of copies
+  int64_t draws = 0;                      ///< passes over parts of copies
   int64_t vertices = 0, triangles = 0;    ///< of all draws
   int64_t meshes = 0, mesh_vertices = 0;  ///< stored
   int64_t effects = 0, programs = 0;      ///< compiled
-  int64_t textures = 0, texels = 0;  ///< stored; with mip levels
+  int64_t textures = 0, texels = 0;       ///< stored; with mip levels
   int64_t lights = 0;
   int64_t posts = 0;  ///< that are run
   double compile_seconds = 0, plan_seconds = 0;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/support/diagnostics.h"
 #include "runtime/scene/mesh.h"
@@ -17,6 +18,7 @@ namespace isoshade::scene {
 inline constexpr size_t max_gltf_bytes = size_t{256} << 20;  ///< of the file, and of its buffers together
 inline constexpr int64_t max_gltf_vertices = 2'000'000;      ///< of all its meshes as they are placed
 inline constexpr int64_t max_gltf_triangles = 4'000'000;
+inline constexpr size_t max_gltf_parts = 4096;
 
 /// An image of a glTF file, as it is encoded.
 struct GltfImage {
@@ -38,16 +40,25 @@ struct GltfMaterial {
   std::map<std::string, GltfImage> textures;
 };
 
+/// All triangles of one material, and the vertices that they alone point to.
+struct GltfPart {
+  size_t first_index = 0, index_count = 0;    ///< in Mesh::indices; triples
+  size_t first_vertex = 0, vertex_count = 0;  ///< in Mesh::vertices
+  int material_index = -1;                    ///< in the file; -1 if these triangles have none
+  std::optional<GltfMaterial> material;
+};
+
 struct GltfModel {
   Mesh mesh;
-  std::optional<GltfMaterial> material;  ///< if all triangles have one
-  int material_index = -1;               ///< in the file; -1 if there is none
+  std::vector<GltfPart>
+      parts;  ///< one after the other they are the mesh; at least one, none without triangles
 };
 
 /// The triangles of the file's scene (its default one, else its first, else all nodes) as one mesh, in the space
 /// of the scene: transforms of nodes are computed into positions, normals and tangents. Each vertex has what the
 /// file gives: position, normal, first texture coordinates, tangent, first colours. Without normals faces are
-/// flat; without tangents they are found from the texture coordinates; colours are white.
+/// flat; without tangents they are found from the texture coordinates; colours are white. Outline normals know
+/// no parts. Materials come in the order in which their first triangles do, and the triangles of each in theirs.
 ///
 /// `path` ends in .gltf or .glb; its buffers lie in the file or below its folder. Reports a file that is missing
 /// or too large, that is no glTF, or of which any part that is used is broken: accessors that leave their

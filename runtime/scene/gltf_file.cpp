@@ -88,11 +88,11 @@ struct Files {
 };
 
 /// Keeps an image as it is: only what a material needs is decoded. Of one in a buffer nothing was checked yet, so it is
-/// left for read_textures.
+/// left for read_material.
 bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, int, int,
                 const unsigned char* bytes, int size, void* kept) {
   if (image->bufferView < 0 && size > 0)
-    (*static_cast<ImageBytes*>(kept))[index] =
+    static_cast<ImageBytes*>(kept)->by_index[index] =
         std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes), static_cast<size_t>(size));
   return true;
 }
@@ -197,10 +197,12 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
     ImageBytes images;
     if (check_json(*document, refusal) && load_model(*bytes, files, images, model, refusal))
       result = build_gltf(model, refusal);
-    if (result && result->material_index >= 0) {
-      const tinygltf::Material& material = model.materials[static_cast<size_t>(result->material_index)];
-      result->material->textures =
-          read_textures(model, material, graph::canonical_path(path), images, refusal);
+    if (result) {
+      for (GltfPart& part : result->parts) {
+        if (part.material_index < 0) continue;
+        part.material =
+            read_material(model, part.material_index, graph::canonical_path(path), images, refusal);
+      }
     }
   }
   if (!refusal.refused()) return result;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
+#include <map>
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
@@ -34,26 +35,27 @@ class Builder {
     int node;
     glm::mat4 parent;
   };
+  struct Part {
+    int material;  ///< -1: none
+    Mesh mesh;
+  };
 
   std::vector<int> roots();
   bool add_node(const Placed& placed, std::vector<Placed>& open);
   std::optional<glm::mat4> local_matrix(const tinygltf::Node& node);
   bool add_primitive(const tinygltf::Primitive& primitive);
-  void make_flat(size_t first_index);
   bool read_attributes(const tinygltf::Primitive& primitive, Attributes& attributes);
   bool read_triangles(const tinygltf::Primitive& primitive, size_t vertices, std::vector<uint32_t>& corners);
-  bool note_material(int material);
-  bool place_vertex(const Attributes& attributes, size_t i);
-  void finish();
-  std::optional<GltfMaterial> material() const;
+  Part* part_of(int material);
+  bool place_vertex(const Attributes& attributes, size_t i, Mesh& mesh);
+  GltfModel join();
 
   const tinygltf::Model& model_;
   Refusal& refusal_;
-  Mesh mesh_;
-  std::vector<bool> seen_;  ///< nodes
-  std::optional<int> material_;
-  bool one_material_ = true;
-  int64_t triangles_ = 0;  ///< read so far
+  std::vector<Part> parts_;
+  std::map<int, size_t> part_of_material_;
+  std::vector<bool> seen_;                ///< nodes
+  int64_t vertices_ = 0, triangles_ = 0;  ///< read so far
   // Of the node that is being added.
   glm::mat4 matrix_{1};
   glm::mat3 normal_matrix_{1};
@@ -210,15 +212,7 @@ bool Builder::read_triangles(const tinygltf::Primitive& primitive, size_t vertic
   return true;
 }
 
-bool Builder::note_material(int material) {
-  if (material >= static_cast<int>(model_.materials.size()))
-    return refusal_.refuse("a material does not exist");
-  if (material_ && *material_ != material) one_material_ = false;
-  material_ = material;
-  return true;
-}
-
-bool Builder::place_vertex(const Attributes& attributes, size_t i) {
+bool Builder::place_vertex(const Attributes& attributes, size_t i, Mesh& mesh) {
   const glm::vec4 position = multiply(matrix_, glm::vec4(vector_at(attributes.positions, i), 1));
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(position[axis]) <= max_coordinate)) return refusal_.refuse("a vertex lies beyond 1e9");
@@ -234,8 +228,8 @@ bool Builder::place_vertex(const Attributes& attributes, size_t i) {
     tangent = normalize(apply(glm::mat3(matrix_), {t[0], t[1], t[2]}));
     sign = (t[3] < 0) != mirrored_ ? -1.0f : 1.0f;
   }
-  add_vertex(mesh_, glm::vec3(position), normal, texcoord.x, texcoord.y, tangent);
-  float* record = &mesh_.vertices[mesh_.vertices.size() - word::stride];
+  add_vertex(mesh, glm::vec3(position), normal, texcoord.x, texcoord.y, tangent);
+  float* record = &mesh.vertices[mesh.vertices.size() - word::stride];
   record[word::tangent + 3] = sign;
   if (attributes.colors.empty()) return true;
   for (int c = 0; c < attributes.color_width; ++c) {
@@ -246,12 +240,12 @@ bool Builder::place_vertex(const Attributes& attributes, size_t i) {
 }
 
 /// Gives the triangles from an index on, which share no vertices, the normals of their faces.
-void Builder::make_flat(size_t first_index) {
-  for (size_t t = first_index; t < mesh_.indices.size(); t += 3) {
+void make_flat(Mesh& mesh, size_t first_index) {
+  for (size_t t = first_index; t < mesh.indices.size(); t += 3) {
     float* records[3];
     glm::vec3 points[3];
     for (size_t i = 0; i < 3; ++i) {
-      records[i] = &mesh_.vertices[size_t{mesh_.indices[t + i]} * word::stride];
+      records[i] = &mesh.vertices[size_t{mesh.indices[t + i]} * word::stride];
       points[i] = {records[i][0], records[i][1], records[i][2]};
     }
     const glm::vec3 normal =
@@ -269,35 +263,39 @@ bool Builder::add_primitive(const tinygltf::Primitive& primitive) {
   std::vector<uint32_t> corners;
   if (!read_attributes(primitive, attributes)) return false;
   if (attributes.count == 0) return true;
-  if (!read_triangles(primitive, attributes.count, corners) || !note_material(primitive.material))
-    return false;
+  if (!read_triangles(primitive, attributes.count, corners)) return false;
+  if (corners.empty()) return true;
+  Part* part = part_of(primitive.material);
+  if (part == nullptr) return false;
   if (mirrored_)
     for (size_t t = 0; t < corners.size(); t += 3) std::swap(corners[t + 1], corners[t + 2]);
 
-  const int64_t first = vertices_of(mesh_);
-  const size_t first_index = mesh_.indices.size();
+  Mesh& mesh = part->mesh;
+  const int64_t first = vertices_of(mesh);
+  const size_t first_index = mesh.indices.size();
   // Flat faces share no vertices; the specification wants their tangents found anew.
   const bool flat = attributes.normals.empty();
   if (flat) attributes.tangents.clear();
   const size_t added = flat ? corners.size() : attributes.count;
-  if (first + static_cast<int64_t>(added) > max_gltf_vertices)
+  vertices_ += static_cast<int64_t>(added);
+  if (vertices_ > max_gltf_vertices)
     return refusal_.refuse("it has more than " + std::to_string(max_gltf_vertices) + " vertices");
   for (size_t i = 0; i < added; ++i)
-    if (!place_vertex(attributes, flat ? corners[i] : i)) return false;
+    if (!place_vertex(attributes, flat ? corners[i] : i, mesh)) return false;
   for (size_t i = 0; i < corners.size(); ++i)
-    mesh_.indices.push_back(static_cast<uint32_t>(first) + (flat ? static_cast<uint32_t>(i) : corners[i]));
-  if (flat) make_flat(first_index);
-  if (attributes.tangents.empty()) add_tangents(mesh_, first, first_index);
+    mesh.indices.push_back(static_cast<uint32_t>(first) + (flat ? static_cast<uint32_t>(i) : corners[i]));
+  if (flat) make_flat(mesh, first_index);
+  if (attributes.tangents.empty()) add_tangents(mesh, first, first_index);
   return true;
 }
 
 /// Outline normals and the box; and a normal and a tangent for each vertex that has none.
-void Builder::finish() {
-  add_outline_normals(mesh_);
-  find_box(mesh_);
+void finish(Mesh& mesh) {
+  add_outline_normals(mesh);
+  find_box(mesh);
   const auto is_zero = [](const float* v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
-  for (size_t v = 0; v < mesh_.vertices.size(); v += word::stride) {
-    float* record = &mesh_.vertices[v];
+  for (size_t v = 0; v < mesh.vertices.size(); v += word::stride) {
+    float* record = &mesh.vertices[v];
     float* outline = record + word::outline_normal;
     if (is_zero(outline)) outline[1] = 1;
     if (is_zero(record + word::normal)) std::copy_n(outline, 3, record + word::normal);
@@ -308,25 +306,39 @@ void Builder::finish() {
   }
 }
 
-std::optional<GltfMaterial> Builder::material() const {
-  if (!one_material_ || !material_ || *material_ < 0) return std::nullopt;
-  const auto& factors = model_.materials[static_cast<size_t>(*material_)].pbrMetallicRoughness;
-  const auto number = [](double value) {
-    return value > 0 ? canonical(static_cast<float>(std::min(value, 1.0))) : 0.0f;
-  };
-  GltfMaterial material;
-  for (size_t i = 0; i < 4 && i < factors.baseColorFactor.size(); ++i)
-    material.base_color[i] = number(factors.baseColorFactor[i]);
-  material.metallic = number(factors.metallicFactor);
-  const float perceptual = number(factors.roughnessFactor);
-  material.roughness = perceptual * perceptual;
-  const tinygltf::Material& all = model_.materials[static_cast<size_t>(*material_)];
-  for (size_t i = 0; i < 3 && i < all.emissiveFactor.size(); ++i)
-    material.emissive_color[i] = number(all.emissiveFactor[i]);
-  material.occlusion_strength = number(all.occlusionTexture.strength);
-  const double scale = all.normalTexture.scale;
-  if (std::abs(scale) <= 1e6) material.normal_scale = canonical(static_cast<float>(scale));
-  return material;
+/// The part that takes triangles of a material.
+Builder::Part* Builder::part_of(int material) {
+  if (material >= static_cast<int>(model_.materials.size())) {
+    refusal_.refuse("a material does not exist");
+    return nullptr;
+  }
+  material = std::max(material, -1);
+  const auto [found, is_new] = part_of_material_.try_emplace(material, parts_.size());
+  if (!is_new) return &parts_[found->second];
+  if (parts_.size() == max_gltf_parts) {
+    refusal_.refuse("its triangles have more than " + std::to_string(max_gltf_parts) + " materials");
+    return nullptr;
+  }
+  return &parts_.emplace_back(Part{material, {}});
+}
+
+/// One mesh of all parts.
+GltfModel Builder::join() {
+  GltfModel model;
+  Mesh& mesh = model.mesh;
+  for (Part& part : parts_) {
+    GltfPart& joined = model.parts.emplace_back();
+    joined.material_index = part.material;
+    joined.first_index = mesh.indices.size();
+    joined.index_count = part.mesh.indices.size();
+    joined.first_vertex = static_cast<size_t>(vertices_of(mesh));
+    joined.vertex_count = static_cast<size_t>(vertices_of(part.mesh));
+    for (const uint32_t index : part.mesh.indices)
+      mesh.indices.push_back(static_cast<uint32_t>(joined.first_vertex) + index);
+    mesh.vertices.insert(mesh.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+    part.mesh = {};  // not needed any more
+  }
+  return model;
 }
 
 std::optional<GltfModel> Builder::build() {
@@ -339,11 +351,11 @@ std::optional<GltfModel> Builder::build() {
     open.pop_back();
     if (!add_node(placed, open)) return std::nullopt;
   }
-  if (mesh_.indices.empty()) refusal_.refuse("it has no triangles");
+  if (parts_.empty()) refusal_.refuse("it has no triangles");
   if (refusal_.refused()) return std::nullopt;
-  finish();
-  const auto found = material();
-  return GltfModel{std::move(mesh_), found, found ? *material_ : -1};
+  GltfModel joined = join();
+  finish(joined.mesh);
+  return joined;
 }
 
 }  // namespace

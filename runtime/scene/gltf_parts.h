@@ -46,15 +46,20 @@ std::optional<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, 
 /// The components of each element of an accessor: 1 to 4; 0 if there is no such accessor.
 int components_of(const tinygltf::Model& model, int accessor);
 
-/// The triangles of the model's scene. Computed under lanes::FpGuard, which the caller holds.
+/// The triangles of the model's scene; no part has its material yet. Computed under lanes::FpGuard, which the
+/// caller holds.
 std::optional<GltfModel> build_gltf(const tinygltf::Model& model, Refusal& refusal);
 
-/// The bytes of images that have files of their own or data URIs, by their index.
-using ImageBytes = std::map<int, std::shared_ptr<const std::string>>;
-/// The textures of a material, with names that begin with `file`. Refuses what leads nowhere.
-std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
-                                               const tinygltf::Material& material, const std::string& file,
-                                               const ImageBytes& images, Refusal& refusal);
+/// The bytes of images: at first of those that have files of their own or data URIs, then also of those in buffers
+/// that materials need.
+struct ImageBytes {
+  std::map<int, std::shared_ptr<const std::string>> by_index;
+  size_t copied = 0;  ///< from buffers; at most max_gltf_bytes, as views may overlap
+};
+/// A material that exists, its images with names that begin with `file`. Refuses textures that lead nowhere.
+/// Computed under lanes::FpGuard, which the caller holds.
+GltfMaterial read_material(const tinygltf::Model& model, int material, const std::string& file,
+                           ImageBytes& images, Refusal& refusal);
 
 /// Gives the vertices from `first` on tangents along u, from their positions, normals and texture coordinates;
 /// triangles from index `first_index` on point to them. A vertex without a direction of u gets any that is

@@ -16,10 +16,24 @@ namespace {
 
 using namespace testing;
 
-void expect_promises(const scene::Mesh& mesh) {
-  ASSERT_EQ(mesh.indices.size() % 3, 0u);
-  for (const uint32_t index : mesh.indices)
-    ASSERT_LT(index, mesh.vertices.size() / lower::vertex_word::stride);
+void expect_promises(const scene::GltfModel& model) {
+  const scene::Mesh& mesh = model.mesh;
+  size_t first_index = 0, first_vertex = 0;
+  for (const scene::GltfPart& part : model.parts) {
+    ASSERT_EQ(part.first_index, first_index);
+    ASSERT_EQ(part.first_vertex, first_vertex);
+    ASSERT_GT(part.index_count, 0u);
+    ASSERT_EQ(part.index_count % 3, 0u);
+    first_index += part.index_count;
+    first_vertex += part.vertex_count;
+    ASSERT_LE(first_index, mesh.indices.size());
+    for (size_t i = part.first_index; i < first_index; ++i) {
+      ASSERT_GE(mesh.indices[i], part.first_vertex);
+      ASSERT_LT(mesh.indices[i], first_vertex);
+    }
+  }
+  ASSERT_EQ(first_index, mesh.indices.size());
+  ASSERT_EQ(first_vertex * lower::vertex_word::stride, mesh.vertices.size());
   for (const float value : mesh.vertices) ASSERT_TRUE(std::isnormal(value) || value == 0);
 }
 
@@ -33,7 +47,7 @@ TEST(DamagedGltf, IsReadOrRefused) {
 [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}])");
   // Of a .glb, bytes are damaged; of its JSON, words too, and its chunk is then as long as they need.
   Mutator binaries({glb(json, square_data()), glb(nodes, square_data()), textured_glb("image")}, 1),
-      texts({json, nodes}, 2), files({beside}, 3);
+      texts({json, nodes, materials_json()}, 2), files({beside}, 3);
   const int count = std::getenv("ISOSHADE_FULL") != nullptr ? 5000 : 200;
   int read = 0;
   for (int i = 0; i < count; ++i) {
@@ -46,7 +60,7 @@ TEST(DamagedGltf, IsReadOrRefused) {
     ASSERT_NE(model.has_value(), diagnostics.has_errors()) << "file " << i;
     if (!model) continue;
     ++read;
-    ASSERT_NO_FATAL_FAILURE(expect_promises(model->mesh)) << "file " << i;
+    ASSERT_NO_FATAL_FAILURE(expect_promises(*model)) << "file " << i;
   }
   EXPECT_GT(read, count / 20);  // else the damage is too great to get beyond the parser
   EXPECT_LT(read, count);

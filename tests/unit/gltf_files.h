@@ -74,6 +74,23 @@ inline std::string textured_glb(const std::string& image) {
   return glb(json, data);
 }
 
+/// Four squares in a row along x, in this order: of the second material, which is green, of none, of the first,
+/// which is square_json's, and again of the second.
+inline std::string materials_json() {
+  const std::string square = std::string(R"({"primitives": [{"attributes": {)") + all_attributes + "}";
+  std::string json = square_json(
+      all_attributes, R"([{"children": [1, 2, 3, 4]}, {"mesh": 1}, {"mesh": 2, "translation": [1, 0, 0]},
+{"mesh": 0, "translation": [2, 0, 0]}, {"mesh": 1, "translation": [3, 0, 0]}])");
+  const auto add_behind = [&](const std::string& text, const std::string& added) {
+    json.insert(json.find(text) + text.size(), added);
+  };
+  add_behind(R"("indices": 4, "material": 0}]})",
+             ", " + square + R"(, "indices": 4, "material": 1}]}, )" + square + R"(, "indices": 4}]})");
+  add_behind(R"("roughnessFactor": 0.5}})",
+             R"(, {"pbrMetallicRoughness": {"baseColorFactor": [0.125, 1, 0.25, 1], "metallicFactor": 0}})");
+  return json;
+}
+
 /// An empty folder while it lives.
 class Folder {
  public:

@@ -129,7 +129,7 @@ TEST_F(PlanTest, AMovedPlanPointsToWhatItPointedTo) {
   ASSERT_TRUE(made) << diagnostics_.text();
   const render::Plan moved = std::move(*made);
   made.reset();
-  EXPECT_EQ(moved.frame.draws[0].indices.data(), moved.meshes[0].indices.data());
+  EXPECT_EQ(moved.frame.draws[0].indices.data(), moved.meshes[0].parts[0].indices.data());
   EXPECT_EQ(moved.frame.programs[0], &moved.effects[0].passes[0].vertex);
 }
 

@@ -19,8 +19,9 @@ isoshade_test(compare_test
 
 isoshade_test(render_test
   SOURCES
+    unit/render_parts_test.cpp
     unit/render_plan_test.cpp
     unit/render_posts_test.cpp
     unit/render_textures_test.cpp
     unit/render_visibility_test.cpp
-  LINKS isoshade_render isoshade_compare isoshade_interpreter)
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter)

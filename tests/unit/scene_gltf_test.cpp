@@ -64,10 +64,12 @@ TEST_F(Gltf, HasWhatTheFileGives) {
   EXPECT_EQ(vector_at(model, 1, word::color), glm::vec3(0, 1, 0));
   EXPECT_EQ(model.mesh.vertices[3 * word::stride + word::color + 3], 0.2f);
   EXPECT_EQ(model.mesh.high, glm::vec3(1, 1, 0));
-  ASSERT_TRUE(model.material);
-  EXPECT_EQ(model.material->base_color[1], 0.25f);
-  EXPECT_EQ(model.material->metallic, 0.75f);
-  EXPECT_EQ(model.material->roughness, 0.25f);  // what is perceptual is squared
+  ASSERT_EQ(model.parts.size(), 1u);
+  const auto& material = model.parts[0].material;
+  ASSERT_TRUE(material);
+  EXPECT_EQ(material->base_color[1], 0.25f);
+  EXPECT_EQ(material->metallic, 0.75f);
+  EXPECT_EQ(material->roughness, 0.25f);  // what is perceptual is squared
 }
 
 TEST_F(Gltf, IsTheSameFromTextBesideItsBuffer) {
@@ -113,6 +115,46 @@ TEST_F(Gltf, StaysOutsideOutInAMirror) {
   EXPECT_EQ(vector_at(model, 0, word::normal), glm::vec3(0, 0, 1));
   EXPECT_EQ(vector_at(model, 0, word::tangent), glm::vec3(-1, 0, 0));
   EXPECT_EQ(model.mesh.vertices[word::tangent + 3], -1.0f);
+}
+
+TEST_F(Gltf, HasAPartForEachMaterialInTheOrderOfTheFile) {
+  const GltfModel model = loaded(materials_json());
+  ASSERT_EQ(model.parts.size(), 3u);
+  EXPECT_EQ(model.parts[0].material_index, 1);
+  EXPECT_EQ(model.parts[0].index_count, 12u);  // the first square and the last
+  EXPECT_EQ(vector_at(model, 5, word::position).x, 4);
+  ASSERT_TRUE(model.parts[0].material && model.parts[2].material);
+  EXPECT_EQ(model.parts[0].material->base_color[1], 1);
+  EXPECT_EQ(model.parts[1].material_index, -1);
+  EXPECT_FALSE(model.parts[1].material);
+  EXPECT_EQ(model.parts[2].material_index, 0);
+  EXPECT_EQ(model.parts[2].material->metallic, 0.75f);
+  EXPECT_EQ(model.mesh.high, glm::vec3(4, 1, 0));
+  EXPECT_EQ(model.mesh.indices[12], 8u);
+  size_t indices = 0, vertices = 0;
+  for (const scene::GltfPart& part : model.parts) {
+    EXPECT_EQ(part.first_index, indices);
+    EXPECT_EQ(part.first_vertex, vertices);
+    indices += part.index_count;
+    vertices += part.vertex_count;
+  }
+  EXPECT_EQ(indices, model.mesh.indices.size());
+  EXPECT_EQ(vertices * word::stride, model.mesh.vertices.size());
+}
+
+TEST_F(Gltf, RefusesMaterialsBeyondItsLimit) {
+  std::string primitives, materials;
+  for (size_t i = 1; i <= scene::max_gltf_parts; ++i) {
+    primitives += R"(, {"attributes": {"POSITION": 0}, "indices": 4, "material": )" + std::to_string(i) + "}";
+    materials += ", {}";
+  }
+  std::string json = square_json();
+  const auto add_behind = [&](const std::string& text, const std::string& added) {
+    json.insert(json.find(text) + text.size(), added);
+  };
+  add_behind(R"("indices": 4, "material": 0})", primitives);
+  add_behind(R"("roughnessFactor": 0.5}})", materials);
+  EXPECT_TRUE(refuses(glb(json, square_data()), "more than 4096 materials"));
 }
 
 TEST_F(Gltf, HoldsNoDenormals) {
@@ -194,9 +236,10 @@ TEST(GltfTextures, AreKeptAsTheyAre) {
   support::Diagnostics diagnostics;
   const auto model =
       scene::load_gltf(folder.write("m.glb", testing::textured_glb("no image")), {}, diagnostics);
-  ASSERT_TRUE(model && model->material) << diagnostics.text();
-  ASSERT_TRUE(model->material->textures.contains("base_color_texture"));
-  EXPECT_EQ(*model->material->textures.at("base_color_texture").bytes, "no image");
+  ASSERT_TRUE(model && model->parts.at(0).material) << diagnostics.text();
+  const auto& textures = model->parts[0].material->textures;
+  ASSERT_TRUE(textures.contains("base_color_texture"));
+  EXPECT_EQ(*textures.at("base_color_texture").bytes, "no image");
 }
 
 TEST(GltfTextures, ThatLeaveTheirBufferAreRefused) {

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
 #include "runtime/scene/gltf_parts.h"
+#include "runtime/scene/host_math.h"
 
 namespace isoshade::scene {
 namespace {
@@ -15,11 +19,28 @@ std::shared_ptr<const std::string> bytes_in_buffer(const tinygltf::Model& model,
   return std::make_shared<const std::string>(first, first + static_cast<ptrdiff_t>(part.byteLength));
 }
 
-}  // namespace
+GltfMaterial read_factors(const tinygltf::Material& from) {
+  const tinygltf::PbrMetallicRoughness& factors = from.pbrMetallicRoughness;
+  const auto number = [](double value) {
+    return value > 0 ? canonical(static_cast<float>(std::min(value, 1.0))) : 0.0f;
+  };
+  GltfMaterial material;
+  for (size_t i = 0; i < 4 && i < factors.baseColorFactor.size(); ++i)
+    material.base_color[i] = number(factors.baseColorFactor[i]);
+  material.metallic = number(factors.metallicFactor);
+  const float perceptual = number(factors.roughnessFactor);
+  material.roughness = perceptual * perceptual;
+  for (size_t i = 0; i < 3 && i < from.emissiveFactor.size(); ++i)
+    material.emissive_color[i] = number(from.emissiveFactor[i]);
+  material.occlusion_strength = number(from.occlusionTexture.strength);
+  const double scale = from.normalTexture.scale;
+  if (std::abs(scale) <= 1e6) material.normal_scale = canonical(static_cast<float>(scale));
+  return material;
+}
 
 std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
                                                const tinygltf::Material& material, const std::string& file,
-                                               const ImageBytes& images, Refusal& refusal) {
+                                               ImageBytes& images, Refusal& refusal) {
   std::map<std::string, GltfImage> found;
   const auto read = [&](const char* parameter, int texture, int texcoord) {
     if (texture < 0 || texcoord != 0 || refusal.refused()) return;
@@ -29,16 +50,21 @@ std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
       refusal.refuse("a material has a texture without an image");
       return;
     }
-    const auto kept = images.find(source);
-    GltfImage image{file + "#image" + std::to_string(source),
-                    kept != images.end()
-                        ? kept->second
-                        : bytes_in_buffer(model, model.images[static_cast<size_t>(source)].bufferView)};
-    if (image.bytes == nullptr) {
+    const auto [kept, is_new] = images.by_index.try_emplace(source);
+    if (is_new) {
+      kept->second = bytes_in_buffer(model, model.images[static_cast<size_t>(source)].bufferView);
+      images.copied += kept->second == nullptr ? 0 : kept->second->size();
+    }
+    if (images.copied > max_gltf_bytes) {
+      refusal.refuse("the images of its materials have more than " + std::to_string(max_gltf_bytes >> 20) +
+                     " MiB");
+      return;
+    }
+    if (kept->second == nullptr) {
       refusal.refuse("the image " + std::to_string(source) + " of a material cannot be read");
       return;
     }
-    found[parameter] = std::move(image);
+    found[parameter] = {file + "#image" + std::to_string(source), kept->second};
   };
   const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
   read("base_color_texture", pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord);
@@ -48,6 +74,16 @@ std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
   read("occlusion_texture", material.occlusionTexture.index, material.occlusionTexture.texCoord);
   read("emissive_texture", material.emissiveTexture.index, material.emissiveTexture.texCoord);
   return found;
+}
+
+}  // namespace
+
+GltfMaterial read_material(const tinygltf::Model& model, int material, const std::string& file,
+                           ImageBytes& images, Refusal& refusal) {
+  const tinygltf::Material& from = model.materials[static_cast<size_t>(material)];
+  GltfMaterial result = read_factors(from);
+  result.textures = read_textures(model, from, file, images, refusal);
+  return result;
 }
 
 }  // namespace isoshade::scene

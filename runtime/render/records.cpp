@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/records.h"
+
+#include "compiler/lower/frame_layout.h"
+#include "runtime/scene/host_math.h"
+
+namespace isoshade::render {
+namespace {
+
+/// The first rows, column by column.
+template <class Matrix>
+void store_rows(const Matrix& matrix, int rows, float* words) {
+  for (int c = 0; c < Matrix::length(); ++c)
+    for (int r = 0; r < rows; ++r) words[rows * c + r] = scene::canonical(matrix[c][r]);
+}
+
+}  // namespace
+
+Place place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view) {
+  const glm::mat4 model = scene::model_matrix(object, instance);
+  return {model, scene::affine_inverse(model), scene::multiply(view.projection, model),
+          scene::normal_matrix(model)};
+}
+
+void append_object(const Place& place, uint32_t pixel_program, std::span<const float> parameters,
+                   std::vector<float>& objects) {
+  namespace word = lower::object_word;
+  const size_t first = objects.size();
+  objects.resize(first + word::parameters);
+  float* record = &objects[first];
+  store_rows(place.model, 3, record + word::model);
+  store_rows(place.inverse, 3, record + word::inverse);
+  store_rows(place.normal, 3, record + word::normal);
+  store_rows(place.projected, 4, record + word::projected);
+  record[word::program] = static_cast<float>(pixel_program);
+  objects.insert(objects.end(), parameters.begin(), parameters.end());
+}
+
+std::vector<float> frame_words(const scene::Scene& scene, const scene::View& view, int width, int height) {
+  namespace word = lower::frame_word;
+  std::vector<float> words(word::count);
+  for (int i = 0; i < 4; ++i) words[word::eye + i] = scene::canonical(view.eye[i]);
+  store_rows(view.view, 3, &words[word::view]);
+  store_rows(view.inverse, 3, &words[word::inverse_view]);
+  words[word::time] = scene::canonical(scene.time);
+  store_rows(view.clip_from_view, 4, &words[word::projection]);
+  for (int i = 0; i < 2; ++i)
+    words[static_cast<size_t>(word::pixel_size + i)] = scene::canonical(view.pixel_size[i]);
+  scene::store_camera(scene.camera, width, height, words);
+  return words;
+}
+
+}  // namespace isoshade::render

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The records of a frame that are the same for all backends, as words. All is computed under lanes::FpGuard, which the
+// caller holds.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <span>
+#include <vector>
+
+#include "runtime/scene/placement.h"
+#include "runtime/scene/scene.h"
+
+namespace isoshade::render {
+
+/// Where a copy of an object stands.
+struct Place {
+  glm::mat4 model;      ///< object space -> world space
+  glm::mat4 inverse;    ///< world space -> object space
+  glm::mat4 projected;  ///< object space -> clip space
+  glm::mat3 normal;     ///< normals: object space -> world space, of any length
+};
+Place place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view);
+
+/// Appends a record of lower::object_word, with the words of its parameters.
+void append_object(const Place& place, uint32_t pixel_program, std::span<const float> parameters,
+                   std::vector<float>& objects);
+
+/// The words of lower::frame_word, for an image of this size.
+std::vector<float> frame_words(const scene::Scene& scene, const scene::View& view, int width, int height);
+
+}  // namespace isoshade::render

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/skips.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "runtime/scene/placement.h"
+
+namespace isoshade::render {
+
+void report_skips(const scene::Object& object, const driver::Effect& effect, int64_t parts,
+                  std::span<const PassSkips> passes, std::vector<Skip>& skips) {
+  const int64_t copies = scene::instance_count(object);
+  /// `count` of `total`, called `unit`.
+  const auto report = [&](int64_t count, int64_t total, const std::string& unit, const std::string& pass,
+                          std::string reason) {
+    if (count == 0) return;
+    const std::string what = total == 1 ? object.name
+                                        : std::to_string(count) + " of " + std::to_string(total) + " " +
+                                              unit + " of " + object.name;
+    skips.push_back({pass.empty() ? what : pass + " of " + what, std::move(reason)});
+  };
+  const bool alike = std::ranges::all_of(
+      passes, [&](const PassSkips& pass) { return pass.unseen == passes.front().unseen; });
+  if (alike) report(passes.front().unseen, copies, "copies", "", "outside of the view");
+  for (size_t p = 0; p < passes.size(); ++p) {
+    const driver::Pass& pass = effect.passes[p];
+    if (!alike) report(passes[p].unseen, copies, "copies", pass.name, "outside of the view");
+    if (!pass.enabled) continue;
+    const driver::Field& field = effect.parameters[*pass.enabled];
+    report(passes[p].disabled, copies * parts, parts == 1 ? "copies" : "parts", pass.name,
+           field.name + " is " + (field.type == "boolean" ? "false" : "0"));
+  }
+}
+
+}  // namespace isoshade::render
