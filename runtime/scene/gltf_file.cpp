@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -7,7 +8,6 @@
 #include <memory>
 #include <utility>
 
-#include "compiler/graph/document.h"
 #include "compiler/graph/files.h"
 #include "compiler/support/visible.h"
 #include "runtime/lanes/float_rules.h"
@@ -24,44 +24,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All of a regular file, if it has no more than `limit` bytes; else the reason why not.
-std::optional<std::string> read_bytes(const std::string& path, size_t limit, Id& id, std::string& reason) {
-  id = Id::unreadable_file;
-  if (path.find('\0') != std::string::npos) return reason = "the name has a NUL byte", std::nullopt;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::exists(status) && !fs::is_regular_file(status))
-    return reason = "it is no regular file", std::nullopt;
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             [](std::FILE* f) { return std::fclose(f); });
-  if (file == nullptr) {
-    if (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG) id = Id::missing_file;
-    return reason = std::strerror(errno), std::nullopt;
-  }
-  std::string bytes;
-  char buffer[1 << 16];
-  while (bytes.size() <= limit) {
-    const size_t count = std::fread(buffer, 1, sizeof buffer, file.get());
-    bytes.append(buffer, count);
-    if (count < sizeof buffer) break;
-  }
-  if (std::ferror(file.get()) != 0) return reason = std::strerror(errno), std::nullopt;
-  if (bytes.size() > limit) {
-    id = Id::too_large;
-    return reason = "it has more than " + std::to_string(limit >> 20) + " MiB", std::nullopt;
-  }
-  return bytes;
-}
-
-/// What tinygltf may read: regular files in or below one folder, and of them so many bytes in all.
+/// What tinygltf may read: the files of buffers, in or below one folder, and of them so many bytes in all. Those of
+/// images, which come after all buffers, are read where a material needs them.
 struct Files {
   std::string folder;  ///< canonical
+  size_t count_left = 0;
   size_t bytes_left = max_gltf_bytes;
   std::string outside;  ///< a path that leads out of the folder
 
   static bool exists(const std::string& path, void* self) {
     Files& files = *static_cast<Files*>(self);
     std::error_code error;
+    if (files.count_left == 0) return false;
     if (path.find('\0') != std::string::npos || !fs::is_regular_file(path, error)) return false;
     if (graph::is_within(graph::canonical_path(path), files.folder)) return true;
     if (files.outside.empty()) files.outside = path;
@@ -71,13 +45,12 @@ struct Files {
   static bool read(std::vector<unsigned char>* out, std::string* why, const std::string& path, void* self) {
     Files& files = *static_cast<Files*>(self);
     if (!exists(path, self)) return false;
-    Id id;
-    std::string reason;
-    const auto bytes = read_bytes(path, files.bytes_left, id, reason);
+    const auto [bytes, id, reason] = read_file_bytes(path, files.bytes_left);
     if (!bytes) {
       if (why != nullptr) *why = reason;
       return false;
     }
+    --files.count_left;
     files.bytes_left -= bytes->size();
     out->assign(bytes->begin(), bytes->end());
     return true;
@@ -88,7 +61,7 @@ struct Files {
 };
 
 /// Keeps an image as it is: only what a material needs is decoded. Of one in a buffer nothing was checked yet, so it is
-/// left for read_material.
+/// left for read_gltf_image.
 bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, int, int,
                 const unsigned char* bytes, int size, void* kept) {
   if (image->bufferView < 0 && size > 0)
@@ -97,54 +70,15 @@ bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, i
   return true;
 }
 
-uint32_t word_at(const std::string& bytes, size_t at) {
-  uint32_t word = 0;
-  for (size_t i = 4; i > 0; --i) word = word << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
-  return word;
-}
-
-bool is_binary(const std::string& bytes) { return bytes.starts_with("glTF"); }
-
-/// The text of a .gltf file, or of the first chunk of a .glb.
-std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal) {
-  if (!is_binary(bytes)) return bytes;
-  constexpr size_t header = 20;  // of the file, and of its first chunk
-  if (bytes.size() < header || word_at(bytes, 12) > bytes.size() - header) {
-    refusal.refuse("it ends before its first chunk does");
-    return std::nullopt;
-  }
-  if (word_at(bytes, 4) != 2) {
-    refusal.refuse("it is of version " + std::to_string(word_at(bytes, 4)) + ", not 2");
-    return std::nullopt;
-  }
-  return bytes.substr(header, word_at(bytes, 12));
-}
-
-/// What is asked of the text before tinygltf may read it: that it is JSON and not nested too deep, which would
-/// crash it; that its buffers are not too large together; and that it needs no extension that we lack.
-bool check_json(const graph::Document& document, Refusal& refusal) {
-  double bytes = 0;
-  if (const Json* buffers = document.root.find("buffers")) {
-    for (const Json& buffer : buffers->items) {
-      const Json* length = buffer.find("byteLength");
-      if (length == nullptr || !length->integral || length->number < 1)
-        return refusal.refuse("a buffer has no byteLength");
-      bytes += length->number;
-    }
-  }
-  if (bytes > static_cast<double>(max_gltf_bytes))
-    return refusal.refuse("its buffers have more than " + std::to_string(max_gltf_bytes >> 20) + " MiB");
-  if (const Json* required = document.root.find("extensionsRequired")) {
-    for (const Json& extension : required->items) {
-      const std::string& name = extension.string;
-      if (name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
-          name.starts_with("EXT_texture_") || name == "KHR_lights_punctual") {
-        continue;
-      }
-      return refusal.refuse("it needs the extension " + quote(name));
-    }
-  }
-  return true;
+/// How many buffers have files of their own.
+size_t count_buffer_files(const graph::Document& document) {
+  const Json* buffers = document.root.find("buffers");
+  return buffers == nullptr
+             ? 0
+             : static_cast<size_t>(std::ranges::count_if(buffers->items, [](const Json& buffer) {
+                 const Json* uri = buffer.find("uri");
+                 return uri != nullptr && !tinygltf::IsDataURI(uri->string);
+               }));
 }
 
 /// tinygltf may throw: it looks into vectors with at().
@@ -173,11 +107,40 @@ bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tiny
 
 }  // namespace
 
+FileBytes read_file_bytes(const std::string& path, size_t limit) {
+  if (path.find('\0') != std::string::npos) return {{}, Id::unreadable_file, "the name has a NUL byte"};
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return {{}, Id::unreadable_file, "it is no regular file"};
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             [](std::FILE* f) { return std::fclose(f); });
+  if (file == nullptr) {
+    const bool missing = errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG;
+    return {{}, missing ? Id::missing_file : Id::unreadable_file, std::strerror(errno)};
+  }
+  std::string bytes;
+  char buffer[1 << 16];
+  while (bytes.size() <= limit) {
+    const size_t count = std::fread(buffer, 1, sizeof buffer, file.get());
+    bytes.append(buffer, count);
+    if (count < sizeof buffer) break;
+  }
+  if (std::ferror(file.get()) != 0) return {{}, Id::unreadable_file, std::strerror(errno)};
+  if (bytes.size() > limit)
+    return {{}, Id::too_large, "it has more than " + std::to_string(limit >> 20) + " MiB"};
+  return {std::move(bytes), {}, {}};
+}
+
+void Refusal::report(const std::string& file, const support::Span& where, Diagnostics& diagnostics) const {
+  diagnostics.report(id_, where,
+                     (part_.empty() ? "cannot read the mesh " : "cannot read " + part_ + " of ") +
+                         quote(file) + ": " + support::visible(reason_));
+}
+
 std::optional<GltfModel> load_gltf(const std::string& path, const support::Span& where,
                                    Diagnostics& diagnostics) {
-  Id id;
-  std::string reason;
-  const auto bytes = read_bytes(path, max_gltf_bytes, id, reason);
+  const auto [bytes, id, reason] = read_file_bytes(path, max_gltf_bytes);
   if (!bytes) {
     diagnostics.report(id, where, "cannot read " + quote(path) + ": " + reason);
     return std::nullopt;
@@ -192,17 +155,16 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
     const auto document =
         graph::parse_document(std::make_shared<support::SourceFile>(path, *std::move(json)), diagnostics);
     if (!document) return std::nullopt;
+    files.count_left = count_buffer_files(*document);
     const lanes::FpGuard guard;
     tinygltf::Model model;
-    ImageBytes images;
+    ImageBytes images{path, files.folder, {}, 0};
     if (check_json(*document, refusal) && load_model(*bytes, files, images, model, refusal))
       result = build_gltf(model, refusal);
     if (result) {
-      for (GltfPart& part : result->parts) {
-        if (part.material_index < 0) continue;
-        part.material =
-            read_material(model, part.material_index, graph::canonical_path(path), images, refusal);
-      }
+      for (GltfPart& part : result->parts)
+        if (part.material_index >= 0)
+          part.material = read_material(model, part.material_index, images, refusal);
     }
   }
   if (!refusal.refused()) return result;
@@ -210,8 +172,7 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
     diagnostics.report(Id::outside_reference, where,
                        quote(path) + " refers to " + quote(files.outside) + ", outside of its folder");
   } else {
-    diagnostics.report(Id::bad_mesh, where,
-                       quote(path) + " is no mesh: " + support::visible(refusal.reason()));
+    refusal.report(path, where, diagnostics);
   }
   return std::nullopt;
 }

@@ -8,17 +8,6 @@
 namespace isoshade::scene {
 namespace {
 
-/// The bytes of an image that lies in a buffer.
-std::shared_ptr<const std::string> bytes_in_buffer(const tinygltf::Model& model, int view) {
-  if (view < 0 || static_cast<size_t>(view) >= model.bufferViews.size()) return nullptr;
-  const tinygltf::BufferView& part = model.bufferViews[static_cast<size_t>(view)];
-  if (part.buffer < 0 || static_cast<size_t>(part.buffer) >= model.buffers.size()) return nullptr;
-  const std::vector<unsigned char>& data = model.buffers[static_cast<size_t>(part.buffer)].data;
-  if (part.byteOffset > data.size() || part.byteLength > data.size() - part.byteOffset) return nullptr;
-  const auto first = data.begin() + static_cast<ptrdiff_t>(part.byteOffset);
-  return std::make_shared<const std::string>(first, first + static_cast<ptrdiff_t>(part.byteLength));
-}
-
 GltfMaterial read_factors(const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& factors = from.pbrMetallicRoughness;
   const auto number = [](double value) {
@@ -39,32 +28,24 @@ GltfMaterial read_factors(const tinygltf::Material& from) {
 }
 
 std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
-                                               const tinygltf::Material& material, const std::string& file,
-                                               ImageBytes& images, Refusal& refusal) {
+                                               const tinygltf::Material& material, ImageBytes& images,
+                                               Refusal& refusal) {
   std::map<std::string, GltfImage> found;
   const auto read = [&](const char* parameter, int texture, int texcoord) {
     if (texture < 0 || texcoord != 0 || refusal.refused()) return;
-    const bool exists = static_cast<size_t>(texture) < model.textures.size();
-    const int source = exists ? model.textures[static_cast<size_t>(texture)].source : -1;
+    const std::string name = "the texture " + std::to_string(texture);
+    if (static_cast<size_t>(texture) >= model.textures.size()) {
+      refusal.refuse(support::Id::bad_image, name, "it does not exist");
+      return;
+    }
+    const int source = model.textures[static_cast<size_t>(texture)].source;
     if (source < 0 || static_cast<size_t>(source) >= model.images.size()) {
-      refusal.refuse("a material has a texture without an image");
+      refusal.refuse(
+          support::Id::bad_image, name,
+          source < 0 ? "it has no image" : "the image " + std::to_string(source) + " does not exist");
       return;
     }
-    const auto [kept, is_new] = images.by_index.try_emplace(source);
-    if (is_new) {
-      kept->second = bytes_in_buffer(model, model.images[static_cast<size_t>(source)].bufferView);
-      images.copied += kept->second == nullptr ? 0 : kept->second->size();
-    }
-    if (images.copied > max_gltf_bytes) {
-      refusal.refuse("the images of its materials have more than " + std::to_string(max_gltf_bytes >> 20) +
-                     " MiB");
-      return;
-    }
-    if (kept->second == nullptr) {
-      refusal.refuse("the image " + std::to_string(source) + " of a material cannot be read");
-      return;
-    }
-    found[parameter] = {file + "#image" + std::to_string(source), kept->second};
+    if (auto image = read_gltf_image(model, source, images, refusal)) found[parameter] = *std::move(image);
   };
   const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
   read("base_color_texture", pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord);
@@ -78,11 +59,10 @@ std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
 
 }  // namespace
 
-GltfMaterial read_material(const tinygltf::Model& model, int material, const std::string& file,
-                           ImageBytes& images, Refusal& refusal) {
+GltfMaterial read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal) {
   const tinygltf::Material& from = model.materials[static_cast<size_t>(material)];
   GltfMaterial result = read_factors(from);
-  result.textures = read_textures(model, from, file, images, refusal);
+  result.textures = read_textures(model, from, images, refusal);
   return result;
 }
 

@@ -11,6 +11,8 @@
 #include <tiny_gltf.h>
 #include <vector>
 
+#include "compiler/graph/document.h"
+#include "compiler/support/diagnostics.h"
 #include "runtime/scene/gltf.h"
 
 namespace isoshade::scene {
@@ -18,17 +20,38 @@ namespace isoshade::scene {
 /// Why a file is refused. The first reason stays.
 class Refusal {
  public:
-  /// Returns false, for callers that return so.
-  bool refuse(std::string reason) {
-    if (reason_.empty()) reason_ = std::move(reason);
+  /// Of the mesh. Returns false, for callers that return so.
+  bool refuse(std::string reason) { return refuse(support::Id::bad_mesh, {}, std::move(reason)); }
+  /// Of a part of the file: "the image 2".
+  bool refuse(support::Id id, std::string part, std::string reason) {
+    if (!refused()) id_ = id, part_ = std::move(part), reason_ = std::move(reason);
     return false;
   }
   bool refused() const { return !reason_.empty(); }
-  const std::string& reason() const { return reason_; }
+  void report(const std::string& file, const support::Span& where, support::Diagnostics& diagnostics) const;
 
  private:
+  support::Id id_ = support::Id::bad_mesh;
+  std::string part_;
   std::string reason_;
 };
+
+/// The bytes of a regular file, or the reason why there are none.
+struct FileBytes {
+  std::optional<std::string> bytes;
+  support::Id id = support::Id::unreadable_file;
+  std::string reason;
+};
+FileBytes read_file_bytes(const std::string& path, size_t limit);
+
+/// The text of a .gltf file, or of the first chunk of a .glb.
+std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal);
+bool is_binary(const std::string& bytes);
+
+/// What is asked of the text before tinygltf may read it: that it is JSON and not nested too deep, which would crash
+/// it; that its buffers are not too large together; that it needs no extension that we lack; and that its indices are
+/// such: tinygltf takes their lowest 32 bits, and what is no integer for none.
+bool check_json(const graph::Document& document, Refusal& refusal);
 
 /// The numbers of an accessor, `width` for each of `count` elements, as floats: integers of normalised ones
 /// divided by their greatest. Denormals are zeros, and all are finite.
@@ -50,16 +73,19 @@ int components_of(const tinygltf::Model& model, int accessor);
 /// caller holds.
 std::optional<GltfModel> build_gltf(const tinygltf::Model& model, Refusal& refusal);
 
-/// The bytes of images: at first of those that have files of their own or data URIs, then also of those in buffers
-/// that materials need.
+/// The images of a file, by their numbers: at first those in data URIs, then also those in buffers and in files of
+/// their own that materials need.
 struct ImageBytes {
+  std::string file;    ///< whose images they are, as the user calls it
+  std::string folder;  ///< of the file, canonical: images of their own lie in or below it
   std::map<int, std::shared_ptr<const std::string>> by_index;
-  size_t copied = 0;  ///< from buffers; at most max_gltf_bytes, as views may overlap
+  size_t total = 0;  ///< of those that were read for materials; at most max_gltf_bytes, as views may overlap
 };
-/// A material that exists, its images with names that begin with `file`. Refuses textures that lead nowhere.
-/// Computed under lanes::FpGuard, which the caller holds.
-GltfMaterial read_material(const tinygltf::Model& model, int material, const std::string& file,
-                           ImageBytes& images, Refusal& refusal);
+/// An image that exists, or a refusal.
+std::optional<GltfImage> read_gltf_image(const tinygltf::Model& model, int image, ImageBytes& images,
+                                         Refusal& refusal);
+/// A material that exists. Refuses textures that lead nowhere. Computed under lanes::FpGuard, which the caller holds.
+GltfMaterial read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal);
 
 /// Gives the vertices from `first` on tangents along u, from their positions, normals and texture coordinates;
 /// triangles from index `first_index` on point to them. A vertex without a direction of u gets any that is

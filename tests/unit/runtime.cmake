@@ -1,6 +1,7 @@
 isoshade_test(scene_test
   SOURCES
     unit/scene_gltf_test.cpp
+    unit/scene_gltf_textures_test.cpp
     unit/scene_image_file_test.cpp
     unit/scene_image_formats_test.cpp
     unit/scene_mesh_test.cpp

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "compiler/support/visible.h"
+#include "runtime/scene/gltf_parts.h"
+
+namespace isoshade::scene {
+
+using graph::Json;
+using support::quote;
+
+namespace {
+
+uint32_t word_at(const std::string& bytes, size_t at) {
+  uint32_t word = 0;
+  for (size_t i = 4; i > 0; --i) word = word << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
+  return word;
+}
+
+/// The keys of what is read whose values are numbers of things, or codes: whole, and not negative.
+bool is_index(std::string_view key) {
+  static constexpr std::string_view keys[] = {
+      "buffer",   "bufferView", "byteStride", "children", "componentType", "index",  "indices",
+      "material", "mesh",       "mode",       "nodes",    "scene",         "source", "texCoord"};
+  return std::ranges::find(keys, key) != std::end(keys);
+}
+
+bool check_index(const graph::Document& document, const Json& value, Refusal& refusal) {
+  if (value.integral && value.number >= 0 && value.number <= std::numeric_limits<int>::max()) return true;
+  const bool is_number = value.kind == Json::Kind::number;
+  return refusal.refuse(graph::pointer_at(document, value.begin) + " is " +
+                        (is_number ? std::string(document.text(value).substr(0, 40))
+                                   : std::string(graph::kind_name(value.kind))) +
+                        ", not a whole number from 0 to 2147483647");
+}
+
+/// All below `value`, whose own members all are indices if `attributes`.
+bool check_indices(const graph::Document& document, const Json& value, bool attributes, Refusal& refusal) {
+  for (const Json& item : value.items)
+    if (!check_indices(document, item, false, refusal)) return false;
+  for (const auto& [key, key_begin, key_end, member] : value.members) {
+    if (key == "extensions" || key == "extras") continue;
+    const bool nested = member.kind == Json::Kind::object || member.kind == Json::Kind::array;
+    if ((attributes || is_index(key)) && !nested && !check_index(document, member, refusal)) return false;
+    if (key.ends_with("Texture") && member.kind == Json::Kind::object && member.find("index") == nullptr)
+      return refusal.refuse(graph::pointer_at(document, member.begin) + " has no index");
+    for (const Json& item : member.items)
+      if (is_index(key) && item.kind != Json::Kind::object && !check_index(document, item, refusal))
+        return false;
+    if (nested && !check_indices(document, member, key == "attributes", refusal)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_binary(const std::string& bytes) { return bytes.starts_with("glTF"); }
+
+std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal) {
+  if (!is_binary(bytes)) return bytes;
+  constexpr size_t header = 20;  // of the file, and of its first chunk
+  if (bytes.size() < header || word_at(bytes, 12) > bytes.size() - header) {
+    refusal.refuse("it ends before its first chunk does");
+    return std::nullopt;
+  }
+  if (word_at(bytes, 4) != 2) {
+    refusal.refuse("it is of version " + std::to_string(word_at(bytes, 4)) + ", not 2");
+    return std::nullopt;
+  }
+  return bytes.substr(header, word_at(bytes, 12));
+}
+
+bool check_json(const graph::Document& document, Refusal& refusal) {
+  double bytes = 0;
+  if (const Json* buffers = document.root.find("buffers")) {
+    for (const Json& buffer : buffers->items) {
+      const Json* length = buffer.find("byteLength");
+      if (length == nullptr || !length->integral || length->number < 1)
+        return refusal.refuse("a buffer has no byteLength");
+      bytes += length->number;
+    }
+  }
+  if (bytes > static_cast<double>(max_gltf_bytes))
+    return refusal.refuse("its buffers have more than " + std::to_string(max_gltf_bytes >> 20) + " MiB");
+  if (const Json* required = document.root.find("extensionsRequired")) {
+    for (const Json& extension : required->items) {
+      const std::string& name = extension.string;
+      if (name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+          name.starts_with("EXT_texture_") || name == "KHR_lights_punctual") {
+        continue;
+      }
+      return refusal.refuse("it needs the extension " + quote(name));
+    }
+  }
+  return check_indices(document, document.root, false, refusal);
+}
+
+}  // namespace isoshade::scene

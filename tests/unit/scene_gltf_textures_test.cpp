@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// The images of materials of glTF files, and what is said of those that are none.
+#include <gtest/gtest.h>
+
+#include "runtime/scene/gltf.h"
+#include "tests/unit/gltf_files.h"
+
+namespace isoshade {
+namespace {
+
+class GltfTextures : public ::testing::Test {
+ protected:
+  std::optional<scene::GltfModel> load(const std::string& bytes, const std::string& name = "m.glb") {
+    diagnostics_ = support::Diagnostics();
+    return scene::load_gltf(folder_.write(name, bytes), {}, diagnostics_);
+  }
+
+  static std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  }
+
+  /// The square in a file of text, with this for its image.
+  static std::string gltf(const std::string& image, const std::string& texture = R"({"source": 0})",
+                          const std::string& reference = R"("baseColorTexture": {"index": 0})") {
+    std::string json =
+        testing::square_json(testing::all_attributes, testing::one_node, R"("uri": "m.bin", )");
+    return replaced(json, R"("roughnessFactor": 0.5}})",
+                    R"("roughnessFactor": 0.5, )" + reference + R"(}}], "textures": [)" + texture +
+                        R"(], "images": [)" + image);
+  }
+
+  bool refuses(const std::string& json, const std::string& message) {
+    folder_.write("in/m.bin", testing::square_data());
+    if (load(json, "in/m.gltf")) return false;
+    EXPECT_NE(diagnostics_.text().find(message), std::string::npos) << diagnostics_.text();
+    return diagnostics_.text().find(message) != std::string::npos;
+  }
+
+  testing::Folder folder_;
+  support::Diagnostics diagnostics_;
+};
+
+TEST_F(GltfTextures, AreKeptAsTheyAre) {
+  const auto model = load(testing::textured_glb("no image"));
+  ASSERT_TRUE(model && model->parts.at(0).material) << diagnostics_.text();
+  const auto& textures = model->parts[0].material->textures;
+  ASSERT_TRUE(textures.contains("base_color_texture"));
+  EXPECT_EQ(*textures.at("base_color_texture").bytes, "no image");
+}
+
+TEST_F(GltfTextures, ComeFromFilesBelowTheFolder) {
+  folder_.write("m.bin", testing::square_data());
+  const std::string file = folder_.write("maps/a b+c.png", "no image");
+  const auto model = load(gltf(R"({"uri": "maps/a%20b+c.png"})"), "m.gltf");
+  ASSERT_TRUE(model && model->parts.at(0).material) << diagnostics_.text();
+  const scene::GltfImage& image = model->parts[0].material->textures.at("base_color_texture");
+  EXPECT_EQ(image.name, file);
+  EXPECT_EQ(*image.bytes, "no image");
+}
+
+TEST_F(GltfTextures, ThatCannotBeReadAreNamedWithTheReason) {
+  EXPECT_TRUE(refuses(gltf(R"({"uri": "no%20such.png"})"),
+                      "error[missing-file]: cannot read the image \"no such.png\" of \""));
+  EXPECT_TRUE(refuses(gltf(R"({"uri": "no.png"})"), "No such file"));
+  folder_.write("out.png", "no image");
+  for (const char* uri : {"../out.png", "%2e%2e/out.png", "/etc/passwd"}) {
+    EXPECT_TRUE(refuses(gltf(R"({"uri": ")" + std::string(uri) + "\"}"),
+                        "it lies outside of the folder of the glTF"));
+    EXPECT_NE(diagnostics_.text().find("error[outside-reference]"), std::string::npos);
+  }
+  EXPECT_TRUE(refuses(gltf(R"({"uri": "."})"), "cannot read the image \".\" of"));
+}
+
+TEST_F(GltfTextures, ThatNoMaterialReadsMayBeMissing) {
+  folder_.write("m.bin", testing::square_data());
+  EXPECT_TRUE(load(gltf(R"({"uri": "no.png"}, {"uri": "../no.png"})", R"({"source": 0})", R"("extras": 1)"),
+                   "m.gltf"))
+      << diagnostics_.text();
+}
+
+TEST_F(GltfTextures, ThatLeaveTheirBufferAreRefused) {
+  const std::string glb =
+      replaced(testing::textured_glb("no image"), "\"byteOffset\": 156", "\"byteOffset\": 165");
+  EXPECT_FALSE(load(glb));
+  EXPECT_NE(diagnostics_.text().find("error[bad-image]: cannot read the image 0 of"), std::string::npos)
+      << diagnostics_.text();
+}
+
+TEST_F(GltfTextures, ThatLeadNowhereAreRefused) {
+  const std::string image = R"({"uri": "m.bin"})", texture = R"({"source": 0})";
+  EXPECT_TRUE(refuses(gltf(image, R"({"source": 1})"), "error[bad-image]: cannot read the texture 0 of"));
+  EXPECT_TRUE(refuses(gltf(image, R"({"source": 1})"), "the image 1 does not exist"));
+  EXPECT_TRUE(refuses(gltf(image, "{}"), "it has no image"));
+  EXPECT_TRUE(
+      refuses(gltf(image, texture, R"("baseColorTexture": {"index": 1})"), "cannot read the texture 1 of"));
+  EXPECT_TRUE(refuses(gltf(image, texture, R"("baseColorTexture": {})"), "/baseColorTexture has no index"));
+}
+
+TEST_F(GltfTextures, OfIndicesThatAreNoneAreRefused) {
+  const std::string image = R"({"uri": "m.bin"})", none = ", not a whole number from 0 to 2147483647";
+  for (const std::string bad : {"-1", "1e18", "1000000000000000000", "4294967296", "0.5"}) {
+    const std::string index = R"({"index": )" + bad + "}", message = " is " + bad + none;
+    for (const char* key : {"baseColorTexture", "metallicRoughnessTexture"}) {
+      const std::string reference = "\"" + std::string(key) + "\": ";
+      EXPECT_TRUE(refuses(gltf(image, R"({"source": 0})", reference + index), message)) << key;
+    }
+    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
+      const std::string reference =
+          "\"extras\": 1}, \"" + std::string(key) + "\": " + index + ", \"extras\": {";
+      EXPECT_TRUE(refuses(gltf(image, R"({"source": 0})", reference), message)) << key;
+    }
+    EXPECT_TRUE(refuses(gltf(image, R"({"source": )" + bad + "}"), "/textures/0/source" + message));
+    EXPECT_TRUE(refuses(gltf(R"({"bufferView": )" + bad + "}"), "/images/0/bufferView" + message));
+  }
+}
+
+}  // namespace
+}  // namespace isoshade
