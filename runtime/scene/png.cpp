@@ -80,10 +80,14 @@ Decoded decode_by_stb(std::string_view bytes) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (!(is_png(bytes) || bytes.starts_with("\xff\xd8\xff")) ||
-      stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
+  if (!is_png(bytes) && !bytes.starts_with("\xff\xd8\xff"))
     return {{}, "it is no PNG, JPEG, HDR or EXR file"};
+  if (is_png(bytes) && bytes.size() >= 24 && bytes.substr(12, 4) == "IHDR") {  // stb would tell no size
+    std::string reason = refuse_size(big_endian(bytes, 16), big_endian(bytes, 20));
+    if (!reason.empty()) return {{}, std::move(reason)};
   }
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
+    return {{}, "its header is damaged"};
   if (std::string reason = refuse_size(width, height); !reason.empty()) return {{}, std::move(reason)};
   if (is_png(bytes) && !unpacks_to_its_rows(bytes, width, height))
     return {{}, "its data do not unpack to what its size needs"};

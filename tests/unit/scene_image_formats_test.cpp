@@ -69,10 +69,11 @@ TEST(ImageFormats, ExrIsReadBitForBit) {
 
 TEST(ImageFormats, SidesAreCheckedBeforeAnythingIsUnpacked) {
   for (const uint32_t side : {8193u, 0x7fffffffu, 0xffffffffu, 0u}) {
-    EXPECT_FALSE(scene::decode_image(png_file(side, 1, 8, 0, {std::string(1, '\0')})).image) << side;
-    EXPECT_FALSE(scene::decode_image(png_file(1, side, 8, 0, {std::string(1, '\0')})).image) << side;
+    const std::string reason = "a side is not from 1 to 8192 pixels";
+    EXPECT_EQ(scene::decode_image(png_file(side, 1, 8, 0, {std::string(1, '\0')})).reason, reason) << side;
+    EXPECT_EQ(scene::decode_image(png_file(1, side, 8, 0, {std::string(1, '\0')})).reason, reason) << side;
   }
-  EXPECT_NE(scene::decode_image(png_file(9000, 1, 8, 0, {""})).reason.find("8192"), std::string::npos);
+  EXPECT_EQ(scene::decode_image(png_file(1, 1, 3, 0, {""})).reason, "its header is damaged");
   EXPECT_FALSE(scene::decode_image("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n").image);
 }
 
