@@ -3,24 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "compiler/graph/code_text.h"
+#include "compiler/graph/expression_parser.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
-namespace {
 
 using support::Id;
 using support::quote;
-using Value = std::variant<Literal, Link>;
-using Token = CodeText::Token;
 
-struct Operand {
-  Value value = Literal{};
-  Place place;
-};
+namespace {
 
 Literal number_literal(float number) {
   Literal literal;
@@ -32,13 +25,6 @@ Literal boolean_literal(bool value) {
   Literal literal;
   literal.kind = Literal::Kind::boolean;
   literal.boolean = value;
-  return literal;
-}
-
-Literal string_literal(std::string_view text) {
-  Literal literal;
-  literal.kind = Literal::Kind::string;
-  literal.string = text;
   return literal;
 }
 
@@ -56,82 +42,9 @@ struct Binary {
 constexpr Binary binaries[] = {{"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {"<", 4}, {"<=", 4},
                                {">", 4},  {">=", 4}, {"+", 5},  {"-", 5},  {"*", 6}, {"/", 6}};
 
-class ExpressionParser {
- public:
-  ExpressionParser(Graph& graph, uint32_t root, const CodeText& code, support::Diagnostics& diagnostics)
-      : graph_(graph), root_(root), code_(code), diagnostics_(diagnostics), id_(graph.nodes[root].id) {
-    made_.root = root;
-    made_.first = made_.end = static_cast<uint32_t>(graph.nodes.size());
-    made_.code = code.text();
-    made_.ports = std::move(graph.nodes[root].ports);
-    used_.resize(made_.ports.size());
-    handed_on_.resize(made_.ports.size(), Link::unresolved);
-    token_ = code_.next(0);
-  }
+}  // namespace
 
-  void parse();
-
- private:
-  Operand choice();
-  Operand binary(int precedence);
-  Operand unary();
-  Operand postfix();
-  Operand primary();
-  Operand number();
-  Operand port_or_constant(const Token& name);
-  Operand call(const Token& name);
-  Operand type_call(const Token& name, Type type, std::vector<Operand> arguments, Place place);
-
-  /// Appends a node; `shown` is what stands for it in the code.
-  uint32_t add(std::string_view type, Node::Origin origin, std::string_view shown, Place place);
-  void give(uint32_t node, std::string_view port, std::string_view shown, Operand operand);
-  /// An operator's node; `shown` has what its operands are called.
-  struct Part {
-    std::string_view shown;
-    Operand operand;
-  };
-  Operand operation(std::string_view row, const Token& sign, Place place, std::vector<Part> parts);
-  /// A node that hands on a value, so that it can be linked to.
-  Operand handed_on(Value value, std::string_view shown, Place place);
-  Operand link_to(uint32_t node, Place place) const;
-  void become_root(Operand result);
-
-  bool is(std::string_view symbol) const {
-    return token_.kind == CodeText::Kind::symbol && token_.text == symbol;
-  }
-  Token advance() {
-    last_end_ = token_.end;
-    return std::exchange(token_, code_.next(token_.end));
-  }
-  bool take(std::string_view symbol) {
-    if (!is(symbol)) return false;
-    advance();
-    return true;
-  }
-  void expect(std::string_view symbol, std::string_view why);
-  /// What to write for a sign of other languages that stands here.
-  std::string_view way_out() const;
-  /// Reports the first error only: what follows is read in a wrong light.
-  Operand fail(Place place, std::string message, std::string_view fix = {});
-  bool too_deep();
-  Place place_of(const Token& token) const { return code_.place(token.begin, token.end); }
-  Place since(Place first) const { return {first.begin, code_.place(last_end_, last_end_).begin}; }
-
-  Graph& graph_;
-  uint32_t root_;
-  const CodeText& code_;
-  support::Diagnostics& diagnostics_;
-  std::string id_;
-  Expression made_;
-  std::vector<bool> used_;           ///< of the ports
-  std::vector<uint32_t> handed_on_;  ///< the node that hands on a port
-  Token token_;
-  uint32_t last_end_ = 0;
-  int depth_ = 0;
-  bool failed_ = false;
-};
-
-Operand ExpressionParser::fail(Place place, std::string message, std::string_view fix) {
+ExpressionParser::Operand ExpressionParser::fail(Place place, std::string message, std::string_view fix) {
   if (!failed_) {
     support::Diagnostic& report =
         diagnostics_.report(Id::bad_expression, graph_.span(place), std::move(message));
@@ -165,52 +78,7 @@ bool ExpressionParser::too_deep() {
   return true;
 }
 
-uint32_t ExpressionParser::add(std::string_view type, Node::Origin origin, std::string_view shown,
-                               Place place) {
-  if (graph_.expression_nodes == max_expression_nodes && !failed_) {
-    diagnostics_.report(Id::too_large, graph_.span(place),
-                        "the expressions of a document are more than " +
-                            std::to_string(max_expression_nodes) + " operations");
-    failed_ = true;
-    fail(place, {});
-  }
-  if (failed_) return root_;
-  ++graph_.expression_nodes;
-  Node node;
-  node.id = id_;
-  node.type = type;
-  node.shown = shown;
-  node.origin = origin;
-  node.id_place = node.type_place = node.place = place;
-  graph_.nodes.push_back(std::move(node));
-  return static_cast<uint32_t>(graph_.nodes.size() - 1);
-}
-
-void ExpressionParser::give(uint32_t node, std::string_view port, std::string_view shown, Operand operand) {
-  if (failed_) return;
-  graph_.nodes[node].ports.push_back(
-      {std::string(port), std::move(operand.value), operand.place, operand.place, std::string(shown)});
-}
-
-Operand ExpressionParser::link_to(uint32_t node, Place place) const {
-  return {Link{graph_.nodes[node].shown, {}, place, node}, place};
-}
-
-Operand ExpressionParser::handed_on(Value value, std::string_view shown, Place place) {
-  const uint32_t node = add("constant", Node::Origin::operation, shown, place);
-  give(node, "value", "the value", {std::move(value), place});
-  return link_to(node, place);
-}
-
-Operand ExpressionParser::operation(std::string_view row, const Token& sign, Place place,
-                                    std::vector<Part> parts) {
-  const uint32_t node = add(row, Node::Origin::call, row == "?:" ? row : sign.text, place_of(sign));
-  for (size_t i = 0; i < parts.size(); ++i)
-    give(node, std::to_string(i + 1), parts[i].shown, std::move(parts[i].operand));
-  return link_to(node, place);
-}
-
-Operand ExpressionParser::choice() {
+ExpressionParser::Operand ExpressionParser::choice() {
   ++depth_;
   Operand condition = too_deep() ? Operand{} : binary(1);
   if (is("?")) {
@@ -228,7 +96,7 @@ Operand ExpressionParser::choice() {
   return condition;
 }
 
-Operand ExpressionParser::binary(int precedence) {
+ExpressionParser::Operand ExpressionParser::binary(int precedence) {
   Operand left = unary();
   while (token_.kind == CodeText::Kind::symbol) {
     const auto* row = std::ranges::find(binaries, token_.text, &Binary::text);
@@ -242,7 +110,7 @@ Operand ExpressionParser::binary(int precedence) {
   return left;
 }
 
-Operand ExpressionParser::unary() {
+ExpressionParser::Operand ExpressionParser::unary() {
   if (!is("-") && !is("+") && !is("!")) return postfix();
   ++depth_;
   const Token sign = advance();
@@ -260,7 +128,7 @@ Operand ExpressionParser::unary() {
   return operation("negate", sign, place, {{"the operand", std::move(operand)}});
 }
 
-Operand ExpressionParser::postfix() {
+ExpressionParser::Operand ExpressionParser::postfix() {
   Operand operand = primary();
   const int depth = depth_;
   while (is(".")) {
@@ -284,7 +152,7 @@ Operand ExpressionParser::postfix() {
   return operand;
 }
 
-Operand ExpressionParser::primary() {
+ExpressionParser::Operand ExpressionParser::primary() {
   const Place start = place_of(token_);
   switch (token_.kind) {
     case CodeText::Kind::number: return number();
@@ -308,7 +176,7 @@ Operand ExpressionParser::primary() {
   return fail(start, quote(token_.text) + " means nothing in an expression");
 }
 
-Operand ExpressionParser::number() {
+ExpressionParser::Operand ExpressionParser::number() {
   const Token token = advance();
   const std::optional<float> number = support::parse_float(token.text);
   if (!number || !std::isfinite(*number))
@@ -321,7 +189,7 @@ Operand ExpressionParser::number() {
   return {std::move(literal), place_of(token)};
 }
 
-Operand ExpressionParser::port_or_constant(const Token& name) {
+ExpressionParser::Operand ExpressionParser::port_or_constant(const Token& name) {
   const Place place = place_of(name);
   if (name.text == "true" || name.text == "false") return {boolean_literal(name.text == "true"), place};
   const auto found = std::ranges::find(made_.ports, name.text, &Port::name);
@@ -350,7 +218,7 @@ Operand ExpressionParser::port_or_constant(const Token& name) {
   return link_to(handed_on_[index], place);
 }
 
-Operand ExpressionParser::call(const Token& name) {
+ExpressionParser::Operand ExpressionParser::call(const Token& name) {
   ++depth_;
   advance();
   std::vector<Operand> arguments;
@@ -376,52 +244,6 @@ Operand ExpressionParser::call(const Token& name) {
   return link_to(node, place);
 }
 
-Operand ExpressionParser::type_call(const Token& name, Type type, std::vector<Operand> arguments,
-                                    Place place) {
-  const std::string type_text(name.text);
-  const int count = float_count(type);
-  const bool tuple = count >= 2 && count <= 4;
-  if (!tuple && type != Type::floating && type != Type::integer && type != Type::boolean)
-    return fail(place_of(name), "an expression makes no " + type_text,
-                "make it by a node and give the expression a port for it");
-  if (arguments.size() == 1) {
-    const uint32_t node = add("convert", Node::Origin::operation, name.text, place_of(name));
-    give(node, "in", "the argument", std::move(arguments[0]));
-    give(node, "to", "the type", {string_literal(name.text), place_of(name)});
-    return link_to(node, place);
-  }
-  if (!tuple || arguments.size() != static_cast<size_t>(count))
-    return fail(place_of(name), type_text + " takes 1 " +
-                                    (tuple ? "or " + std::to_string(count) + " arguments" : "argument") +
-                                    ", not " + std::to_string(arguments.size()));
-  const uint32_t node =
-      add("combine" + std::to_string(count), Node::Origin::operation, name.text, place_of(name));
-  for (size_t i = 0; i < arguments.size(); ++i) {
-    const std::string position = std::to_string(i + 1);
-    give(node, "in" + position, "argument " + position, std::move(arguments[i]));
-  }
-  if (count > 2) give(node, "to", "the type", {string_literal(name.text), place_of(name)});
-  return link_to(node, place);
-}
-
-void ExpressionParser::become_root(Operand result) {
-  auto* link = std::get_if<Link>(&result.value);
-  const auto last = static_cast<uint32_t>(graph_.nodes.size() - 1);
-  if (link == nullptr || link->node != last || !link->selectors.empty() || last == root_) {
-    result = handed_on(std::move(result.value), code_.text(), result.place);
-    return become_root(std::move(result));
-  }
-  // What is computed last was appended last.
-  Node& root = graph_.nodes[root_];
-  Node& made = graph_.nodes[last];
-  root.type = std::move(made.type);
-  root.shown = std::move(made.shown);
-  root.origin = made.origin;
-  root.type_place = made.type_place;
-  root.ports = std::move(made.ports);
-  graph_.nodes.pop_back();
-}
-
 void ExpressionParser::parse() {
   Operand result = choice();
   if (!failed_ && token_.kind != CodeText::Kind::end)
@@ -438,8 +260,6 @@ void ExpressionParser::parse() {
   made_.end = static_cast<uint32_t>(graph_.nodes.size());
   graph_.expressions.push_back(std::move(made_));
 }
-
-}  // namespace
 
 void expand_expression(Graph& graph, uint32_t root, const Document& document, const Json& code,
                        support::Diagnostics& diagnostics) {

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/graph/expression_parser.h"
+
+namespace isoshade::graph {
+
+using support::Id;
+
+namespace {
+
+Literal string_literal(std::string_view text) {
+  Literal literal;
+  literal.kind = Literal::Kind::string;
+  literal.string = text;
+  return literal;
+}
+
+}  // namespace
+
+uint32_t ExpressionParser::add(std::string_view type, Node::Origin origin, std::string_view shown,
+                               Place place) {
+  if (graph_.expression_nodes == max_expression_nodes && !failed_) {
+    diagnostics_.report(Id::too_large, graph_.span(place),
+                        "the expressions of a document are more than " +
+                            std::to_string(max_expression_nodes) + " operations");
+    failed_ = true;
+    fail(place, {});
+  }
+  if (failed_) return root_;
+  ++graph_.expression_nodes;
+  Node node;
+  node.id = id_;
+  node.type = type;
+  node.shown = shown;
+  node.origin = origin;
+  node.id_place = node.type_place = node.place = place;
+  graph_.nodes.push_back(std::move(node));
+  return static_cast<uint32_t>(graph_.nodes.size() - 1);
+}
+
+void ExpressionParser::give(uint32_t node, std::string_view port, std::string_view shown, Operand operand) {
+  if (failed_) return;
+  graph_.nodes[node].ports.push_back(
+      {std::string(port), std::move(operand.value), operand.place, operand.place, std::string(shown)});
+}
+
+ExpressionParser::Operand ExpressionParser::link_to(uint32_t node, Place place) const {
+  return {Link{graph_.nodes[node].shown, {}, place, node}, place};
+}
+
+ExpressionParser::Operand ExpressionParser::handed_on(Value value, std::string_view shown, Place place) {
+  const uint32_t node = add("constant", Node::Origin::operation, shown, place);
+  give(node, "value", "the value", {std::move(value), place});
+  return link_to(node, place);
+}
+
+ExpressionParser::Operand ExpressionParser::operation(std::string_view row, const Token& sign, Place place,
+                                                      std::vector<Part> parts) {
+  const uint32_t node = add(row, Node::Origin::call, row == "?:" ? row : sign.text, place_of(sign));
+  for (size_t i = 0; i < parts.size(); ++i)
+    give(node, std::to_string(i + 1), parts[i].shown, std::move(parts[i].operand));
+  return link_to(node, place);
+}
+
+ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type type,
+                                                      std::vector<Operand> arguments, Place place) {
+  const std::string type_text(name.text);
+  const int count = float_count(type);
+  const bool tuple = count >= 2 && count <= 4;
+  if (!tuple && type != Type::floating && type != Type::integer && type != Type::boolean)
+    return fail(place_of(name), "an expression makes no " + type_text,
+                "make it by a node and give the expression a port for it");
+  if (arguments.size() == 1) {
+    const uint32_t node = add("convert", Node::Origin::operation, name.text, place_of(name));
+    give(node, "in", "the argument", std::move(arguments[0]));
+    give(node, "to", "the type", {string_literal(name.text), place_of(name)});
+    return link_to(node, place);
+  }
+  if (!tuple || arguments.size() != static_cast<size_t>(count))
+    return fail(place_of(name), type_text + " takes 1 " +
+                                    (tuple ? "or " + std::to_string(count) + " arguments" : "argument") +
+                                    ", not " + std::to_string(arguments.size()));
+  const uint32_t node =
+      add("combine" + std::to_string(count), Node::Origin::operation, name.text, place_of(name));
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    const std::string position = std::to_string(i + 1);
+    give(node, "in" + position, "argument " + position, std::move(arguments[i]));
+  }
+  if (count > 2) give(node, "to", "the type", {string_literal(name.text), place_of(name)});
+  return link_to(node, place);
+}
+
+void ExpressionParser::become_root(Operand result) {
+  auto* link = std::get_if<Link>(&result.value);
+  const auto last = static_cast<uint32_t>(graph_.nodes.size() - 1);
+  if (link == nullptr || link->node != last || !link->selectors.empty() || last == root_) {
+    result = handed_on(std::move(result.value), code_.text(), result.place);
+    return become_root(std::move(result));
+  }
+  // What is computed last was appended last.
+  Node& root = graph_.nodes[root_];
+  Node& made = graph_.nodes[last];
+  root.type = std::move(made.type);
+  root.shown = std::move(made.shown);
+  root.origin = made.origin;
+  root.type_place = made.type_place;
+  root.ports = std::move(made.ports);
+  graph_.nodes.pop_back();
+}
+
+}  // namespace isoshade::graph

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parser of expressions. expression.cpp has the grammar, expression_nodes.cpp the nodes that it makes.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "compiler/graph/code_text.h"
+#include "compiler/graph/expression.h"
+
+namespace isoshade::graph {
+
+class ExpressionParser {
+ public:
+  ExpressionParser(Graph& graph, uint32_t root, const CodeText& code, support::Diagnostics& diagnostics)
+      : graph_(graph), root_(root), code_(code), diagnostics_(diagnostics), id_(graph.nodes[root].id) {
+    made_.root = root;
+    made_.first = made_.end = static_cast<uint32_t>(graph.nodes.size());
+    made_.code = code.text();
+    made_.ports = std::move(graph.nodes[root].ports);
+    used_.resize(made_.ports.size());
+    handed_on_.resize(made_.ports.size(), Link::unresolved);
+    token_ = code_.next(0);
+  }
+
+  void parse();
+
+ private:
+  using Token = CodeText::Token;
+  using Value = std::variant<Literal, Link>;
+  struct Operand {
+    Value value = Literal{};
+    Place place;
+  };
+
+  Operand choice();
+  Operand binary(int precedence);
+  Operand unary();
+  Operand postfix();
+  Operand primary();
+  Operand number();
+  Operand port_or_constant(const Token& name);
+  Operand call(const Token& name);
+  Operand type_call(const Token& name, Type type, std::vector<Operand> arguments, Place place);
+
+  /// Appends a node; `shown` is what stands for it in the code.
+  uint32_t add(std::string_view type, Node::Origin origin, std::string_view shown, Place place);
+  void give(uint32_t node, std::string_view port, std::string_view shown, Operand operand);
+  /// An operator's node; `shown` has what its operands are called.
+  struct Part {
+    std::string_view shown;
+    Operand operand;
+  };
+  Operand operation(std::string_view row, const Token& sign, Place place, std::vector<Part> parts);
+  /// A node that hands on a value, so that it can be linked to.
+  Operand handed_on(Value value, std::string_view shown, Place place);
+  Operand link_to(uint32_t node, Place place) const;
+  void become_root(Operand result);
+
+  bool is(std::string_view symbol) const {
+    return token_.kind == CodeText::Kind::symbol && token_.text == symbol;
+  }
+  Token advance() {
+    last_end_ = token_.end;
+    return std::exchange(token_, code_.next(token_.end));
+  }
+  bool take(std::string_view symbol) {
+    if (!is(symbol)) return false;
+    advance();
+    return true;
+  }
+  void expect(std::string_view symbol, std::string_view why);
+  /// What to write for a sign of other languages that stands here.
+  std::string_view way_out() const;
+  /// Reports the first error only: what follows is read in a wrong light.
+  Operand fail(Place place, std::string message, std::string_view fix = {});
+  bool too_deep();
+  Place place_of(const Token& token) const { return code_.place(token.begin, token.end); }
+  Place since(Place first) const { return {first.begin, code_.place(last_end_, last_end_).begin}; }
+
+  Graph& graph_;
+  uint32_t root_;
+  const CodeText& code_;
+  support::Diagnostics& diagnostics_;
+  std::string id_;
+  Expression made_;
+  std::vector<bool> used_;           ///< of the ports
+  std::vector<uint32_t> handed_on_;  ///< the node that hands on a port
+  Token token_;
+  uint32_t last_end_ = 0;
+  int depth_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace isoshade::graph
