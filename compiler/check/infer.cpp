@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
-
 #include "compiler/check/links.h"
 #include "compiler/check/literals.h"
-#include "compiler/check/work.h"
-#include "compiler/support/parse_number.h"
+#include "compiler/check/node_inference.h"
 
 namespace isoshade::check {
-namespace {
-
 using graph::Link;
 using graph::Literal;
 using nodes::PortType;
 using nodes::Variable;
 using support::Id;
 using support::quote;
-
-std::string name_of(Type type) { return std::string(graph::type_name(type)); }
 
 std::string conversion_hint(const Link& link, Type to) {
   if (link.node != Link::unresolved) return "convert it: " + name_of(to) + "(...)";
@@ -43,95 +36,6 @@ Type tuple_of(size_t numbers, nodes::TypeSet accepts) {
     default: return !accepts.has(Type::vector4) && accepts.has(Type::color4) ? Type::color4 : Type::vector4;
   }
 }
-
-/// One node of the table or a function: ports to types, types to outputs.
-class NodeInference {
- public:
-  NodeInference(Work& work, uint32_t index)
-      : work_(work), node_(work.typed.nodes[index]), source_(work.graph().nodes[index]), index_(index) {}
-
-  void infer() {
-    for (uint32_t i = 0; i < node_.operand_count; ++i) {
-      const Link* link = given(i).link;
-      if (link != nullptr && !select(work_, *link, operand(i))) fail();
-    }
-    if (!broken()) node_.row != nullptr ? infer_row() : infer_call();
-  }
-
- private:
-  struct Settled {
-    std::optional<Type> type;
-    size_t port = 0;  ///< that settled it
-  };
-
-  Given& given(size_t i) { return work_.given[node_.first_operand + i]; }
-  Operand& operand(size_t i) { return work_.typed.operands[node_.first_operand + i]; }
-  const Literal* literal(size_t i) {
-    const Given& at = given(i);
-    return at.port != nullptr && at.link == nullptr ? std::get_if<Literal>(&at.port->value) : nullptr;
-  }
-  bool broken() const { return work_.broken[index_]; }
-  void fail() { work_.broken[index_] = true; }
-  support::Diagnostic& report(Id id, size_t port, std::string message) {
-    fail();
-    const Given& at = given(port);
-    return work_.report(id, at.port != nullptr ? at.port->place : source_.id_place, std::move(message));
-  }
-  /// `"in1" of "add"`; of what stands in an expression `the left side of "+"`.
-  std::string of_node(size_t i) {
-    const graph::Port* port = given(i).port;
-    const std::string_view name = node_.row != nullptr ? node_.row->ports[i].name
-                                                       : std::string_view(node_.callee->graph.inputs[i].name);
-    return (port != nullptr && !port->shown.empty() ? port->shown : quote(name)) + " of " +
-           quote(source_.label());
-  }
-  std::string of_other(size_t i) {
-    const graph::Port* port = given(i).port;
-    return port != nullptr && !port->shown.empty() ? port->shown : quote(node_.row->ports[i].name);
-  }
-
-  // Rows of the node table.
-  const nodes::Port& port(size_t i) const { return node_.row->ports[i]; }
-  /// Of a port that nothing has settled: a comparison that chooses between nothing gives its truth.
-  Type natural_type(size_t i) {
-    bool truth = true;
-    for (size_t k = 0; k < node_.operand_count; ++k)
-      if (port(k).type.variable == port(i).type.variable)
-        truth = truth && given(k).port == nullptr && std::holds_alternative<bool>(port(k).value);
-    return truth ? Type::boolean : Type::floating;
-  }
-  bool is_value(size_t i) const { return port(i).type.kind == PortType::Kind::value; }
-  Settled& settled(size_t i) { return settled_[static_cast<size_t>(port(i).type.variable)]; }
-  Type type_of(PortType type) const {
-    if (type.variable != Variable::none) return *settled_[static_cast<size_t>(type.variable)].type;
-    Type only{};
-    while (!type.accepts.has(only)) only = static_cast<Type>(static_cast<int>(only) + 1);
-    return only;
-  }
-
-  void infer_row();
-  void read_text(size_t i);
-  void read_integer(size_t i);
-  void read_image(size_t i, std::string_view name);
-  void read_type_name(size_t i, std::string_view text);
-  void join(size_t i, Type type);
-  void settle_by_links();
-  void settle_by_literals();
-  void check_settled();
-  void place_value(size_t i);
-  void check_condition();
-  // Functions.
-  void infer_call();
-  void settle_instance();
-  void place_argument(size_t i);
-  void check_range(size_t i, const graph::Input& input);
-
-  Work& work_;
-  Node& node_;
-  const graph::Node& source_;
-  uint32_t index_;
-  std::array<Settled, 3> settled_;  ///< by Variable
-};
 
 void NodeInference::infer_row() {
   const size_t count = node_.operand_count;
@@ -317,83 +221,7 @@ void NodeInference::check_condition() {
     report(refusal->id, refusal->port, std::move(refusal->message));
 }
 
-/// What is linked to inputs of any type tells the type, else literals do.
-void NodeInference::settle_instance() {
-  Settled any;
-  const auto join_any = [&](size_t i, Type type) {
-    if (type == Type::integer) type = Type::floating;
-    const std::optional<Type> both = any.type ? joined(*any.type, type) : type;
-    if (!both || !nodes::float_types.has(type)) {
-      support::Diagnostic& wrong =
-          report(Id::type_mismatch, i,
-                 of_node(i) + (both ? " takes " + described(nodes::float_types) + ", not " + name_of(type)
-                                    : " is " + name_of(type) + ", but " +
-                                          quote(node_.callee->graph.inputs[any.port].name) + " is " +
-                                          name_of(*any.type)));
-      if (!both && given(i).link != nullptr) wrong.suggest(conversion_hint(*given(i).link, *any.type));
-    } else if (!any.type || *both != *any.type) {
-      any = {*both, i};
-    }
-  };
-  const std::vector<graph::Input>& inputs = node_.callee->graph.inputs;
-  for (size_t i = 0; i < inputs.size() && !broken(); ++i)
-    if (inputs[i].any && given(i).link != nullptr) join_any(i, operand(i).type);
-  for (size_t i = 0; i < inputs.size() && !broken(); ++i) {
-    const Literal* value = literal(i);
-    if (!inputs[i].any || value == nullptr || (any.type && fits(*value, *any.type))) continue;
-    const size_t numbers = value->numbers.size();
-    if (numbers >= 2 && numbers <= 4) join_any(i, tuple_of(numbers, nodes::float_types));
-  }
-  if (broken() || !any.type || *any.type == Type::floating) return;
-  const support::Span where = work_.span(source_.type_place);
-  node_.callee = work_.library.instance(node_.callee, *any.type, where, work_.diagnostics);
-  if (node_.callee == nullptr) fail();
-}
-
-void NodeInference::infer_call() {
-  if (node_.callee->graph.is_generic()) settle_instance();
-  if (broken()) return;
-  for (size_t i = 0; i < node_.operand_count; ++i) place_argument(i);
-  node_.first_type = static_cast<uint32_t>(work_.typed.types.size());
-  node_.output_count = static_cast<uint32_t>(node_.callee->outputs.size());
-  for (const Operand& output : node_.callee->outputs) work_.typed.types.push_back(output.needed);
-}
-
-void NodeInference::place_argument(size_t i) {
-  const graph::Input& input = node_.callee->graph.inputs[i];
-  Operand& to = operand(i);
-  if (given(i).link != nullptr) {
-    to.needed = input.type;
-    if (converts(to.type, input.type)) return;
-    report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(input.type) + ", not " + name_of(to.type))
-        .suggest(conversion_hint(*given(i).link, input.type));
-    return;
-  }
-  const Literal& value = literal(i) != nullptr ? *literal(i) : *input.value;
-  if (!fits(value, input.type)) {
-    report(Id::wrong_type, i, of_node(i) + " is " + name_of(input.type) + ", not " + described(value));
-    return;
-  }
-  check_range(i, input);
-  place(work_.typed, value, input.type, to);
-}
-
-void NodeInference::check_range(size_t i, const graph::Input& input) {
-  const Literal* value = literal(i);
-  if (value == nullptr) return;
-  const auto check = [&](float number) {
-    const bool low = input.min && number < *input.min;
-    if (!low && !(input.max && number > *input.max)) return true;
-    report(Id::out_of_range, i,
-           of_node(i) + (low ? " is at least " + support::format_float(*input.min)
-                             : " is at most " + support::format_float(*input.max)))
-        .note(node_.callee->graph.span(input.place), "as declared here");
-    return false;
-  };
-  if (value->kind == Literal::Kind::number) check(value->number);
-  for (const float number : value->numbers)
-    if (!check(number)) return;
-}
+namespace {
 
 /// What an output of the document needs, given what it reads.
 void infer_output(Work& work, size_t i) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/graph/graph.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
@@ -146,6 +149,20 @@ std::optional<Literal> named_value(const std::vector<std::string>& names, std::s
   literal.integer = found - names.begin();
   literal.number = static_cast<float>(literal.integer);
   return literal;
+}
+
+std::string described_names(const std::vector<std::string>& names) {
+  std::string list = "it is ";
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " or " : ", ";
+    list += std::to_string(i) + " (" + names[i] + ")";
+  }
+  return list;
+}
+
+std::string limit_text(Type type, float limit) {
+  const bool whole = type == Type::integer && limit == std::floor(limit) && std::abs(limit) < 0x1p31f;
+  return whole ? std::to_string(static_cast<int64_t>(limit)) : support::format_float(limit);
 }
 
 bool fits(Type type, const Literal& literal) {

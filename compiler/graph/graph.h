@@ -193,6 +193,12 @@ std::optional<Link> parse_link(const support::Source& source, std::string_view t
 /// The number that is meant by the name of one of an input's values, as a literal; nothing for other names.
 std::optional<Literal> named_value(const std::vector<std::string>& names, std::string_view name);
 
+/// For messages about the values of an integer that have names: "it is 0 (soft), 1 (hard) or 2 (none)".
+std::string described_names(const std::vector<std::string>& names);
+
+/// For messages about a number outside of a range: a limit as a value of the type is written.
+std::string limit_text(Type type, float limit);
+
 /// Whether a literal is a value of the type as it stands: a boolean, an integer in 32 bits, a number, an
 /// array of as many numbers as the type has floats, a string.
 bool fits(Type type, const Literal& literal);

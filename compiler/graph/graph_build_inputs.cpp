@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "compiler/graph/graph_builder.h"
-#include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
@@ -67,10 +66,17 @@ void GraphBuilder::check_value(const Input& input, const Json& json) {
   const auto check = [&](float value, const Json& at) {
     const bool low = input.min && value < *input.min;
     if (!low && !(input.max && value > *input.max)) return;
+    if (!input.names.empty()) {
+      diagnostics_
+          .report(Id::out_of_range, document_.span(at),
+                  quote(input.name) + " has no value " + limit_text(input.type, value))
+          .note(described_names(input.names));
+      return;
+    }
     diagnostics_.report(Id::out_of_range, document_.span(at),
                         "the value of " + quote(input.name) +
-                            (low ? " is less than its min " + support::format_float(*input.min)
-                                 : " is greater than its max " + support::format_float(*input.max)));
+                            (low ? " is less than its min " + limit_text(input.type, *input.min)
+                                 : " is greater than its max " + limit_text(input.type, *input.max)));
   };
   if (input.value->kind == Literal::Kind::number) check(input.value->number, json);
   for (size_t i = 0; i < input.value->numbers.size(); ++i) check(input.value->numbers[i], json.items[i]);
@@ -118,9 +124,11 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
       const std::vector<std::string_view> names(input.names.begin(), input.names.end());
       input.value = named_value(input.names, value->string);
       if (!input.value)
-        diagnostics_.report_unknown(Id::unknown_choice, document_.span(*value),
-                                    "no value of " + quote(input.name) + " is called " + quote(value->string),
-                                    value->string, names);
+        diagnostics_
+            .report_unknown(Id::unknown_choice, document_.span(*value),
+                            "no value of " + quote(input.name) + " is called " + quote(value->string),
+                            value->string, names)
+            .note(described_names(input.names));
     }
     input.value_place = place_of(*value);
   }

@@ -32,8 +32,10 @@ std::optional<uint32_t> GraphBuilder::switch_of(const Json& json) {
         .note(graph_.span(input.name_place), "the parameter");
     return std::nullopt;
   }
-  diagnostics_.report_unknown(Id::unknown_parameter, document_.span(json),
-                              "the " + std::string(kind_name(graph_.kind)) + " has no parameter " + quote(json.string), json.string, names);
+  diagnostics_.report_unknown(
+      Id::unknown_parameter, document_.span(json),
+      "the " + std::string(kind_name(graph_.kind)) + " has no parameter " + quote(json.string), json.string,
+      names);
   return std::nullopt;
 }
 

@@ -7,7 +7,6 @@
 
 #include "compiler/graph/files.h"
 #include "compiler/support/check.h"
-#include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/host_math.h"
 
@@ -56,16 +55,19 @@ void report_unknown(const scene::Object& object, const driver::Effect& effect, c
 }
 
 /// Whether every number of a value lies where the effect allows it.
-bool check_range(const driver::Field& field, const Literal& literal, const support::Span& where,
+bool check_range(const driver::Field& field, Type type, const Literal& literal, const support::Span& where,
                  Diagnostics& diagnostics) {
   std::vector<float> numbers = literal.numbers;
   if (literal.kind == Literal::Kind::number) numbers = {literal.number};
   for (float number : numbers) {
     const bool below = field.min && number < *field.min;
     if (!below && !(field.max && number > *field.max)) continue;
-    std::string range = below ? "at least " + support::format_float(*field.min)
-                              : "at most " + support::format_float(*field.max);
-    diagnostics.report(Id::out_of_range, where, "the parameter " + quote(field.name) + " is " + range);
+    const std::string fault = !field.names.empty() ? " has no value " + graph::limit_text(type, number)
+                              : below              ? " is at least " + graph::limit_text(type, *field.min)
+                                                   : " is at most " + graph::limit_text(type, *field.max);
+    support::Diagnostic& report =
+        diagnostics.report(Id::out_of_range, where, "the parameter " + quote(field.name) + fault);
+    if (!field.names.empty()) report.note(graph::described_names(field.names));
     return false;
   }
   return true;
@@ -85,14 +87,14 @@ bool check_fit(const Found& found, const Literal& literal, const support::Span& 
   if (literal.kind == Literal::Kind::string && !values.empty()) {
     if (graph::named_value(values, literal.string)) return true;
     std::vector<std::string_view> names(values.begin(), values.end());
-    support::Diagnostic& report = diagnostics.report_unknown(
-        Id::unknown_choice, where,
-        "no value of the parameter " + quote(name) + " is called " + quote(literal.string), literal.string,
-        names);
-    if (report.fix.empty()) report.note("they are called " + listed(values));
+    diagnostics
+        .report_unknown(Id::unknown_choice, where,
+                        "no value of the parameter " + quote(name) + " is called " + quote(literal.string),
+                        literal.string, names)
+        .note(graph::described_names(values));
     return false;
   }
-  if (graph::fits(type, literal)) return check_range(*found.field, literal, where, diagnostics);
+  if (graph::fits(type, literal)) return check_range(*found.field, type, literal, where, diagnostics);
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
   if (type == Type::filename) expected += ", a path in quotes";

@@ -140,7 +140,9 @@ TEST(CheckLibrary, NamesOfValuesAreNumbersInPorts) {
   };
   EXPECT_EQ(messages("1"), "");
   EXPECT_NE(messages("\"second\"").find("write 1, the value of that name"), std::string::npos);
-  EXPECT_NE(messages("2").find("error[out-of-range]"), std::string::npos);
+  EXPECT_NE(messages("2").find("error[out-of-range]: \"mode\" of \"pick\" has no value 2"),
+            std::string::npos);
+  EXPECT_NE(messages("-1").find("note: it is 0 (first) or 1 (second)"), std::string::npos);
 }
 
 TEST(CheckLibrary, DeepNestingIsRefused) {

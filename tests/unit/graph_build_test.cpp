@@ -259,7 +259,9 @@ TEST(Build, ValuesOfIntegersMayHaveNames) {
       first(with_inputs(R"("x": {"type": "integer", "enum": ["smooth", "shading"], "value": "smoth"})")),
       "unknown-choice: no value of \"x\" is called \"smoth\" | \"smoth\" | did you mean \"smooth\"?");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "b"], "value": 2})")),
-            "out-of-range: the value of \"x\" is greater than its max 1.0 | 2");
+            "out-of-range: \"x\" has no value 2 | 2");
+  EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "value": 7, "max": 5})")),
+            "out-of-range: the value of \"x\" is greater than its max 5 | 7");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "float", "enum": ["a", "b"]})")),
             "wrong-type: \"enum\" names the values of an integer, not of a float | [\"a\", \"b\"]");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": []})")),
