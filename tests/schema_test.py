@@ -70,6 +70,14 @@ SCENE = {
     "objects": {"o": {"mesh": {"type": "sphere", "radius": 2}, "effect": "e.json", "parameters": {"p": 1},
                       "repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"q": {"values": [1, 2]}}}]}},
 }
+EXTENSION = {
+    "isoshade": 1,
+    "scene": "s",
+    "extends": "other.json",
+    "camera": {"fov": 30},
+    "lights": {"sun": None, "lamp": {"range": 3}},
+    "objects": {"o": {"mesh": {"radius": 2}, "parameters": {"p": None, "q": 1}, "repeat": None}, "p": None},
+}
 
 # A document, the place of a value in it, and what is put there instead.
 BROKEN = [
@@ -115,6 +123,14 @@ BROKEN = [
     (SCENE, "objects/o/repeat/0/parameters/q", {"from": 1}),
     (SCENE, "size", [0, 10]),
     (SCENE, "sizes", [10, 10]),
+    (SCENE, "lights/sun", None),
+    (EXTENSION, "extends", ...),
+    (EXTENSION, "extends", None),
+    (EXTENSION, "scene", ...),
+    (EXTENSION, "camera", 1),
+    (EXTENSION, "lights/lamp", 1),
+    (EXTENSION, "objects/o/mash", "sphere"),
+    (EXTENSION, "objects/o/repeat", [1, 2, 3, 4]),
 ]
 
 
@@ -153,7 +169,7 @@ class Schema(unittest.TestCase):
             self.assertEqual(self.errors(json.loads(path.read_text())), [], path)
 
     def test_documents_of_every_kind_are_valid(self):
-        for document in FUNCTION, EFFECT, SCENE:
+        for document in FUNCTION, EFFECT, SCENE, EXTENSION:
             self.assertEqual(self.errors(document), [])
 
     def test_documents_with_one_thing_wrong_are_not(self):

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
@@ -26,6 +27,8 @@ const Json* Json::find(std::string_view key) const {
   }
   return nullptr;
 }
+
+Json* Json::find(std::string_view key) { return const_cast<Json*>(std::as_const(*this).find(key)); }
 
 std::string_view kind_name(Json::Kind kind) {
   switch (kind) {

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "compiler/support/visible.h"
+
 namespace isoshade::graph {
 
 namespace fs = std::filesystem;
@@ -32,6 +34,19 @@ std::string home_of(const std::string& document_path) {
     if (fs::is_regular_file(folder / collection_marker, error)) return folder.string();
     if (folder == folder.parent_path()) return own.string();
   }
+}
+
+bool may_read(const std::string& path, const support::Span& where, const FileRule& rule,
+              support::Diagnostics& diagnostics) {
+  const support::Source& source = where.file;
+  if (source == nullptr || source->origin() == support::SourceFile::Origin::argument ||
+      rule.permits(canonical_path(path), home_of(source->path()))) {
+    return true;
+  }
+  diagnostics
+      .report(support::Id::outside_reference, where, support::quote(path) + " leads out of the folder tree")
+      .note(std::string(way_inside));
+  return false;
 }
 
 }  // namespace isoshade::graph

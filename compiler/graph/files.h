@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/support/diagnostics.h"
+
 namespace isoshade::graph {
 
 /// A file of this name, whatever is in it, marks the top folder of a collection of documents.
@@ -31,6 +33,11 @@ struct FileRule {
     return allow_outside || is_within(canonical, home) || is_within(canonical, library);
   }
 };
+
+/// Whether what is written at `where` may name the file; reports it if not. What the user names may lie anywhere: it
+/// stands nowhere, or in an argument of the command line.
+bool may_read(const std::string& path, const support::Span& where, const FileRule& rule,
+              support::Diagnostics& diagnostics);
 
 /// How a refusal ends: what to do about it.
 inline constexpr std::string_view way_inside =

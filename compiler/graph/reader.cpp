@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compiler/graph/files.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 
@@ -53,7 +54,7 @@ const Json* ObjectReader::value(std::string_view key, Need need) {
     return &json_.members[i].value;
   }
   if (need == Need::required && json_.kind == Json::Kind::object) {
-    diagnostics_.report(Id::missing_key, {document_.source, json_.begin, json_.begin + 1},
+    diagnostics_.report(Id::missing_key, {document_.source_of(json_), json_.begin, json_.begin + 1},
                         what_ + " needs the key " + quote(key));
   }
   return nullptr;
@@ -105,6 +106,11 @@ bool ObjectReader::boolean(std::string_view key, std::optional<bool> fallback) {
 std::string ObjectReader::string(std::string_view key, std::optional<std::string> fallback) {
   const Json* found = value_of_kind(key, Json::Kind::string, fallback ? Need::optional : Need::required);
   return found ? found->string : std::move(fallback).value_or("");
+}
+
+std::string ObjectReader::path(std::string_view key) {
+  const Json* found = value_of_kind(key, Json::Kind::string, Need::required);
+  return found ? path_beside(document_.source_of(*found)->path(), found->string) : "";
 }
 
 float ObjectReader::number(std::string_view key, Range range, std::optional<float> fallback) {

@@ -48,6 +48,8 @@ class ObjectReader {
 
   bool boolean(std::string_view key, std::optional<bool> fallback = {});
   std::string string(std::string_view key, std::optional<std::string> fallback = {});
+  /// A path, which counts from the folder of the text that has it; from the working directory if that is none.
+  std::string path(std::string_view key);
   /// Rounded once to float; denormals are zeros.
   float number(std::string_view key, Range range = {}, std::optional<float> fallback = {});
   /// As number(), of a key that may be left out.

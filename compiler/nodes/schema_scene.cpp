@@ -80,6 +80,28 @@ SchemaJson repeat_schema() {
                         {"parameters", map_schema(any_of({list, range}))}});
 }
 
+/// The same keys in a scene that extends another: none is needed, and null takes one away. What stands in objects that
+/// are told apart by their type is left to the scene that comes of both.
+SchemaJson changes_schema(const std::vector<SchemaKey>& keys) {
+  const SchemaJson null{{"type", "null"}}, object{{"type", "object"}};
+  const SchemaJson object_changes =
+      object_schema({{"mesh", any_of({reference("mesh"), object})},
+                     {"effect", any_of({string_schema(), null})},
+                     {"transform", any_of({object, null})},
+                     {"parameters", any_of({map_schema(any_of({reference("literal"), null})), null})},
+                     {"repeat", any_of({array_schema(reference("repeat"), 0, 3), null})}});
+  std::vector<SchemaKey> changes;
+  for (SchemaKey key : keys) {
+    if (key.name == "camera" || key.name == "output") key.schema = object;
+    if (key.name == "lights") key.schema = map_schema(any_of({object, null}));
+    if (key.name == "objects") key.schema = map_schema(any_of({object_changes, null}));
+    const bool of_every_document = key.name == "isoshade" || key.name == "scene";
+    changes.push_back(of_every_document ? key : SchemaKey{key.name, any_of({key.schema, null})});
+  }
+  changes.push_back({"extends", described(string_schema(), "path of the scene that this one changes"), true});
+  return object_schema(changes);
+}
+
 }  // namespace
 
 SchemaJson scene_schema(SchemaJson& definitions) {
@@ -114,7 +136,7 @@ SchemaJson scene_schema(SchemaJson& definitions) {
       {"posts", array_schema(reference("scenepost"), 0, 64)},
       {"output", reference("output")}};
   keys.insert(keys.end(), rest.begin(), rest.end());
-  return object_schema(keys);
+  return {{"if", {{"required", {"extends"}}}}, {"then", changes_schema(keys)}, {"else", object_schema(keys)}};
 }
 
 }  // namespace isoshade::nodes

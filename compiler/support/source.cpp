@@ -6,7 +6,8 @@
 
 namespace isoshade::support {
 
-SourceFile::SourceFile(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
+SourceFile::SourceFile(std::string path, std::string text, Origin origin)
+    : path_(std::move(path)), text_(std::move(text)), origin_(origin) {
   line_starts_.reserve(1 + std::count(text_.begin(), text_.end(), '\n'));
   // A byte order mark is no part of the first line: nobody sees it, so no column counts it.
   line_starts_.push_back(text_.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0);

@@ -13,11 +13,16 @@ namespace isoshade::support {
 /// A text that diagnostics can point into. Shared and immutable: spans keep it alive.
 class SourceFile {
  public:
-  SourceFile(std::string path, std::string text);
+  enum class Origin : uint8_t {
+    document,
+    argument,  ///< the user's own words on the command line, which may name any file
+  };
+  SourceFile(std::string path, std::string text, Origin origin = Origin::document);
 
   /// As the user gave it; "<stdin>" for standard input.
   const std::string& path() const { return path_; }
   const std::string& text() const { return text_; }
+  Origin origin() const { return origin_; }
 
   struct Position {
     uint32_t line;    ///< from 1
@@ -30,6 +35,7 @@ class SourceFile {
  private:
   std::string path_;
   std::string text_;
+  Origin origin_;
   std::vector<uint32_t> line_starts_;
 };
 

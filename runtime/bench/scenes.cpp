@@ -6,10 +6,9 @@
 #include <filesystem>
 
 #include "backends/reference/backend.h"
-#include "compiler/graph/document.h"
 #include "runtime/bench/errors.h"
 #include "runtime/render/render.h"
-#include "runtime/scene/scene.h"
+#include "runtime/scene/load.h"
 
 namespace isoshade::bench {
 
@@ -40,8 +39,8 @@ class SceneBench {
   bool run(const std::string& name) {
     const support::Source source =
         graph::read_source(options_.graphs + "/scenes/" + name + ".json", diagnostics_);
-    const auto document = source ? graph::parse_document(source, diagnostics_) : std::nullopt;
-    const auto scene = document ? scene::parse_scene(*document, diagnostics_) : std::nullopt;
+    const auto scene =
+        source != nullptr ? scene::load_scene(source, {}, library_.files(), diagnostics_) : std::nullopt;
     if (!scene) return false;
     options_.progress("reference of " + name);
     if (!draw_reference(*scene)) return false;

@@ -7,7 +7,7 @@
 #include "runtime/cli/scene_source.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/image_file.h"
-#include "runtime/scene/settings.h"
+#include "runtime/scene/load.h"
 
 namespace isoshade::cli {
 
@@ -41,14 +41,10 @@ bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnos
 }  // namespace
 
 std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
-                                       support::Diagnostics& diagnostics) {
+                                       const Common& common, support::Diagnostics& diagnostics) {
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return std::nullopt;
-  auto document = graph::parse_document(source, diagnostics);
-  if (document && !changes.settings.empty())
-    document = scene::apply_settings(*document, changes.settings, diagnostics);
-  if (!document) return std::nullopt;
-  auto scene = scene::parse_scene(*document, diagnostics);
+  auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics);
   if (!scene) return std::nullopt;
   if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
   if (changes.time) scene->time = *changes.time;
@@ -62,7 +58,7 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
   if (!scene::check_image_path(arguments.output, diagnostics) ||
       !may_write(arguments.output, {arguments.scene}, diagnostics))
     return false;
-  auto scene = load_scene(arguments.scene, arguments.changes, diagnostics);
+  auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
   if (!scene) return false;
   check::Library library = make_library(common);
   render::Options options;

@@ -90,7 +90,7 @@ class Verifier {
   }
 
   int verify_scene(const std::string& path) {
-    const auto scene = load_scene(path, arguments_.changes, diagnostics_);
+    const auto scene = load_scene(path, arguments_.changes, common_, diagnostics_);
     if (!scene) return failure;
     int result = success;
     std::vector<Size> sizes = arguments_.sizes;

@@ -130,17 +130,10 @@ bool Planner::compile_effects() {
   return true;
 }
 
-/// Whether the scene's document may name the file; what the user names has no place in a document.
+/// Whether the text at `where` may name the file; what the user names stands nowhere, or in an argument.
 bool Planner::may_read(const std::string& path, const support::Span& where) {
   const check::Library* library = options_.compiler.library;
-  const support::Source& scene = where.file;
-  if (library == nullptr || scene == nullptr ||
-      library->files().permits(graph::canonical_path(path), graph::home_of(scene->path()))) {
-    return true;
-  }
-  diagnostics_.report(Id::outside_reference, where, quote(path) + " leads out of the folder tree")
-      .note(std::string(graph::way_inside));
-  return false;
+  return library == nullptr || graph::may_read(path, where, library->files(), diagnostics_);
 }
 
 support::Source Planner::read_document(const std::string& path, const support::Span& where) {

@@ -183,7 +183,7 @@ MeshShape parse_mesh(const Document& document, const Json& json, Diagnostics& di
       read_count(reader, "segments", around, shape.segments);
       break;
     case MeshKind::gltf:
-      shape.file = path_beside(document, reader.string("file"));
+      shape.file = reader.path("file");
       shape.fit = reader.boolean("fit", false);
       break;
   }

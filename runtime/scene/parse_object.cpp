@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compiler/graph/files.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/parse_parts.h"
@@ -150,10 +149,6 @@ void check_parameter_names(const Object& object, Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::string path_beside(const Document& document, const std::string& path) {
-  return graph::path_beside(document.source->path(), path);
-}
-
 std::vector<Parameter> parse_parameters(const Document& document, const Json& json,
                                         Diagnostics& diagnostics) {
   std::vector<Parameter> parameters;
@@ -215,7 +210,7 @@ Object parse_object(const Document& document, const Member& member, Diagnostics&
     object.mesh = parse_mesh(document, *mesh, diagnostics);
     object.mesh_where = document.span(*mesh);
   }
-  object.effect = path_beside(document, reader.string("effect"));
+  object.effect = reader.path("effect");
   if (const Json* effect = reader.value("effect", Need::optional))
     object.effect_where = document.span(*effect);
   if (const Json* transform = reader.object("transform", Need::optional))

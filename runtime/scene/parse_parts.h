@@ -33,10 +33,6 @@ MeshShape parse_mesh(const graph::Document& document, const graph::Json& json,
 std::optional<graph::Literal> parse_literal(const graph::Document& document, const graph::Json& json,
                                             support::Diagnostics& diagnostics);
 
-/// A path in a document counts from the document's folder; from the working directory if it was read from
-/// standard input.
-std::string path_beside(const graph::Document& document, const std::string& path);
-
 inline glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 }  // namespace isoshade::scene

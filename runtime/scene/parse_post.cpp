@@ -58,7 +58,7 @@ Post parse_post(const Document& document, const Json& json, const std::vector<Po
   ObjectReader reader(document, json, "a post of the scene", diagnostics);
   post.name = reader.string("name");
   if (const Json* name = reader.value("name", Need::optional)) post.name_where = document.span(*name);
-  post.effect = path_beside(document, reader.string("effect"));
+  post.effect = reader.path("effect");
   if (const Json* effect = reader.value("effect", Need::optional)) post.effect_where = document.span(*effect);
   if (const Json* parameters = reader.object("parameters", Need::optional))
     post.parameters = parse_parameters(document, *parameters, diagnostics);

@@ -168,7 +168,7 @@ struct Scene {
 ///                 "inputs": {"color": "scene", "glow": "name of an earlier post"}, "size": 0.5}],
 ///      "output": {"encoding": "srgb" or "linear", "exposure": 1}}
 ///
-/// Only "isoshade", "scene" and "camera" with its position and target are needed.
+/// Only "isoshade", "scene" and "camera" with its position and target are needed. What a scene extends is load.h's.
 std::optional<Scene> parse_scene(const graph::Document& document, support::Diagnostics& diagnostics);
 
 /// One copy of an object: its place along each axis of the grid.

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "compiler/graph/files.h"
 #include "compiler/graph/graph.h"
+#include "compiler/graph/merge.h"
 #include "compiler/support/visible.h"
-#include "runtime/scene/parse_parts.h"
 
 namespace isoshade::scene {
 
@@ -26,25 +25,20 @@ struct Setting {
   std::string_view text;  ///< as given
   std::string_view name;  ///< empty if only a parameter was given
   std::string_view key;
-  std::string value;  ///< JSON on one line
+  support::Source source;  ///< name.key=value, the value as JSON
+  Json value;
 };
 
-/// A replacement of bytes in the document's text.
-struct Edit {
-  uint32_t begin, end;
-  std::string text;
-};
-
-bool is_json(const std::string& text) {
+std::optional<Document> parse_json(const std::string& text) {
   Diagnostics unheard;
-  return graph::parse_document(std::make_shared<support::SourceFile>("--set", text), unheard).has_value();
+  return graph::parse_document(std::make_shared<support::SourceFile>("--set", text), unheard);
 }
 
-/// The value as one line of JSON.
+bool is_json(const std::string& text) { return parse_json(text).has_value(); }
+
+/// The value as JSON.
 std::optional<std::string> to_json(std::string_view text) {
-  std::string value(text);
-  std::replace(value.begin(), value.end(), '\n', ' ');
-  std::replace(value.begin(), value.end(), '\r', ' ');
+  const std::string value(text);
   if (is_json(value)) return value;
   if (std::string list = "[" + value + "]"; value.find(',') != std::string::npos && is_json(list))
     return list;
@@ -54,17 +48,24 @@ std::optional<std::string> to_json(std::string_view text) {
 }
 
 std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics) {
-  Setting setting{text, {}, {}, {}};
+  Setting setting{text, {}, {}, {}, {}};
   const size_t equals = text.find('=');
-  const std::string_view target = text.substr(0, equals);
+  const std::string target(text.substr(0, equals));
   const size_t dot = target.find('.');
-  setting.key = dot == std::string_view::npos ? target : target.substr(dot + 1);
-  if (dot != std::string_view::npos) setting.name = target.substr(0, dot);
-  const bool named =
-      graph::is_id(setting.key) && (dot == std::string_view::npos || graph::is_id(setting.name));
+  setting.key = text.substr(0, equals);
+  if (dot != std::string::npos) {
+    setting.name = setting.key.substr(0, dot);
+    setting.key.remove_prefix(dot + 1);
+  }
+  const bool named = graph::is_id(setting.key) && (dot == std::string::npos || graph::is_id(setting.name));
   const auto value = equals == std::string_view::npos ? std::nullopt : to_json(text.substr(equals + 1));
-  if (named && value) {
-    setting.value = *value;
+  // Parsed where it stands in the text.
+  const std::string padding(target.size() + 1, ' ');
+  auto parsed = named && value ? parse_json(padding + *value) : std::nullopt;
+  if (parsed) {
+    setting.value = std::move(parsed->root);
+    setting.source = std::make_shared<support::SourceFile>("--set", target + "=" + *value,
+                                                           support::SourceFile::Origin::argument);
     return setting;
   }
   diagnostics.report(Id::bad_setting, "--set " + quote(text) + " is not of the form name.parameter=value")
@@ -74,36 +75,34 @@ std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics) {
   return std::nullopt;
 }
 
-const Json* find_object(const Json& json, std::string_view key) {
-  const Json* found = json.find(key);
+template <typename Value>  // Json or const Json
+Value* find_object(Value& json, std::string_view key) {
+  Value* found = json.find(key);
   return found != nullptr && found->kind == Json::Kind::object ? found : nullptr;
 }
 
 class Editor {
  public:
-  Editor(const Document& document, Diagnostics& diagnostics)
-      : document_(document), diagnostics_(diagnostics) {}
+  Editor(Document& document, Diagnostics& diagnostics) : document_(document), diagnostics_(diagnostics) {}
 
-  /// The document with the setting written into it.
-  std::optional<Document> apply(const Setting& setting);
+  /// Writes a setting into the document.
+  bool apply(Setting& setting);
 
  private:
-  bool set_named(const Setting& setting);
-  bool set_bare(const Setting& setting);
-  void set_parameter(const Json& object, const Setting& setting);
+  bool set_named(Setting& setting);
+  bool set_bare(Setting& setting);
+  void set_parameter(Json& object, Setting& setting);
   /// Sets a member of an object, replacing or adding it.
-  void set_member(const Json& object, std::string_view key, const std::string& value);
-  void remove_member(const Json& object, const Member& member);
+  void set_member(Json& object, Setting& setting);
+  /// The object under a key of another one, which is made if there is none.
+  Json& part(Json& object, std::string_view key, const Setting& setting);
 
-  std::vector<std::pair<std::string_view, const Json*>> owners() const;
+  std::vector<std::pair<std::string_view, Json*>> owners();
   std::vector<std::string_view> parameters_of(const Json& object);
   const std::vector<std::string>& parameters_of_effect(const std::string& path);
-  /// A value for a parameter of an object, with a path in it from the root, as the user counts it from where he is.
-  std::string value_for(const Json& object, const Setting& setting);
 
-  const Document& document_;
+  Document& document_;
   Diagnostics& diagnostics_;
-  std::vector<Edit> edits_;
   std::map<std::string, std::vector<std::string>> effects_;  ///< parameter names by path
 };
 
@@ -121,15 +120,15 @@ const std::vector<std::string>& Editor::parameters_of_effect(const std::string& 
 }
 
 /// The objects of the scene, and its posts under the names that they have.
-std::vector<std::pair<std::string_view, const Json*>> Editor::owners() const {
-  std::vector<std::pair<std::string_view, const Json*>> all;
-  if (const Json* objects = find_object(document_.root, "objects")) {
-    for (const Member& member : objects->members)
+std::vector<std::pair<std::string_view, Json*>> Editor::owners() {
+  std::vector<std::pair<std::string_view, Json*>> all;
+  if (Json* objects = find_object(document_.root, "objects")) {
+    for (Member& member : objects->members)
       if (member.value.kind == Json::Kind::object) all.emplace_back(member.key, &member.value);
   }
-  const Json* posts = document_.root.find("posts");
+  Json* posts = document_.root.find("posts");
   if (posts == nullptr || posts->kind != Json::Kind::array) return all;
-  for (const Json& post : posts->items) {
+  for (Json& post : posts->items) {
     const Json* name = post.kind == Json::Kind::object ? post.find("name") : nullptr;
     if (name != nullptr && name->kind == Json::Kind::string) all.emplace_back(name->string, &post);
   }
@@ -147,69 +146,47 @@ std::vector<std::string_view> Editor::parameters_of(const Json& object) {
     for (const Json& axis : repeat->items) add_keys(find_object(axis, "parameters"));
   const Json* effect = object.find("effect");
   if (effect != nullptr && effect->kind == Json::Kind::string) {
-    for (const std::string& name : parameters_of_effect(path_beside(document_, effect->string)))
+    for (const std::string& name :
+         parameters_of_effect(graph::path_beside(document_.source_of(*effect)->path(), effect->string)))
       names.push_back(name);
   }
   return names;
 }
 
-void Editor::set_member(const Json& object, std::string_view key, const std::string& value) {
-  for (const Member& member : object.members) {
-    if (member.key != key) continue;
-    edits_.push_back({member.value.begin, member.value.end, value});
-    return;
+void Editor::set_member(Json& object, Setting& setting) {
+  const auto key_end = static_cast<uint32_t>(setting.source->text().find('='));
+  const uint32_t key_begin = key_end - static_cast<uint32_t>(setting.key.size());
+  Member set{std::string(setting.key), key_begin, key_end, setting.value};
+  const auto found = std::ranges::find(object.members, set.key, &Member::key);
+  if (found == object.members.end()) {
+    object.members.push_back(std::move(set));
+  } else {
+    *found = std::move(set);
   }
-  const std::string separator = object.members.empty() ? "" : ", ";
-  edits_.push_back(
-      {object.begin + 1, object.begin + 1, "\"" + std::string(key) + "\": " + value + separator});
 }
 
-void Editor::remove_member(const Json& object, const Member& member) {
-  const auto place = static_cast<size_t>(&member - object.members.data());
-  const bool last = place + 1 == object.members.size();
-  // With the comma after it, or before it if it is the last.
-  const uint32_t begin = last && place > 0 ? object.members[place - 1].value.end : member.key_begin;
-  const uint32_t end = last ? member.value.end : object.members[place + 1].key_begin;
-  edits_.push_back({begin, end, ""});
+Json& Editor::part(Json& object, std::string_view key, const Setting& setting) {
+  if (Json* found = find_object(object, key)) return *found;
+  Member made{std::string(key), 0, 0, {}};
+  made.value.kind = Json::Kind::object;
+  made.value.source = setting.value.source;
+  made.key_end = made.value.end = static_cast<uint32_t>(setting.source->text().size());
+  std::erase_if(object.members, [&](const Member& member) { return member.key == key; });
+  object.members.push_back(std::move(made));
+  return object.members.back().value;
 }
 
-std::string Editor::value_for(const Json& object, const Setting& setting) {
-  const Json* effect = object.find("effect");
-  if (effect == nullptr || effect->kind != Json::Kind::string) return setting.value;
-  Diagnostics unheard;
-  const auto value =
-      graph::parse_document(std::make_shared<support::SourceFile>("--set", setting.value), unheard);
-  const std::string path = path_beside(document_, effect->string);
-  const support::Source source = graph::read_source(path, unheard, {document_.source, 0, 0});
-  const auto read = source ? graph::parse_document(source, unheard) : std::nullopt;
-  if (!value || !read || value->root.kind != Json::Kind::string || value->root.string.empty())
-    return setting.value;
-  const Json* parameters = find_object(read->root, "parameters");
-  const Json* parameter = parameters != nullptr ? find_object(*parameters, setting.key) : nullptr;
-  const Json* type = parameter != nullptr ? parameter->find("type") : nullptr;
-  if (type == nullptr || type->string != graph::type_name(graph::Type::filename)) return setting.value;
-  return nlohmann::json(graph::canonical_path(value->root.string))
-      .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-void Editor::set_parameter(const Json& object, const Setting& setting) {
-  const std::string value = value_for(object, setting);
-  if (const Json* repeat = object.find("repeat")) {
-    for (const Json& axis : repeat->items) {
-      const Json* variations = find_object(axis, "parameters");
-      if (variations == nullptr) continue;
-      for (const Member& member : variations->members)
-        if (member.key == setting.key) remove_member(*variations, member);
+void Editor::set_parameter(Json& object, Setting& setting) {
+  if (Json* repeat = object.find("repeat")) {
+    for (Json& axis : repeat->items) {
+      if (Json* variations = find_object(axis, "parameters"))
+        std::erase_if(variations->members, [&](const Member& member) { return member.key == setting.key; });
     }
   }
-  if (const Json* parameters = find_object(object, "parameters")) {
-    set_member(*parameters, setting.key, value);
-  } else {
-    set_member(object, "parameters", "{\"" + std::string(setting.key) + "\": " + value + "}");
-  }
+  set_member(part(object, "parameters", setting), setting);
 }
 
-bool Editor::set_named(const Setting& setting) {
+bool Editor::set_named(Setting& setting) {
   std::vector<std::string_view> names = {"camera", "output"};
   for (const auto& [name, owner] : owners()) {
     names.push_back(name);
@@ -225,21 +202,16 @@ bool Editor::set_named(const Setting& setting) {
     set_parameter(*owner, setting);
     return true;
   }
-  if (const Json* lights = find_object(document_.root, "lights")) {
-    for (const Member& member : lights->members) {
+  if (Json* lights = find_object(document_.root, "lights")) {
+    for (Member& member : lights->members) {
       names.push_back(member.key);
       if (member.key != setting.name || member.value.kind != Json::Kind::object) continue;
-      set_member(member.value, setting.key, setting.value);
+      set_member(member.value, setting);
       return true;
     }
   }
   if (setting.name == "camera" || setting.name == "output") {
-    if (const Json* part = find_object(document_.root, setting.name)) {
-      set_member(*part, setting.key, setting.value);
-    } else {
-      set_member(document_.root, setting.name,
-                 "{\"" + std::string(setting.key) + "\": " + setting.value + "}");
-    }
+    set_member(part(document_.root, setting.name, setting), setting);
     return true;
   }
   diagnostics_.report_unknown(
@@ -249,12 +221,12 @@ bool Editor::set_named(const Setting& setting) {
   return false;
 }
 
-bool Editor::set_bare(const Setting& setting) {
+bool Editor::set_bare(Setting& setting) {
   if (setting.key == "background" || setting.key == "size") {
-    set_member(document_.root, setting.key, setting.value);
+    set_member(document_.root, setting);
     return true;
   }
-  std::vector<std::pair<std::string_view, const Json*>> having;
+  std::vector<std::pair<std::string_view, Json*>> having;
   std::vector<std::string_view> all_parameters = {"background", "size"};
   for (const auto& owner : owners()) {
     const std::vector<std::string_view> parameters = parameters_of(*owner.second);
@@ -281,29 +253,20 @@ bool Editor::set_bare(const Setting& setting) {
   return false;
 }
 
-std::optional<Document> Editor::apply(const Setting& setting) {
-  if (!(setting.name.empty() ? set_bare(setting) : set_named(setting))) return std::nullopt;
-  // From the end, so that the places of the others stay right.
-  std::sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) { return a.begin > b.begin; });
-  std::string text = document_.source->text();
-  for (const Edit& edit : edits_) text.replace(edit.begin, edit.end - edit.begin, edit.text);
-  return graph::parse_document(
-      std::make_shared<support::SourceFile>(document_.source->path(), std::move(text)), diagnostics_);
+bool Editor::apply(Setting& setting) {
+  setting.value = graph::adopted(document_, setting.source, std::move(setting.value));
+  return setting.name.empty() ? set_bare(setting) : set_named(setting);
 }
 
 }  // namespace
 
-std::optional<Document> apply_settings(const Document& document, const std::vector<std::string>& settings,
-                                       Diagnostics& diagnostics) {
-  Document result = document;
+bool apply_settings(Document& document, const std::vector<std::string>& settings, Diagnostics& diagnostics) {
+  Editor editor(document, diagnostics);
   for (const std::string& text : settings) {
-    const std::optional<Setting> setting = split(text, diagnostics);
-    if (!setting) return std::nullopt;
-    std::optional<Document> changed = Editor(result, diagnostics).apply(*setting);
-    if (!changed) return std::nullopt;
-    result = *std::move(changed);
+    std::optional<Setting> setting = split(text, diagnostics);
+    if (!setting || !editor.apply(*setting)) return false;
   }
-  return result;
+  return true;
 }
 
 }  // namespace isoshade::scene

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--set`: a scene document with some of its values replaced.
+// `--set`: some values of a scene document replaced.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +9,7 @@
 
 namespace isoshade::scene {
 
-/// Writes values into a scene document, each setting upon the one before, as if its author had written them:
+/// Writes values into a scene document, each setting upon the one before:
 ///
 ///     object.parameter=value   a parameter of an object's effect, for all copies in its grid
 ///     post.parameter=value     a parameter of a post
@@ -19,14 +18,12 @@ namespace isoshade::scene {
 ///     camera.key=value         "camera.fov=30", and so output.key
 ///     key=value                background or size of the scene
 ///
-/// A path for a parameter of type filename counts from the working directory.
+/// A path for a parameter of type filename counts from the working directory, and may lie anywhere.
 ///
-/// A value is JSON, or numbers with commas between them ("1,0.5,0"), or a plain word. Whether it fits is
-/// found when the result is read by parse_scene; what it then reports shows the line with the new value.
-/// Lines keep their numbers. Reports settings that are malformed or that name nothing, or more than one
-/// thing.
-std::optional<graph::Document> apply_settings(const graph::Document& document,
-                                              const std::vector<std::string>& settings,
-                                              support::Diagnostics& diagnostics);
+/// A value is JSON, or numbers with commas between them ("1,0.5,0"), or a plain word. Whether it fits is found when the
+/// document is read by parse_scene; what that reports of a value shows the setting. Reports settings that are malformed
+/// or that name nothing, or more than one thing, and then returns false.
+bool apply_settings(graph::Document& document, const std::vector<std::string>& settings,
+                    support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::scene

@@ -13,6 +13,7 @@
 #include "compiler/check/library.h"
 #include "runtime/compare/compare.h"
 #include "runtime/render/render.h"
+#include "runtime/scene/load.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
 #endif
@@ -32,8 +33,7 @@ inline std::string scene_path(const std::string& name) { return ISOSHADE_GRAPHS 
 
 inline scene::Scene load(const support::Source& source) {
   support::Diagnostics diagnostics;
-  const auto document = graph::parse_document(source, diagnostics);
-  auto scene = document ? scene::parse_scene(*document, diagnostics) : std::nullopt;
+  auto scene = scene::load_scene(source, {}, check::Library(ISOSHADE_GRAPHS "/library").files(), diagnostics);
   if (!scene) ADD_FAILURE() << diagnostics.text();
   return scene.value_or(scene::Scene());
 }

@@ -6,7 +6,7 @@
 #include "compiler/driver/driver.h"
 #include "compiler/graph/format.h"
 #include "compiler/support/check.h"
-#include "runtime/scene/scene.h"
+#include "runtime/scene/load.h"
 
 namespace isoshade {
 namespace {
@@ -54,7 +54,7 @@ support::Diagnostics feed(std::string_view text) {
   const auto kind = graph::document_kind(*document, diagnostics);
   if (!kind) return diagnostics;
   if (*kind == graph::DocumentKind::scene) {
-    scene::parse_scene(*document, diagnostics);
+    scene::load_scene(source, {}, library.files(), diagnostics);
   } else if (*kind == graph::DocumentKind::effect) {
     feed_effect(source, options, diagnostics);
   } else if (*kind == graph::DocumentKind::post) {

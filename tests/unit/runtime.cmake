@@ -4,6 +4,7 @@ isoshade_test(scene_test
     unit/scene_gltf_textures_test.cpp
     unit/scene_image_file_test.cpp
     unit/scene_image_formats_test.cpp
+    unit/scene_load_test.cpp
     unit/scene_mesh_test.cpp
     unit/scene_parse_test.cpp
     unit/scene_placement_test.cpp

@@ -83,9 +83,9 @@ TEST(Settings, ReachParametersThatOnlyTheEffectDeclares) {
       testing::document_of(testing::scene_text(R"("objects": {"bare": {"mesh": "box", "effect": "e.json"}})"),
                            parsed.diagnostics, (folder / "scene.json").string());
   for (const char* setting : {"bare.sheen=1", "sheen=1"}) {
-    const auto changed = scene::apply_settings(*document, {setting}, parsed.diagnostics);
-    ASSERT_TRUE(changed) << parsed.diagnostics.text();
-    const auto scene = scene::parse_scene(*changed, parsed.diagnostics);
+    graph::Document changed = *document;
+    ASSERT_TRUE(scene::apply_settings(changed, {setting}, parsed.diagnostics)) << parsed.diagnostics.text();
+    const auto scene = scene::parse_scene(changed, parsed.diagnostics);
     ASSERT_TRUE(scene) << parsed.diagnostics.text();
     EXPECT_EQ(find(scene->objects[0], "sheen")->value.number, 1.0f);
   }
@@ -116,10 +116,22 @@ TEST(Settings, CannotWriteAnythingButTheirValue) {
   EXPECT_FALSE(parse_members(members, {"balls.metallic=1}, \"x\": {"}).scene);
 }
 
-TEST(Settings, KeepTheLinesOfTheDocument) {
-  const ParsedScene ranged = parse_members(members, {"camera.fov=[\n1]"});
-  ASSERT_FALSE(ranged.scene);
-  EXPECT_EQ(ranged.diagnostics.all()[0].where.line(), 2u);
+TEST(Settings, ErrorsPointIntoTheirText) {
+  EXPECT_EQ(parse_members(members, {"camera.fov=30", "camera.fov= 200"}).diagnostics.text(),
+            "--set:1:13: error[out-of-range]: \"fov\" of the camera must be from 0.01 to 179\n"
+            "  1 | camera.fov= 200\n"
+            "    |             ^^^\n");
+  EXPECT_EQ(parse_members(members, {"sun.color=1,2"}).diagnostics.text(),
+            "--set:1:11: error[wrong-type]: \"color\" of light \"sun\" is an array of 3 numbers, not of 2\n"
+            "  1 | sun.color=[1,2]\n"
+            "    |           ^^^^^\n");
+  EXPECT_EQ(parse_members(members, {"sun.colour=1"}).diagnostics.all()[0].where.begin, 4u);
+}
+
+TEST(Settings, RefuseAByteOrderMarkBeforeAValue) {
+  EXPECT_TRUE(parse_members(members, {"camera.fov=\xef\xbb\xbf"
+                                      "30"})
+                  .fails_with("bad-setting"));
 }
 
 }  // namespace
