@@ -17,7 +17,8 @@ namespace {
 using functions::Tier;
 using support::Diagnostics;
 
-constexpr const char* scenes[] = {"material_balls"};
+/// A material, a cartoon with textures and outlines, and fog over both colour and depth.
+constexpr const char* scenes[] = {"material_balls", "cartoon_tub", "fog_balls"};
 
 struct Size {
   int width, height;
@@ -102,11 +103,11 @@ class SceneBench {
     return made ? &plans_.emplace_back(*std::move(made)) : nullptr;
   }
 
-  /// What the backend's draw took, in seconds.
+  /// What the backend took to draw, posts included, in seconds.
   std::optional<double> draw(const render::Plan& plan, const Contestant& contestant, backends::Image& image) {
     render::DrawStats stats;
     if (!render::render(plan, *contestant.device, image, stats, diagnostics_)) return std::nullopt;
-    return stats.draw_seconds;
+    return stats.draw_seconds + stats.post_seconds;
   }
 
   bool draw_reference(const scene::Scene& scene) {
