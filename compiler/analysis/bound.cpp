@@ -11,7 +11,6 @@ namespace isoshade::analysis {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_integer = -0x1p31, greatest_integer = 0x1p31 - 1;
 
 /// More than the exact value of a few sums and products of positive doubles that gave `x`.
 double up(double x) { return x * (1 + 0x1p-44); }
@@ -30,6 +29,19 @@ Ends corners(const Bound& a, const Bound& b, Operation operation) {
   };
   const auto [lo, hi] = std::minmax({at(a.lo, b.lo), at(a.lo, b.hi), at(a.hi, b.lo), at(a.hi, b.hi)});
   return {lo, hi};
+}
+
+/// What is no more, and no less, than the exact value of a few operations on doubles that gave `x`.
+double outward_down(double x) { return x - std::abs(x) * 0x1p-44 - 1e-300; }
+double outward_up(double x) { return -outward_down(-x); }
+
+/// The same of what is monotone in both operands.
+template <class Operation>
+void place_exact_corners(Bound& r, const Bound& a, const Bound& b, Operation operation) {
+  const double al = a.exact_lo(), ah = a.exact_hi(), bl = b.exact_lo(), bh = b.exact_hi();
+  const auto [lo, hi] =
+      std::minmax({operation(al, bl), operation(al, bh), operation(ah, bl), operation(ah, bh)});
+  place_exact(r, lo, hi);
 }
 
 bool same_sign(const Bound& a, const Bound& b) {
@@ -57,6 +69,7 @@ bool is_power_of_two(const Bound& a) {
 /// The product's error, where the computed product lies within [lo, hi].
 Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
   Bound r{ends.lo, ends.hi};
+  place_exact_corners(r, a, b, times);
   const double u = rounds ? half_ulp : 0;
   r.absolute = times(a.magnitude(), b.absolute) + times(b.magnitude(), a.absolute) +
                times(a.absolute, b.absolute) + times(u, r.magnitude()) + smallest;
@@ -72,17 +85,6 @@ Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
   return settled(r);
 }
 
-Bound truth(bool can_be_false, bool can_be_true, bool may_differ) {
-  return {can_be_false ? 0.0 : 1.0, can_be_true ? 1.0 : 0.0, may_differ ? 1.0 : 0.0, 0, 0};
-}
-
-Outcome any_integer() { return {{least_integer, greatest_integer, infinity, infinity, infinity}}; }
-
-Outcome integer(double lo, double hi, double absolute) {
-  if (lo < least_integer || hi > greatest_integer) return any_integer();
-  return {{lo, hi, absolute, absolute == 0 ? 0 : infinity, absolute}};
-}
-
 }  // namespace
 
 double Bound::magnitude() const { return std::max(std::abs(lo), std::abs(hi)); }
@@ -90,8 +92,20 @@ double Bound::least_magnitude() const {
   return lo <= 0 && hi >= 0 ? 0 : std::min(std::abs(lo), std::abs(hi));
 }
 
+double Bound::exact_lo() const {
+  double least = std::max(exact_least, lo - absolute);
+  if (relative < 1 && lo >= slack) least = std::max(least, outward_down((lo - slack) / (1 + relative)));
+  if (relative < 1 && lo < slack) least = std::max(least, outward_down((lo - slack) / (1 - relative)));
+  return least;
+}
+double Bound::exact_hi() const {
+  const Bound mirrored{-hi, -lo, absolute, relative, slack, -exact_most, -exact_least};
+  return -mirrored.exact_lo();
+}
+double Bound::exact_least_magnitude() const { return std::max({0.0, exact_lo(), -exact_hi()}); }
+
 double Bound::relative_error() const {
-  const double least = least_magnitude() - absolute;
+  const double least = exact_least_magnitude();
   const double from_absolute = least > 0 ? up(absolute / least) : infinity;
   return slack <= 0x1p-100 ? std::min(relative, from_absolute) : from_absolute;
 }
@@ -111,6 +125,12 @@ std::string_view words(Breach breach) {
   return "nothing";
 }
 
+void place_exact(Bound& r, double least, double most) {
+  constexpr double far = 1e200;  // ends that lie beyond the doubles are not needed
+  r.exact_least = outward_down(std::min(least, far));
+  r.exact_most = outward_up(std::max(most, -far));
+}
+
 Outcome settled(Bound r) {
   r.absolute = up(r.absolute);
   r.relative = up(r.relative);
@@ -118,6 +138,7 @@ Outcome settled(Bound r) {
   const Breach breach = r.lo < -largest || r.hi > largest ? Breach::overflow : Breach::none;
   r.lo = std::clamp(r.lo, -largest, largest);
   r.hi = std::clamp(r.hi, -largest, largest);
+  r.absolute = std::min(r.absolute, up(std::max(r.hi - r.exact_least, r.exact_most - r.lo)));
   if (r.relative < 1) {
     const double exact = (r.magnitude() + r.slack) / (1 - r.relative);
     r.absolute = std::min(r.absolute, up(r.relative * exact + r.slack));
@@ -126,7 +147,7 @@ Outcome settled(Bound r) {
     r.relative = r.slack = 0;
     return {r, breach};
   }
-  const double least = r.least_magnitude() - r.absolute;
+  const double least = r.exact_least_magnitude();
   const auto take = [&](double relative, double slack) {
     r.relative = relative;
     r.slack = slack;
@@ -165,8 +186,12 @@ Outcome add(const Bound& a, const Bound& b) {
   const bool exact = nothing_added || difference_is_exact(a, negate(b));
   const double u = exact ? 0 : half_ulp;
   r.absolute = a.absolute + b.absolute + times(u, r.magnitude()) + (nothing_added ? 0 : smallest);
+  place_exact(r, a.exact_lo() + b.exact_lo(), a.exact_hi() + b.exact_hi());
   r.relative = r.slack = infinity;
-  if (same_sign(a, b)) {
+  if (a.absolute == 0 && b.absolute == 0) {
+    r.relative = u;  // one rounding, of whatever sign
+    r.slack = nothing_added ? 0 : smallest;
+  } else if (same_sign(a, b)) {
     const double e = std::max(a.relative, b.relative);
     r.relative = e + u * (1 + e);
     r.slack = (a.slack + b.slack + 2 * times(e, beyond_zero(a) + beyond_zero(b))) * (1 + u);
@@ -183,7 +208,13 @@ Outcome multiply(const Bound& a, const Bound& b) {
 
 Outcome square(const Bound& a) {
   const auto least = static_cast<float>(a.least_magnitude()), most = static_cast<float>(a.magnitude());
-  return product(a, a, {static_cast<double>(least * least), static_cast<double>(most * most)}, true);
+  Outcome squared =
+      product(a, a, {static_cast<double>(least * least), static_cast<double>(most * most)}, true);
+  Bound& r = squared.bound;
+  const double exact = a.exact_least_magnitude();
+  r.exact_least = std::max(r.exact_least, outward_down(exact * exact));
+  squared.bound = settled(r).bound;
+  return squared;
 }
 
 Outcome divide(const Bound& a, const Bound& b) {
@@ -192,7 +223,8 @@ Outcome divide(const Bound& a, const Bound& b) {
   Bound r{ends.lo, ends.hi};
   const double u = is_power_of_two(b) ? 0 : half_ulp;
   const double b_least = b.least_magnitude();
-  const double b_exact = std::max(b_least - b.absolute, (b_least - b.slack) / (1 + b.relative));
+  const double b_exact = b.exact_least_magnitude();
+  if (b_exact > 0) place_exact_corners(r, a, b, [](double x, double y) { return x == 0 ? 0 : x / y; });
   r.absolute = b_exact > 0 ? (times(r.magnitude(), b.absolute) + a.absolute) / b_exact : infinity;
   r.absolute += times(u, r.magnitude()) + smallest;
   const double e = b_exact > 0 ? b.relative + b.slack / b_exact : infinity;
@@ -210,6 +242,7 @@ Outcome square_root(const Bound& a) {
   const double lo = std::max(a.lo, 0.0);
   Bound r{static_cast<double>(std::sqrt(static_cast<float>(lo))),
           static_cast<double>(std::sqrt(static_cast<float>(std::max(a.hi, 0.0))))};
+  place_exact(r, std::sqrt(std::max(a.exact_lo(), 0.0)), std::sqrt(std::max(a.exact_hi(), 0.0)));
   const auto moved = [&](double error) {
     return std::min(std::sqrt(error), r.lo > 0 ? error / r.lo * (1 + half_ulp) : infinity);
   };
@@ -225,108 +258,24 @@ Outcome square_root(const Bound& a) {
   return outcome;
 }
 
-Bound negate(const Bound& a) { return {-a.hi, -a.lo, a.absolute, a.relative, a.slack}; }
+Bound negate(const Bound& a) {
+  return {-a.hi, -a.lo, a.absolute, a.relative, a.slack, -a.exact_most, -a.exact_least};
+}
 
 Bound magnitude(const Bound& a) {
-  return {a.least_magnitude(), a.magnitude(), a.absolute, a.relative, a.slack};
+  Bound r{a.least_magnitude(), a.magnitude(), a.absolute, a.relative, a.slack};
+  place_exact(r, a.exact_least_magnitude(), std::max(a.exact_hi(), -a.exact_lo()));
+  return r;
 }
 
 Bound floor_of(const Bound& a) {
   Bound r{std::floor(a.lo), std::floor(a.hi)};
-  const bool same = a.absolute == 0 || std::floor(a.lo - a.absolute) == std::floor(a.hi + a.absolute);
+  place_exact(r, std::floor(a.exact_lo()), std::floor(a.exact_hi()));
+  const bool same = a.absolute == 0 ||
+                    (r.lo == r.hi && std::floor(a.exact_lo()) == r.lo && std::floor(a.exact_hi()) == r.lo);
   if (!same) r.absolute = r.relative = r.slack = a.absolute + 1;
   if (!same) r.relative = infinity;
   return settled(r).bound;
-}
-
-namespace {
-
-/// The bound of the result that is one or the other, both computed and exactly.
-Bound either(const Bound& a, const Bound& b, double lo, double hi) {
-  Bound r{lo, hi, std::max(a.absolute, b.absolute), std::max(a.relative, b.relative),
-          std::max(a.slack, b.slack)};
-  return r;
-}
-
-bool surely_less(const Bound& a, const Bound& b) { return a.hi + a.absolute < b.lo - b.absolute; }
-
-}  // namespace
-
-Bound lesser(const Bound& a, const Bound& b) {
-  if (surely_less(a, b)) return a;
-  if (surely_less(b, a)) return b;
-  return either(a, b, std::min(a.lo, b.lo), std::min(a.hi, b.hi));
-}
-
-Bound greater(const Bound& a, const Bound& b) { return negate(lesser(negate(a), negate(b))); }
-
-Bound select(const Bound& condition, const Bound& then, const Bound& other) {
-  const bool one_side = condition.is_point() && condition.absolute == 0;
-  if (one_side) return condition.lo != 0 ? then : other;
-  Bound r = either(then, other, std::min(then.lo, other.lo), std::max(then.hi, other.hi));
-  if (condition.is_point()) {
-    r.lo = condition.lo != 0 ? then.lo : other.lo;
-    r.hi = condition.lo != 0 ? then.hi : other.hi;
-  }
-  if (condition.absolute == 0) return r;
-  // Exact arithmetic may have taken the other side.
-  r.absolute += std::max(then.hi - other.lo, other.hi - then.lo);
-  r.relative = r.slack = infinity;
-  return settled(r).bound;
-}
-
-Bound compare(ir::Opcode op, const Bound& a, const Bound& b) {
-  using enum ir::Opcode;
-  const bool surely_below = a.hi<b.lo, surely_above = a.lo> b.hi;
-  const bool never_below = a.lo >= b.hi, never_above = a.hi <= b.lo;
-  const double reach = a.absolute + b.absolute;
-  const bool apart = a.hi + reach < b.lo || a.lo - reach > b.hi;
-  const bool may_differ = reach != 0 && !apart;
-  switch (op) {
-    case flt:
-    case ilt: return truth(!surely_below, !never_below, may_differ);
-    case fle:
-    case ile: return truth(!never_above, !surely_above, may_differ);
-    case fgt:
-    case igt: return truth(!surely_above, !never_above, may_differ);
-    case fge:
-    case ige: return truth(!never_below, !surely_below, may_differ);
-    default: break;
-  }
-  const bool disjoint = surely_below || surely_above;
-  const bool one = a.is_point() && b.is_point() && a.lo == b.lo;
-  if (op == feq || op == ieq) return truth(!one, !disjoint, may_differ);
-  return truth(!disjoint, !one, may_differ);
-}
-
-Outcome other(ir::Opcode op, const Bound& a, const Bound& b) {
-  using enum ir::Opcode;
-  const double differs = std::max(a.absolute, b.absolute);
-  switch (op) {
-    case band: return {{std::min(a.lo, b.lo), std::min(a.hi, b.hi), differs}};
-    case bor: return {{std::max(a.lo, b.lo), std::max(a.hi, b.hi), differs}};
-    case bnot: return {{1 - a.hi, 1 - a.lo, a.absolute}};
-    case bxor:
-      if (a.is_point() && b.is_point()) return {exactly(a.lo != b.lo)};
-      return {{0, 1, differs}};
-    case iadd: return integer(a.lo + b.lo, a.hi + b.hi, a.absolute + b.absolute);
-    case isub: return integer(a.lo - b.hi, a.hi - b.lo, a.absolute + b.absolute);
-    case itof: {
-      Bound r{rounded(a.lo), rounded(a.hi)};
-      r.absolute = a.absolute + (a.magnitude() > 0x1p24 ? half_ulp * r.magnitude() : 0);
-      r.relative = r.slack = r.absolute == 0 ? 0 : infinity;
-      return settled(r);
-    }
-    case ftoi: {
-      if (a.lo < least_integer || a.hi >= 0x1p31) return {any_integer().bound, Breach::conversion};
-      const bool same = a.absolute == 0 || std::trunc(a.lo - a.absolute) == std::trunc(a.hi + a.absolute);
-      return integer(std::trunc(a.lo), std::trunc(a.hi), same ? 0 : a.absolute + 1);
-    }
-    case bitsf:
-    case bitsf_normal: return {anything(), Breach::unknown};
-    case ult: return {{0, 1, differs}};
-    default: return any_integer();
-  }
 }
 
 Outcome sum_of(const Bound& a, double count) {
@@ -334,6 +283,7 @@ Outcome sum_of(const Bound& a, double count) {
   const double growth = 1 + 2 * count * half_ulp;
   Bound r{std::min(0.0, a.lo * count * growth), std::max(0.0, a.hi * count * growth)};
   r.absolute = count * (a.absolute + half_ulp * r.magnitude() + smallest);
+  place_exact(r, std::min(0.0, count * a.exact_lo()), std::max(0.0, count * a.exact_hi()));
   r.relative = r.slack = infinity;
   if (same_sign(a, exactly(0))) {
     r.relative = a.relative + 2 * count * half_ulp * (1 + a.relative);

@@ -10,6 +10,7 @@
 // All of it needs lanes::FpGuard: the ends are computed as the language computes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -29,7 +30,12 @@ struct Bound {
   double absolute = 0;
   double relative = 0;
   double slack = 0;
+  double exact_least = -HUGE_VAL,
+         exact_most = HUGE_VAL;  ///< what else is known of where the exact value lies
 
+  double exact_lo() const;  ///< the exact value lies between these
+  double exact_hi() const;
+  double exact_least_magnitude() const;
   double magnitude() const;        ///< the largest |y|
   double least_magnitude() const;  ///< the smallest |y|
   bool is_point() const { return lo == hi; }
@@ -87,6 +93,9 @@ Outcome sum_of(const Bound& a, double count);
 /// A result that lies within [lo, hi] as exact arithmetic has it from the computed operands, and is then rounded
 /// with a relative error; `carried`: how far the operands' errors moved it.
 Outcome approximate(double lo, double hi, double relative_error, double carried);
+
+/// Says that the exact value lies between what arithmetic on doubles made of ends.
+void place_exact(Bound& bound, double least, double most);
 
 /// Makes both bounds of the error as good as either is, and ends beyond the floats an overflow.
 Outcome settled(Bound bound);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace isoshade::analysis {
 namespace {
@@ -35,7 +36,7 @@ Evaluator::Evaluator(const Tape& tape)
       proportions_(tape.operations.size()),
       guard_dead_(tape.guards.size()) {
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
-    if (tape.operations[i].kind != Kind::dot || tape.operations[i].guard != 0) continue;
+    if (tape.operations[i].kind != Kind::dot) continue;
     cut_of_[i] = static_cast<uint32_t>(cuts_.size());
     cuts_.push_back(i);
   }
@@ -68,7 +69,9 @@ Box Evaluator::whole() const {
 
 Side Evaluator::reached(const Box& box, size_t side) const {
   if (side < tape_.inputs.size()) return box[side];
-  const Bound& b = bounds_[cuts_[side - tape_.inputs.size()]];
+  const uint32_t cut = cuts_[side - tape_.inputs.size()];
+  if (states_[cut] == State::dead) return box[side];
+  const Bound& b = bounds_[cut];
   return {b.lo, b.hi};
 }
 
@@ -99,6 +102,7 @@ bool Evaluator::units_possible(const Box& box) const {
 
 bool Evaluator::walk(const Box& box, uint32_t last) {
   findings_.clear();
+  undecided_.clear();
   guard_dead_.assign(tape_.guards.size(), false);
   if (!units_possible(box)) return false;
   steps_ += last + 1;
@@ -146,7 +150,10 @@ bool Evaluator::walk(const Box& box, uint32_t last) {
     carry_proportion(operation, i);
     if (cut_of_[i] == none) continue;
     const Side& side = box[tape_.inputs.size() + cut_of_[i]];
-    if (!restrict(i, side.lo, side.hi)) return false;
+    if (restrict(i, side.lo, side.hi)) continue;
+    if (operation.guard == 0) return false;
+    guard_dead_[operation.guard] = true;
+    states_[i] = State::dead;
   }
   return true;
 }
@@ -203,7 +210,7 @@ Outcome Evaluator::outcome_of(const Operation& operation, uint32_t index) {
   const auto in = tape_.operands_of(operation);
   switch (operation.kind) {
     case Kind::constant: return constant_outcome(operation);
-    case Kind::least: return {lesser(bounds_[in[0]], bounds_[in[1]])};
+    case Kind::least: return least_of(in);
     case Kind::greatest: return {greater(bounds_[in[0]], bounds_[in[1]])};
     case Kind::dot: return dot_of(in);
     case Kind::sum: return sum_of(bounds_[in[0]], most_lights);
@@ -219,14 +226,17 @@ Outcome Evaluator::outcome_of(const Operation& operation, uint32_t index) {
     case Kind::enter: return {bounds_[index]};
   }
   if (operation.op != Opcode::select) return op_of(operation, in);
-  Outcome chosen = select_of(in);
+  Outcome chosen = select_of(in, index);
   const bool no_then = states_[in[1]] == State::dead, no_other = states_[in[2]] == State::dead;
   if (no_then && no_other) states_[index] = State::dead;
   return chosen;
 }
 
-Outcome Evaluator::select_of(std::span<const uint32_t> in) {
-  const Bound &condition = bounds_[in[0]], &then = bounds_[in[1]], &other = bounds_[in[2]];
+Outcome Evaluator::select_of(std::span<const uint32_t> in, uint32_t index) {
+  Bound condition = bounds_[in[0]];
+  if (condition.absolute != 0) undecided_.push_back(index);
+  if (follows_branches_) condition.absolute = 0;
+  const Bound &then = bounds_[in[1]], &other = bounds_[in[2]];
   const bool no_then = states_[in[1]] == State::dead, no_other = states_[in[2]] == State::dead;
   if (!no_then && !no_other) return {select(condition, then, other)};
   Bound taken = no_then ? other : then;
@@ -251,6 +261,24 @@ Outcome Evaluator::op_of(const Operation& operation, std::span<const uint32_t> i
     default:
       return is_comparison(operation.op) ? Outcome{compare(operation.op, a, b)} : other(operation.op, a, b);
   }
+}
+
+Outcome Evaluator::least_of(std::span<const uint32_t> in) const {
+  Bound least = lesser(bounds_[in[0]], bounds_[in[1]]);
+  const auto end = [&](uint32_t operand) {
+    const Operation& o = tape_.operations[operand];
+    return o.kind == Kind::constant ? std::optional(bounds_[operand].lo) : std::nullopt;
+  };
+  // Both results, the exact one too, lie between the two constants of a clamp.
+  for (const int i : {0, 1}) {
+    const Operation& inner = tape_.operations[in[i]];
+    const auto high = end(in[1 - i]);
+    if (!high || inner.kind != Kind::greatest) continue;
+    for (const uint32_t operand : tape_.operands_of(inner))
+      if (const auto low = end(operand); low && *low <= *high)
+        least.absolute = std::min(least.absolute, *high - *low);
+  }
+  return settled(least);
 }
 
 Outcome Evaluator::dot_of(std::span<const uint32_t> in) const {

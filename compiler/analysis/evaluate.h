@@ -34,6 +34,8 @@ class Evaluator {
   /// What a side was in the last walk: its range cut by what the operation gave there.
   Side reached(const Box& box, size_t side) const;
   std::string side_name(size_t side) const;
+  /// The scalar product that a side beyond the inputs is of.
+  uint32_t operation_of(size_t side) const { return cuts_[side - tape_.inputs.size()]; }
   /// Whether an operation depends on a side.
   bool depends(uint32_t operation, size_t side) const;
 
@@ -43,6 +45,12 @@ class Evaluator {
   /// What the last walk did not prove; of operations that read each other's results only the first.
   const std::vector<Finding>& findings() const { return findings_; }
   const Bound& bound(uint32_t operation) const { return bounds_[operation]; }
+  bool is_reached(uint32_t operation) const { return states_[operation] != State::dead; }
+  /// The selects of the last walk whose condition exact arithmetic may decide otherwise.
+  const std::vector<uint32_t>& undecided() const { return undecided_; }
+  /// Whether errors are those against exact arithmetic that takes the sides of selects that floats take. Else it takes
+  /// its own.
+  void follow_branches(bool follow) { follows_branches_ = follow; }
   uint64_t steps() const { return steps_; }  ///< operations walked so far
 
  private:
@@ -56,13 +64,22 @@ class Evaluator {
 
   Outcome outcome_of(const Operation& operation, uint32_t index);
   Outcome op_of(const Operation& operation, std::span<const uint32_t> in);
+  Outcome least_of(std::span<const uint32_t> in) const;
   Outcome dot_of(std::span<const uint32_t> in) const;
-  Outcome select_of(std::span<const uint32_t> in);
+  Outcome select_of(std::span<const uint32_t> in, uint32_t index);
   bool narrow(const Operation& operation, uint32_t index);
   void enter(const Operation& operation);
+  /// The lengths of a vector as computed and of its error, at most.
+  struct Lengths {
+    double vector = 0, error = 0;
+  };
+  Lengths lengths_of(uint32_t shape) const;
+  void limit_error(uint32_t index, size_t terms, const Lengths& a, const Lengths& b);
   bool apply_facts(const Operation& operation, uint32_t index);
   void carry_proportion(const Operation& operation, uint32_t index);
   void limit_quotient(uint32_t index, const Proportion& of_divisor);
+  void limit_remainder(uint32_t index);
+  void limit_residual(uint32_t index);
   /// Keeps as many as there is room for.
   void propose(uint32_t index, const Proportion& proportion);
   bool restrict(uint32_t index, double lo, double hi);
@@ -78,6 +95,8 @@ class Evaluator {
   std::vector<Proportions> proportions_;
   std::vector<bool> guard_dead_;
   std::vector<Finding> findings_;
+  std::vector<uint32_t> undecided_;
+  bool follows_branches_ = false;
   uint64_t steps_ = 0;
 };
 

@@ -27,18 +27,10 @@ bool Evaluator::apply_facts(const Operation& operation, uint32_t index) {
   for (const Fact& fact : found->second) {
     switch (fact.kind) {
       case Fact::Kind::dot: {
-        const size_t half = in.size() / 2;
-        const auto square_of = [&](double length, uint32_t known, std::span<const uint32_t> vector) {
-          double most = 0;
-          for (const uint32_t c : vector) most += bounds_[c].magnitude() * bounds_[c].magnitude();
-          most = std::min(most, length * length);
-          if (usable(known)) most = std::min(most, bounds_[known].hi * rounded_up + flushed);
-          return most;
-        };
-        const double squares = square_of(fact.first_length, fact.first, in.first(half)) *
-                               square_of(fact.second_length, fact.second, in.subspan(half));
-        const double most = std::sqrt(squares) * rounded_up + flushed;
+        const Lengths a = lengths_of(fact.left), b = lengths_of(fact.right);
+        const double most = a.vector * b.vector * rounded_up + flushed;
         possible &= restrict(index, -most, most);
+        limit_error(index, in.size() / 2, a, b);
         break;
       }
       case Fact::Kind::projection: {
@@ -66,6 +58,43 @@ bool Evaluator::apply_facts(const Operation& operation, uint32_t index) {
   return possible;
 }
 
+Evaluator::Lengths Evaluator::lengths_of(uint32_t index) const {
+  const VectorShape& shape = tape_.vectors[index];
+  double squares = 0, errors = 0;
+  for (const uint32_t c : shape.components) {
+    squares += bounds_[c].magnitude() * bounds_[c].magnitude();
+    errors += bounds_[c].absolute * bounds_[c].absolute;
+  }
+  squares = std::min(squares, shape.length * shape.length);
+  if (shape.square != none && states_[shape.square] != State::dead)
+    squares = std::min(squares, bounds_[shape.square].hi * rounded_up + flushed);
+  Lengths lengths{std::sqrt(squares) * rounded_up, std::sqrt(errors) * rounded_up};
+  if (shape.kind == VectorShape::Kind::given) return lengths;
+  const Lengths a = lengths_of(shape.left), b = lengths_of(shape.right);
+  if (shape.kind == VectorShape::Kind::sum) {
+    lengths.error = std::min(lengths.error, a.error + b.error + half_ulp * lengths.vector + flushed);
+    return lengths;
+  }
+  // Each component rounds two products and their difference; what these are off by is at most 2 sqrt(2) |a| |b| / 2^24.
+  const double carried = a.vector * b.error + a.error * b.vector + a.error * b.error;
+  const double error = carried + 3 * half_ulp * a.vector * b.vector + flushed;
+  lengths.vector =
+      std::min(lengths.vector, a.vector * b.vector + 3 * half_ulp * a.vector * b.vector + flushed);
+  lengths.error = std::min(lengths.error, error * rounded_up);
+  return lengths;
+}
+
+/// |computed - exact| of a scalar product by what its vectors are off: Cauchy and Schwarz.
+void Evaluator::limit_error(uint32_t index, size_t terms, const Lengths& a, const Lengths& b) {
+  const double carried = a.vector * b.error + a.error * b.vector + a.error * b.error;
+  const double roundings = static_cast<double>(terms) * half_ulp * a.vector * b.vector;
+  const double error = (carried + roundings) * rounded_up + flushed;
+  Bound& bound = bounds_[index];
+  if (error >= bound.absolute) return;
+  bound.absolute = error;
+  bound = settled(bound).bound;
+}
+
 void Evaluator::propose(uint32_t index, const Proportion& proportion) {
   if (proportion.base == none || proportion.factor <= 0 || bounds_[proportion.base].lo < 0) return;
   for (Proportion& place : proportions_[index]) {
@@ -73,6 +102,46 @@ void Evaluator::propose(uint32_t index, const Proportion& proportion) {
     if (place.base == none || place.factor < proportion.factor) place = proportion;
     return;
   }
+}
+
+/// x - x * y, where x >= 0 and y is in [0, 1]: neither rounded nor exactly is it negative or more than x.
+void Evaluator::limit_remainder(uint32_t index) {
+  const auto in = tape_.operands_of(tape_.operations[index]);
+  const Operation& product = tape_.operations[in[1]];
+  const Bound& x = bounds_[in[0]];
+  if (product.kind != Kind::op || product.op != Opcode::fmul || x.lo < 0 || x.exact_lo() < 0) return;
+  const auto factors = tape_.operands_of(product);
+  for (const int i : {0, 1}) {
+    const Bound& y = bounds_[factors[1 - i]];
+    if (factors[i] != in[0] || y.lo < 0 || y.hi > 1 || y.exact_lo() < 0 || y.exact_hi() > 1) continue;
+    Bound& b = bounds_[index];
+    b.lo = std::max(b.lo, 0.0);
+    b.hi = std::min(b.hi, x.hi);
+    b.exact_least = std::max(b.exact_least, 0.0);
+    b.exact_most = std::min(b.exact_most, x.exact_hi());
+    b = settled(b).bound;
+    return;
+  }
+}
+
+/// (k - x) - c, where x = k - c: what rounding took from x, exactly 0.
+void Evaluator::limit_residual(uint32_t index) {
+  const auto in = tape_.operands_of(tape_.operations[index]);
+  const auto difference = [&](uint32_t operation) {
+    const Operation& o = tape_.operations[operation];
+    const bool is = o.kind == Kind::op && o.op == Opcode::fsub;
+    return is ? tape_.operands_of(o) : std::span<const uint32_t>();
+  };
+  const auto back = difference(in[0]);
+  const auto x = back.empty() ? back : difference(back[1]);
+  if (x.empty() || x[0] != back[0] || x[1] != in[1]) return;
+  // Where nothing was taken from x, k - x is c, a float, and nothing is taken from that either.
+  const double rounding = half_ulp * (bounds_[back[1]].magnitude() + bounds_[in[0]].magnitude());
+  const double most = bounds_[back[1]].absolute == 0 ? 0 : rounding * rounded_up + flushed;
+  restrict(index, -most, most);
+  Bound& b = bounds_[index];
+  b.exact_least = b.exact_most = 0;
+  b = settled(b).bound;
 }
 
 void Evaluator::carry_proportion(const Operation& operation, uint32_t index) {
@@ -85,6 +154,10 @@ void Evaluator::carry_proportion(const Operation& operation, uint32_t index) {
     }
   }
   if (operation.kind != Kind::op) return;
+  if (operation.op == Opcode::fsub) {
+    limit_remainder(index);
+    limit_residual(index);
+  }
   if (operation.op == Opcode::fdiv)
     for (const Proportion& p : proportions_[in[1]]) limit_quotient(index, p);
   if (operation.op != Opcode::fmul) return;

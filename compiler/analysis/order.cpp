@@ -65,6 +65,9 @@ class Ordering {
   uint32_t before(uint32_t old, uint32_t user) const;
   /// What the length of a vector is at most, by how it was made.
   double longest(const Words& vector, int depth = 4) const;
+  /// Whether a vector is the sum, or the difference, of these two.
+  bool terms_of(const Words& vector, Words& left, Words& right) const;
+  uint32_t shape_of(const Words& vector, uint32_t user, int depth = 4);
   /// A scalar product of the vector that a guard around this one says something about; or none.
   uint32_t known_product(const Words& vector, uint32_t guard) const;
   uint32_t find_dot(std::span<const uint32_t> a, std::span<const uint32_t> b) const;
@@ -239,14 +242,19 @@ double Ordering::longest(const Words& vector, int depth) const {
   if (pool_.at_most_units.contains(vector)) return 1;
   if (depth == 0) return any;
   Words left, right;
+  if (!terms_of(vector, left, right)) return any;
+  return std::min(any, longest(left, depth - 1) + longest(right, depth - 1));
+}
+
+bool Ordering::terms_of(const Words& vector, Words& left, Words& right) const {
   for (const uint32_t component : vector) {
     const Operation& o = pool_[component];
-    if (o.kind != Kind::op || (o.op != Opcode::fadd && o.op != Opcode::fsub)) return any;
-    if (o.op != pool_[vector[0]].op) return any;
+    const bool adds = o.kind == Kind::op && (o.op == Opcode::fadd || o.op == Opcode::fsub);
+    if (!adds || o.op != pool_[vector[0]].op) return false;
     left.push_back(pool_.operands(component)[0]);
     right.push_back(pool_.operands(component)[1]);
   }
-  return std::min(any, longest(left, depth - 1) + longest(right, depth - 1));
+  return true;
 }
 
 void Ordering::add_facts(uint32_t old) {
@@ -264,13 +272,33 @@ void Ordering::add_dot_fact(uint32_t old) {
   const auto half = operands.size() / 2;
   const Words a(operands.begin(), operands.begin() + half), b(operands.begin() + half, operands.end());
   Fact fact{Fact::Kind::dot};
-  fact.first_length = longest(a);
-  fact.second_length = longest(b);
+  fact.left = shape_of(a, old);
+  fact.right = a == b ? fact.left : shape_of(b, old);
   if (a != b) {
     fact.first = before(find_dot(a, a), old);
     fact.second = before(find_dot(b, b), old);
   }
   pool_.tape().facts[at_[old]].push_back(fact);
+}
+
+/// The shape of a vector as the operation `user` sees it.
+uint32_t Ordering::shape_of(const Words& vector, uint32_t user, int depth) {
+  VectorShape shape;
+  shape.length = longest(vector);
+  for (const uint32_t component : vector) shape.components.push_back(at_[component]);
+  const uint32_t square = find_dot(vector, vector);
+  if (square != user) shape.square = before(square, user);
+  const auto set = [&](VectorShape::Kind kind, const Words& left, const Words& right) {
+    shape.kind = kind;
+    shape.left = shape_of(left, user, depth - 1);
+    shape.right = shape_of(right, user, depth - 1);
+  };
+  Words left, right;
+  if (depth > 0 && terms_of(vector, left, right)) set(VectorShape::Kind::sum, left, right);
+  if (const auto cross = pool_.crosses.find(vector); depth > 0 && cross != pool_.crosses.end())
+    set(VectorShape::Kind::cross, cross->second.left, cross->second.right);
+  pool_.tape().vectors.push_back(std::move(shape));
+  return static_cast<uint32_t>(pool_.tape().vectors.size() - 1);
 }
 
 /// n . l + n . v, where n . (l + v) is there too.

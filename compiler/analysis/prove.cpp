@@ -2,9 +2,11 @@
 #include "compiler/analysis/prove.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <set>
 
 #include "runtime/lanes/lanes.h"
 
@@ -44,12 +46,18 @@ struct Task {
 struct Leaf {
   Box box;
   std::vector<Bound> outputs;
+  std::vector<uint32_t> tipped;
 };
 
 class Prover {
  public:
-  Prover(const Tape& tape, const Effort& effort)
-      : tape_(tape), effort_(effort), evaluator_(tape), runner_(tape) {}
+  Prover(const Tape& tape, const Effort& effort, const std::vector<Restriction>& where)
+      : tape_(tape), effort_(effort), evaluator_(tape), runner_(tape), root_(evaluator_.whole()) {
+    for (const Restriction& r : where)
+      for (size_t s = 0; s < root_.size(); ++s)
+        if (evaluator_.side_name(s) == r.name)
+          root_[s] = {std::max(root_[s].lo, r.range.lo), std::min(root_[s].hi, r.range.hi)};
+  }
 
   Proof run() {
     search_proof();
@@ -71,13 +79,17 @@ class Prover {
 
   void give_up(const Box& box, const Finding& finding);
   bool refute(const Box& box, int tries);
-  std::vector<Bound> outputs() const;
+  Leaf leaf(const Box& box) const;
+  std::vector<Bound> bounds_of_leaves() const;
+  void refine_all();
+  uint32_t place_of_loss(size_t output);
   void refine(uint64_t work, double (*measure)(const Bound&));
 
   const Tape& tape_;
   const Effort& effort_;
   Evaluator evaluator_;
   Runner runner_;
+  Box root_;
   Proof proof_;
   std::vector<Leaf> leaves_;
 };
@@ -144,10 +156,11 @@ std::vector<Box> Prover::cut(const Box& box, uint32_t last, double before, Measu
   return best;
 }
 
-std::vector<Bound> Prover::outputs() const {
-  std::vector<Bound> bounds;
-  for (const Tape::Output& output : tape_.outputs) bounds.push_back(evaluator_.bound(output.operation));
-  return bounds;
+/// What the last walk, of this box, gave.
+Leaf Prover::leaf(const Box& box) const {
+  Leaf leaf{box, {}, evaluator_.undecided()};
+  for (const Tape::Output& output : tape_.outputs) leaf.outputs.push_back(evaluator_.bound(output.operation));
+  return leaf;
 }
 
 void Prover::give_up(const Box& box, const Finding& finding) {
@@ -163,7 +176,17 @@ void Prover::give_up(const Box& box, const Finding& finding) {
 
 /// Looks for counterexamples in the box; false if there is none.
 bool Prover::refute(const Box& box, int tries) {
-  for (const Counterexample& found : search(runner_, tape_, box, tries)) {
+  const auto allowed = [&](const std::vector<uint32_t>& inputs) {
+    for (size_t s = 0; s < root_.size(); ++s) {
+      const bool is_input = s < tape_.inputs.size();
+      if (is_input && tape_.inputs[s].scalar != ir::Scalar::floating) continue;  // the box has no others
+      const uint32_t word = is_input ? inputs[s] : runner_.word(evaluator_.operation_of(s));
+      const auto value = static_cast<double>(std::bit_cast<float>(word));
+      if (value < root_[s].lo || value > root_[s].hi) return false;
+    }
+    return true;
+  };
+  for (const Counterexample& found : search(runner_, tape_, box, tries, allowed)) {
     auto known = std::ranges::find(proof_.unproved, found.broken.operation, &Unproved::operation);
     if (known == proof_.unproved.end()) known = proof_.unproved.emplace(known);
     if (!known->counterexample.empty()) continue;
@@ -175,7 +198,7 @@ bool Prover::refute(const Box& box, int tries) {
 }
 
 void Prover::search_proof() {
-  std::vector<Task> stack{{evaluator_.whole(), 0}};
+  std::vector<Task> stack{{root_, 0}};
   if (!evaluator_.walk(stack[0].box)) return;  // no input at all
   if (!evaluator_.findings().empty() && refute(stack[0].box, effort_.tries)) return;
   size_t open = 0;
@@ -184,7 +207,7 @@ void Prover::search_proof() {
     stack.pop_back();
     if (!evaluator_.walk(task.box)) continue;
     if (evaluator_.findings().empty()) {
-      leaves_.push_back({task.box, outputs()});
+      leaves_.push_back(leaf(task.box));
       continue;
     }
     const Finding finding = evaluator_.findings()[0];
@@ -212,8 +235,29 @@ void Prover::search_proof() {
 
 /// The bounds of the outputs over all boxes.
 void Prover::conclude() {
+  refine_all();
+  proof_.outputs = proof_.followed = bounds_of_leaves();
+  const bool tips = std::ranges::any_of(leaves_, [](const Leaf& l) { return !l.tipped.empty(); });
+  if (tips) {
+    evaluator_.follow_branches(true);
+    for (Leaf& l : leaves_)
+      if (evaluator_.walk(l.box)) l = leaf(l.box);
+    refine_all();
+    proof_.followed = bounds_of_leaves();
+    std::set<uint32_t> tipped;
+    for (const Leaf& l : leaves_) tipped.insert(l.tipped.begin(), l.tipped.end());
+    proof_.tipped.assign(tipped.begin(), tipped.end());
+  }
+  for (size_t o = 0; o < tape_.outputs.size(); ++o) proof_.lost.push_back(place_of_loss(o));
+}
+
+void Prover::refine_all() {
   refine(evaluator_.steps() + effort_.error / 2, [](const Bound& b) { return b.relative_error(); });
   refine(evaluator_.steps() + effort_.error / 2, [](const Bound& b) { return b.absolute; });
+}
+
+std::vector<Bound> Prover::bounds_of_leaves() const {
+  std::vector<Bound> bounds;
   for (size_t o = 0; o < tape_.outputs.size(); ++o) {
     Bound all{infinity, -infinity};
     for (const Leaf& leaf : leaves_) {
@@ -221,8 +265,26 @@ void Prover::conclude() {
       all = {std::min(all.lo, b.lo), std::max(all.hi, b.hi), std::max(all.absolute, b.absolute),
              std::max(all.relative, b.relative_error()), 0};
     }
-    proof_.outputs.push_back(all);
+    bounds.push_back(all);
   }
+  return bounds;
+}
+
+/// The first operation that the output depends on and whose error is unknown, though those of its operands are known.
+uint32_t Prover::place_of_loss(size_t output) {
+  const auto unknown = [&](const Leaf& l) { return l.outputs[output].absolute > largest; };
+  const auto worst = std::ranges::find_if(leaves_, unknown);
+  if (worst == leaves_.end() || !evaluator_.walk(worst->box)) return none;
+  const uint32_t last = tape_.outputs[output].operation;
+  std::vector<bool> needed(last + 1);
+  needed[last] = true;
+  uint32_t lost = none;
+  for (uint32_t i = last + 1; i-- > 0;) {
+    if (!needed[i] || !evaluator_.is_reached(i) || evaluator_.bound(i).absolute <= largest) continue;
+    lost = i;
+    for (const uint32_t operand : tape_.operands_of(tape_.operations[i])) needed[operand] = true;
+  }
+  return lost;
 }
 
 /// Cuts the boxes with the largest errors until so many operations have been walked.
@@ -254,7 +316,7 @@ void Prover::refine(uint64_t work, double (*measure)(const Bound&)) {
     const auto error_there = [&] { return capped(evaluator_.bound(worst.output)); };
     std::vector<Leaf> halves;
     for (const Box& half : cut(box, worst.output, worst.error, error_there))
-      if (evaluator_.walk(half)) halves.push_back({half, outputs()});
+      if (evaluator_.walk(half)) halves.push_back(leaf(half));
     if (halves.empty()) continue;  // it cannot be cut: it stays as it is
     leaves_[worst.leaf] = std::move(halves[0]);
     queue.push(worst_of(worst.leaf));
@@ -266,9 +328,16 @@ void Prover::refine(uint64_t work, double (*measure)(const Bound&)) {
 
 }  // namespace
 
-Proof prove(const Tape& tape, const Effort& effort) {
+std::vector<std::string> sides_of(const Tape& tape) {
+  const Evaluator evaluator(tape);
+  std::vector<std::string> names;
+  for (size_t s = 0; s < evaluator.side_count(); ++s) names.push_back(evaluator.side_name(s));
+  return names;
+}
+
+Proof prove(const Tape& tape, const Effort& effort, const std::vector<Restriction>& where) {
   const lanes::FpGuard guard;
-  return Prover(tape, effort).run();
+  return Prover(tape, effort, where).run();
 }
 
 }  // namespace isoshade::analysis

@@ -29,9 +29,25 @@ struct Unproved {
 struct Proof {
   std::vector<Unproved> unproved;  ///< empty: all is proved
   std::vector<Bound> outputs;      ///< of Tape::outputs; without meaning where not all is proved
-  uint64_t steps = 0;              ///< operations that were walked
+  /// The same, but the errors are those against exact arithmetic that takes the same side of each select. They are
+  /// smaller where rounding may tip a comparison.
+  std::vector<Bound> followed;
+  std::vector<uint32_t> tipped;  ///< selects whose condition rounding may tip
+  /// By output: the operation where even the error of `followed` gets larger than any float, or none.
+  std::vector<uint32_t> lost;
+  uint64_t steps = 0;  ///< operations that were walked
 };
 
-Proof prove(const Tape& tape, const Effort& effort = {});
+/// A range that an input or a scalar product is restricted to.
+struct Restriction {
+  std::string name;  ///< of an input, or of the node that gives the scalar product
+  Side range;
+};
+
+/// What restrictions can name: inputs and scalar products.
+std::vector<std::string> sides_of(const Tape& tape);
+
+/// Over all inputs for which the restrictions hold.
+Proof prove(const Tape& tape, const Effort& effort = {}, const std::vector<Restriction>& where = {});
 
 }  // namespace isoshade::analysis

@@ -36,11 +36,22 @@ struct Monotone {
 Outcome monotone(const Monotone& f, std::string_view row, const Bound& x) {
   const bool inside = x.lo >= f.least && x.hi <= f.most;
   const double from = std::clamp(x.lo, f.least, f.most), to = std::clamp(x.hi, f.least, f.most);
-  double carried = slope_times(f.slope(from - x.absolute, to + x.absolute), x.absolute);
+  // Both arguments, the computed and the exact one, lie here.
+  const double first = std::max(std::min(from, x.exact_lo()), f.least);
+  const double last = std::min(std::max(to, x.exact_hi()), f.most);
+  double carried = slope_times(f.slope(first, last), x.absolute);
   if (f.breach == Breach::arc) carried = std::min(carried, std::sqrt(5 * x.absolute));
-  if (f.least > 0 && from - x.absolute <= 0 && x.absolute > 0) carried = infinity;
   const double a = f.value(f.rising ? from : to), b = f.value(f.rising ? to : from);
+  const double least = f.value(f.rising ? first : last), most = f.value(f.rising ? last : first);
+  if (x.absolute > 0)
+    carried = std::min(carried, (most - least) * (1 + 1e-12) + 1e-14 * std::max(-least, most));
+  const bool exact_is_inside = f.least <= 0 || x.exact_lo() >= f.least;
+  if (x.absolute > 0 && !exact_is_inside) carried = infinity;
   Outcome outcome = approximate(a, b, std::max(ulp_of(row), 1.0) * ulp * (1 + ulp), carried);
+  if (exact_is_inside) {
+    place_exact(outcome.bound, least, most);
+    outcome.bound = settled(outcome.bound).bound;
+  }
   if (!inside && f.breach != Breach::none) outcome.breach = f.breach;
   return outcome;
 }

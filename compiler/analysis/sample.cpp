@@ -211,7 +211,15 @@ std::optional<Runner::Broken> Runner::run(std::span<const uint32_t> inputs) {
   return broken;
 }
 
-std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries) {
+std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int count) {
+  std::vector<std::vector<uint32_t>> all;
+  Points points(tape, box);
+  for (int i = 0; i < count; ++i) all.push_back(points.next());
+  return all;
+}
+
+std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries,
+                                   const std::function<bool(const std::vector<uint32_t>&)>& allowed) {
   // A sum of a fixed number of terms is not what one of them is.
   std::vector<bool> is_doubtful(tape.operations.size());
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
@@ -225,7 +233,7 @@ std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& 
   for (int i = 0; i < tries; ++i) {
     const std::vector<uint32_t>& inputs = points.next();
     const auto broken = runner.run(inputs);
-    if (!broken || is_doubtful[broken->operation]) continue;
+    if (!broken || is_doubtful[broken->operation] || !allowed(inputs)) continue;
     const auto known = std::ranges::find_if(
         found, [&](const Counterexample& c) { return c.broken.operation == broken->operation; });
     if (known == found.end()) found.push_back({inputs, *broken});

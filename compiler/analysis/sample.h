@@ -2,6 +2,7 @@
 // A tape run on floats, and the search for inputs on which it breaks.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "compiler/analysis/evaluate.h"
@@ -40,8 +41,13 @@ struct Counterexample {
   Runner::Broken broken;
 };
 
-/// Tries inputs of a box: ends, middles, equal ones, vectors along each other. The same on every run.
-/// One counterexample for each operation that breaks.
-std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries);
+/// Inputs of a box, as words: ends, middles, equal ones, vectors along each other. The same on every run. Unit vectors
+/// are of any direction.
+std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int count);
+
+/// Tries so many of them; one counterexample for each operation that breaks. `allowed`: of the inputs that were run
+/// last, whether they count.
+std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries,
+                                   const std::function<bool(const std::vector<uint32_t>&)>& allowed);
 
 }  // namespace isoshade::analysis

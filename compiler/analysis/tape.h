@@ -98,7 +98,21 @@ struct Fact {
   };
   Kind kind{};
   uint32_t first = none, second = none, third = none;
-  double first_length = 1e30, second_length = 1e30;  ///< of a dot: what |a| and |b| are at most
+  uint32_t left = none, right = none;  ///< of a dot: a and b in Tape::vectors
+};
+
+/// A vector that a scalar product is of, and how it was made: its length says more of its error than its components.
+struct VectorShape {
+  enum class Kind : uint8_t {
+    given,  ///< in some other way
+    sum,    ///< left + right or left - right
+    cross,  ///< left x right
+  };
+  Kind kind{};
+  uint32_t left = none, right = none;  ///< in Tape::vectors
+  std::vector<uint32_t> components;    ///< operations
+  uint32_t square = none;              ///< its scalar product with itself, if that stands before
+  double length = 1e30;                ///< what its length is at most
 };
 
 /// The group of parameters that say how many taps a post sums: as many as it is written for, no fewer.
@@ -113,6 +127,7 @@ struct Tape {
   std::vector<Row> rows;
   std::vector<Place> places{{}};
   std::unordered_map<uint32_t, std::vector<Fact>> facts;  ///< of operations
+  std::vector<VectorShape> vectors;                       ///< of facts; what one is made of stands before it
   struct Output {
     std::string name;  ///< "out.x"
     uint32_t operation = none;

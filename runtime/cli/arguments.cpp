@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "compiler/support/diagnostics.h"
+#include "compiler/support/parse_number.h"
 #include "runtime/cli/places.h"
 
 namespace isoshade::cli {
@@ -35,6 +36,22 @@ const CLI::Validator size_text(
                                     : "\"" + text + "\" is no size: write WxH, 1x1 to 8192x8192";
     },
     "WxH");
+
+std::optional<NamedRange> parse_range(const std::string& text) {
+  const size_t equals = text.find('='), colon = text.find(':', std::min(equals, text.size()));
+  if (equals == 0 || equals == std::string::npos || colon == std::string::npos) return std::nullopt;
+  const auto lo = support::parse_float(std::string_view(text).substr(equals + 1, colon - equals - 1));
+  const auto hi = support::parse_float(std::string_view(text).substr(colon + 1));
+  if (!lo || !hi || !(*lo <= *hi)) return std::nullopt;
+  return NamedRange{text.substr(0, equals), *lo, *hi};
+}
+
+const CLI::Validator range_text(
+    [](std::string& text) {
+      return parse_range(text) ? std::string()
+                               : "\"" + text + "\" is no range: write NAME=LEAST:MOST, as roughness=0.1:1";
+    },
+    "NAME=LEAST:MOST");
 
 /// "error" or "no-" and the id of a warning.
 const CLI::Validator warning_text(
@@ -229,6 +246,12 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   check_app->add_option("DOCUMENT", check.documents, "Function and effect documents")->required();
   check_app->add_option("-o,--output", check.output,
                         "Write the counterexamples of a function to this CSV file, as a table for `eval`");
+  std::vector<std::string> ranges;
+  check_app
+      ->add_option("--where", ranges,
+                   "Only inputs that lie so; also for the scalar product that a node gives")
+      ->check(range_text);
+  add_precision(*check_app, check.precision);
 
   FormatArguments format;
   CLI::App* format_app = app.add_subcommand("fmt", "Bring documents into canonical layout, in place");
@@ -308,6 +331,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (render_app->parsed()) parsed.render = render;
   if (verify_app->parsed()) parsed.verify = verify;
   if (eval_app->parsed()) parsed.eval = eval;
+  for (const std::string& range : ranges) check.where.push_back(*parse_range(range));
   if (check_app->parsed()) parsed.check = check;
   if (format_app->parsed()) parsed.format = format;
   if (draw_app->parsed()) parsed.draw = draw;

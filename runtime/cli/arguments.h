@@ -81,8 +81,16 @@ struct EvalArguments {
   BackendChoice choice;
 };
 
+/// Where an input, or the scalar product that a node gives, shall lie.
+struct NamedRange {
+  std::string name;
+  float lo = 0, hi = 0;
+};
+
 struct CheckArguments {
   std::vector<std::string> documents;
+  std::vector<NamedRange> where;
+  functions::Tier precision = functions::Tier::standard;
   std::string output;  ///< a table of counterexamples; empty: none is written
 };
 

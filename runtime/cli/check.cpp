@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade check: proofs over all inputs of a document.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "compiler/analysis/document.h"
 #include "compiler/driver/driver.h"
 #include "compiler/support/parse_number.h"
+#include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -15,16 +18,39 @@ namespace {
 
 std::string number(double value) { return support::format_float(static_cast<float>(value)); }
 
+/// "error at most 1e-06, at most 3.5 ULP"
+std::string error_text(const analysis::Bound& bound) {
+  if (bound.absolute > analysis::largest) return "error unknown";
+  const double ulps = bound.relative * 0x1p24;
+  std::string text = "error at most " + number(bound.absolute);
+  if (ulps > 0 && ulps < 1e6) text += ", at most " + number(std::ceil(10 * ulps) / 10) + " ULP";
+  return text;
+}
+
+bool tells_less(const analysis::Bound& a, const analysis::Bound& b) {
+  return a.absolute > b.absolute || std::min(a.relative, 1.0) > std::min(b.relative, 1.0);
+}
+
 void print_bounds(const analysis::Tape& tape, const analysis::Proof& proof) {
+  const auto node = [&](uint32_t operation) {
+    return support::quote(tape.places[tape.operations[operation].place].node);
+  };
+  bool tips = false;
   for (size_t i = 0; i < tape.outputs.size(); ++i) {
-    const analysis::Bound& bound = proof.outputs[i];
-    std::string error =
-        std::isfinite(bound.absolute) ? "error at most " + number(bound.absolute) : "error unknown";
-    const double ulps = bound.relative * 0x1p24;
-    if (ulps > 0 && ulps < 1e6) error += ", at most " + number(std::ceil(10 * ulps) / 10) + " ULP";
+    const analysis::Bound &bound = proof.outputs[i], &followed = proof.followed[i];
+    const bool differs = proof.lost[i] == analysis::none && tells_less(bound, followed);
+    std::string error = error_text(followed);
+    if (proof.lost[i] != analysis::none) error += ", lost at node " + node(proof.lost[i]);
+    if (differs) error += "; where rounding tips a branch, " + error_text(bound);
+    tips = tips || differs;
     std::printf("  %s in [%s, %s], %s\n", tape.outputs[i].name.c_str(), number(bound.lo).c_str(),
                 number(bound.hi).c_str(), error.c_str());
   }
+  std::string nodes;
+  std::set<std::string> named;
+  for (const uint32_t operation : proof.tipped)
+    if (named.insert(node(operation)).second) nodes += (nodes.empty() ? "" : ", ") + node(operation);
+  if (tips) std::printf("  branches that rounding may tip: %s\n", nodes.c_str());
 }
 
 /// The counterexamples as rows of a table for `isoshade eval`.
@@ -45,6 +71,25 @@ std::string table_of(const analysis::Tape& tape, const analysis::Proof& proof) {
   return text;
 }
 
+/// What of `where` the subjects have; nothing, and a report, if some name is in none of them.
+std::optional<std::vector<analysis::Restriction>> restrictions(const std::vector<analysis::Subject>& subjects,
+                                                               const std::vector<NamedRange>& where,
+                                                               support::Diagnostics& diagnostics) {
+  std::vector<std::string> known;
+  for (const analysis::Subject& subject : subjects)
+    for (std::string& name : analysis::sides_of(subject.tape)) known.push_back(std::move(name));
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  std::vector<analysis::Restriction> all;
+  for (const NamedRange& range : where) {
+    all.push_back({range.name, {static_cast<double>(range.lo), static_cast<double>(range.hi)}});
+    if (std::ranges::find(known, range.name) != known.end()) continue;
+    const std::string message = "no input or scalar product is called " + support::quote(range.name);
+    diagnostics.report_unknown(support::Id::unknown_setting, {}, message, range.name, names);
+    return std::nullopt;
+  }
+  return all;
+}
+
 enum class Result : uint8_t { proved, not_proved, error };
 
 Result check_one(const std::string& path, const CheckArguments& arguments, const Common& common,
@@ -59,8 +104,10 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   const auto subjects = analysis::subjects_of(*typed, diagnostics);
   if (!subjects) return Result::error;
   Result result = Result::proved;
+  const auto where = restrictions(*subjects, arguments.where, diagnostics);
+  if (!where) return Result::error;
   for (const analysis::Subject& subject : *subjects) {
-    const analysis::Proof proof = analysis::prove(subject.tape);
+    const analysis::Proof proof = analysis::prove(subject.tape, {}, *where);
     const bool proved = proof.unproved.empty();
     const bool is_effect = typed->graph.kind == graph::DocumentKind::effect;
     const bool is_function = typed->graph.kind == graph::DocumentKind::function;

@@ -158,6 +158,37 @@ TEST(Proof, OfASumOverLightsBoundsAnyNumberOfThem) {
   EXPECT_FALSE(checked(effect("c / color3(dot(n, l))")).proof.unproved.empty());
 }
 
+TEST(Proof, TellsErrorsApartByWhetherRoundingTipsABranch) {
+  const Checked c = checked(function_of(x_and_y, code("x * 0.1 > y * 0.3 ? 1 + y : 0")));
+  ASSERT_EQ(c.proof.tipped.size(), 1u);
+  EXPECT_GE(c.proof.outputs[0].absolute, 1);
+  EXPECT_LE(c.proof.followed[0].absolute, 0x1.1p-23);
+  const Checked exact = checked(function_of(x_and_y, code("x > y ? 1 + y : 0")));
+  EXPECT_TRUE(exact.proof.tipped.empty()) << "inputs are what they are";
+  EXPECT_LE(exact.proof.outputs[0].absolute, 0x1.1p-23);
+}
+
+TEST(Proof, NamesTheOperationAtWhichTheErrorIsLost) {
+  // Where t is above 0 it is known to be a float, but exactly it may be nothing.
+  const std::string nodes = R"=("t": {"type": "expression", "code": "x * 0.1 - y * 0.3", "x": "x", "y": "y"},
+      "q": {"type": "divide", "in1": 0.5, "in2": "t"}, "half": {"type": "multiply", "in1": "q", "in2": 0.5},
+      "r": {"type": "ifgreater", "value1": "t", "value2": 0, "in1": "half", "in2": 0})=";
+  const Checked c = checked(function_of(x_and_y, nodes));
+  ASSERT_TRUE(c.proof.unproved.empty()) << c.messages;
+  const analysis::Tape& tape = c.subject.tape;
+  ASSERT_NE(c.proof.lost.at(0), analysis::none);
+  EXPECT_EQ(tape.places[tape.operations[c.proof.lost[0]].place].node, "q");
+}
+
+TEST(Proof, IsOfThePartThatIsAskedFor) {
+  const Checked c = checked(function_of(x_and_y, code("1 / x", "x")));
+  EXPECT_FALSE(c.proof.unproved.empty());
+  const Proof part = analysis::prove(c.subject.tape, {}, {{"x", {0.5, 2}}});
+  EXPECT_TRUE(part.unproved.empty());
+  EXPECT_EQ(part.outputs[0].lo, 1);
+  EXPECT_EQ(part.outputs[0].hi, 2);
+}
+
 TEST(Proof, IsTheSameEachTime) {
   const std::string text = function_of(x_and_y, code("1 / (x * x - y * y * y + 0.149)"));
   EXPECT_EQ(checked(text).messages, checked(text).messages);

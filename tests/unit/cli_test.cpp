@@ -297,6 +297,13 @@ TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
       << refuted.text;
   const Outcome evaluated = run("eval " + source_form + " --backend interpreter --inputs " + table);
   EXPECT_EQ(evaluated.text, "out\nnan\n");
+  const Outcome restricted = run("check " + ggx + " --where n_dot_h=0:0.5");
+  EXPECT_EQ(restricted.exit, 0) << restricted.text;
+  EXPECT_NE(restricted.text, proved.text);
+  const Outcome unknown = run("check " + ggx + " --where n_dot_x=0:1");
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_NE(unknown.text.find("did you mean \"n_dot_h\"?"), std::string::npos) << unknown.text;
+  EXPECT_EQ(run("check " + ggx + " --where n_dot_h=1").exit, 2);
   EXPECT_EQ(run("check " + scene).exit, 2);
   const Outcome as_data = run("check " + source_form + " --diagnostics json");
   EXPECT_NE(as_data.text.find("\"refuted\""), std::string::npos) << as_data.text;
