@@ -61,3 +61,16 @@ isoshade_test(proved_test SOURCES accuracy/proved_test.cpp LINKS isoshade_analys
 target_compile_definitions(proved_test PRIVATE
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
   ISOSHADE_PROVED="${PROJECT_SOURCE_DIR}/tests/accuracy/proved.txt")
+
+isoshade_test(bound_test
+  SOURCES
+    accuracy/bound_test.cpp
+    accuracy/real_tape.cpp
+    accuracy/subject.cpp
+  LINKS isoshade_analysis isoshade_cpu isoshade_interpreter isoshade_reference
+    $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(bound_test PRIVATE
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
+  $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
