@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands that work with documents: compile, eval, check, fmt, draw, nodes; and how diagnostics are told.
+#include <gtest/gtest.h>
+
+#include "tests/unit/command.h"
+
+namespace isoshade {
+namespace {
+
+using namespace testing;
+namespace fs = std::filesystem;
+
+TEST_F(Cli, EvaluatesATable) {
+  const std::string table = file("in.csv", "n_dot_h, alpha\n1, 0.5\n0x1.8p-1,0.0625\n0.5,nan\n");
+  for (const char* backend : {"cpu", "interpreter"})
+    EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " --backend " + backend).text,
+              "out\n0x1.45f306p+0\n0x1.a57c44p-8\nnan\n");
+  EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " -o " + file("out.csv")).text, "");
+  EXPECT_EQ(read(folder_ / "out.csv"), "out\n0x1.45f306p+0\n0x1.a57c44p-8\nnan\n");
+}
+
+TEST_F(Cli, SaysWhereATableIsWrong) {
+  const auto error = [&](const std::string& text) {
+    return run("eval " + ggx + " --inputs " + file("in.csv", text)).text;
+  };
+  EXPECT_NE(error("alpha,n_dot_l\n1,1\n").find("did you mean \"n_dot_h\"?"), std::string::npos);
+  EXPECT_NE(error("roughness,n_dot_h\n1,1\n").find("the columns are alpha,n_dot_h"), std::string::npos);
+  EXPECT_NE(error("alpha\n1\n").find("there is no column \"n_dot_h\""), std::string::npos);
+  EXPECT_NE(error("\xef\xbb\xbf"
+                  "alpha,n_dot_h\n1\n")
+                .find("this row has 1 cells"),
+            std::string::npos);
+  EXPECT_NE(error("alpha,n_dot_h\n1,one\n").find("in.csv:2:3: error[bad-table]: \"one\" is not a float"),
+            std::string::npos);
+}
+
+TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
+  const Outcome outcome =
+      run("compile " + graphs + "/materials/cook_torrance.json --target glsl,cpp,spirv -o " + file("out"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  for (const char* name :
+       {"cook_torrance.base.pixel.frag", "cook_torrance.base.pixel.frag.spv", "cook_torrance.base.pixel.cpp",
+        "cook_torrance.base.vertex.vert", "cook_torrance.json", "runtime/lanes/lanes.h"})
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  const std::string compiler = "c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " + file("out") + " ";
+  EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
+}
+
+TEST_F(Cli, CompilesAPostToFiles) {
+  const Outcome outcome =
+      run("compile " + graphs + "/effects/bloom/blur.json --target glsl,cpp -o " + file("out"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  for (const char* name : {"bloom_blur.post.frag", "bloom_blur.post.cpp", "bloom_blur.json"})
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  const std::string reflection = read(folder_ / "out" / "bloom_blur.json");
+  EXPECT_NE(reflection.find("\"post\": \"bloom_blur\""), std::string::npos) << reflection;
+  EXPECT_NE(reflection.find("\"taps\""), std::string::npos) << reflection;
+}
+
+TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
+  const Outcome proved = run("check " + ggx);
+  EXPECT_EQ(proved.exit, 0) << proved.text;
+  EXPECT_NE(proved.text.find("ggx_d.json: proved\n  out in ["), std::string::npos) << proved.text;
+  const std::string source_form = graphs + "/source_forms/ggx_d.json", table = file("found.csv");
+  const Outcome refuted = run("check " + source_form + " -o " + table);
+  EXPECT_EQ(refuted.exit, 1) << refuted.text;
+  EXPECT_NE(refuted.text.find("error[refuted]: in node \"d\", port \"in2\""), std::string::npos)
+      << refuted.text;
+  const Outcome evaluated = run("eval " + source_form + " --backend interpreter --inputs " + table);
+  EXPECT_EQ(evaluated.text, "out\nnan\n");
+  const Outcome restricted = run("check " + ggx + " --where n_dot_h=0:0.5");
+  EXPECT_EQ(restricted.exit, 0) << restricted.text;
+  EXPECT_NE(restricted.text, proved.text);
+  const Outcome unknown = run("check " + ggx + " --where n_dot_x=0:1");
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_NE(unknown.text.find("did you mean \"n_dot_h\"?"), std::string::npos) << unknown.text;
+  EXPECT_EQ(run("check " + ggx + " --where n_dot_h=1").exit, 2);
+  EXPECT_EQ(run("check " + scene).exit, 2);
+  const Outcome as_data = run("check " + source_form + " --diagnostics json");
+  EXPECT_NE(as_data.text.find("\"refuted\""), std::string::npos) << as_data.text;
+}
+
+TEST_F(Cli, ListsTheNodesAndTellsAllOfOne) {
+  const Outcome all = run("nodes");
+  EXPECT_EQ(all.exit, 0);
+  EXPECT_NE(all.text.find("\n  noise3d "), std::string::npos);
+  const Outcome one = run("nodes sin");
+  EXPECT_EQ(one.exit, 0);
+  EXPECT_NE(one.text.find("\nerror  1.75 ULP\n"), std::string::npos) << one.text;
+  EXPECT_NE(one.text.find(" operations on vector3\n"), std::string::npos) << one.text;
+  const Outcome none = run("nodes nois3d");
+  EXPECT_EQ(none.exit, 2);
+  EXPECT_NE(none.text.find("did you mean \"noise3d\"?"), std::string::npos) << none.text;
+}
+
+TEST_F(Cli, NamesNodesByWhatOthersCallThem) {
+  EXPECT_NE(run("nodes lerp").text.find("did you mean \"mix\"?"), std::string::npos);
+  EXPECT_NE(run("nodes dot").text.find("did you mean \"dotproduct\"?"), std::string::npos);
+  EXPECT_NE(run("rendr a.json").text.find("Did you mean \"render\"?"), std::string::npos);
+}
+
+TEST_F(Cli, ListsStagesAndDumpsThemWithoutAFolder) {
+  const Outcome stages = run("compile " + ggx + " --dump-after help");
+  EXPECT_EQ(stages.exit, 0) << stages.text;
+  EXPECT_EQ(stages.text.find("\nfold\n"), stages.text.rfind("\nfold\n")) << stages.text;
+  EXPECT_EQ(run("compile " + ggx + " --dump-after typed").exit, 0);
+  EXPECT_EQ(run("compile " + ggx + " -o " + file("out") + " --dump-after help").text, stages.text);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_EQ(run("compile " + ggx).exit, 2);
+}
+
+TEST_F(Cli, TablesNameComponentsOfColoursAsColours) {
+  const std::string function = file(
+      "f.json",
+      R"({"isoshade": 1, "function": "f", "inputs": {"c": {"type": "color3"}}, "outputs": {"out": "c"}})");
+  const std::string table = file("in.csv", "c.b,c.r,c.g\n4,1,2\n");
+  EXPECT_EQ(run("eval " + function + " --inputs " + table + " --backend interpreter").text,
+            "out.x,out.y,out.z\n0x1p+0,0x1p+1,0x1p+2\n");
+}
+
+TEST_F(Cli, DumpsEveryStage) {
+  const std::string command = "compile " + ggx + " -o " + file("out") + " --quiet --dump-after ";
+  std::istringstream stages(run(command + "help").text);
+  int count = 0;
+  for (std::string stage; std::getline(stages, stage); ++count)
+    EXPECT_NE(run(command + stage).text.find("# after " + stage + "\n"), std::string::npos) << stage;
+  EXPECT_GE(count, 10);
+  EXPECT_EQ(run(command + "nowhere").exit, 2);
+}
+
+TEST_F(Cli, FormatsDocumentsInPlaceAndChecksThem) {
+  const std::string path = file("f.json", "{\"isoshade\":1,  \"function\":\"f\"}");
+  const Outcome listed = run("fmt --check " + path);
+  EXPECT_EQ(listed.exit, 1);
+  EXPECT_EQ(listed.text, path + "\n");
+  EXPECT_EQ(run("fmt " + path).exit, 0);
+  EXPECT_EQ(read(path), "{\n  \"isoshade\": 1,\n  \"function\": \"f\"\n}\n");
+  EXPECT_EQ(run("fmt --check " + path).exit, 0);
+  EXPECT_EQ(run("fmt - < " + path).text, read(path));
+  const std::string broken = file("broken.json", "{\"a\": ");
+  EXPECT_EQ(run("fmt " + broken).exit, 2);
+  EXPECT_EQ(read(broken), "{\"a\": ");
+}
+
+TEST_F(Cli, DrawsGraphsAsSvgPngAndDot) {
+  if (std::system("command -v dot >/dev/null") != 0) GTEST_SKIP() << "graphviz is not installed";
+  for (const std::string name : {"g.svg", "g.png", "g.dot"}) {
+    const Outcome outcome = run("draw " + ggx + " -o " + file(name));
+    EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  }
+  EXPECT_NE(read(folder_ / "g.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(read(folder_ / "g.png").substr(1, 3), "PNG");
+  EXPECT_EQ(read(folder_ / "g.dot").substr(0, 7), "digraph");
+  EXPECT_EQ(run("draw " + ggx + " -o " + file("g.pdf")).exit, 2);
+}
+
+TEST_F(Cli, TellsDiagnosticsAsData) {
+  const std::string path =
+      file("f.json", R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "add", "in1": "y", "in2": 1}}, "outputs": {"out": "n"}})");
+  const Outcome outcome = run("compile " + path + " -o " + file("out") + " --diagnostics json");
+  EXPECT_EQ(outcome.exit, 2);
+  for (const std::string part : {R"("id": "unknown-node")", R"("line": 2)", R"("column": 39)",
+                                 R"("pointer": "/nodes/n/in1")", R"("severity": "error")"})
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
+  EXPECT_EQ(run("compile " + ggx + " -o " + file("out") + " --diagnostics json").text, "[]\n");
+}
+
+TEST_F(Cli, TakesWarningsAsAsked) {
+  const std::string path =
+      file("f.json", R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
+"nodes": {"lost": {"type": "add", "in1": "x", "in2": 1}}, "outputs": {"out": "x"}})");
+  const std::string command = "compile " + path + " -q -o " + file("out");
+  const Outcome warned = run(command);
+  EXPECT_EQ(warned.exit, 0);
+  EXPECT_NE(warned.text.find("warning[unused-node]"), std::string::npos) << warned.text;
+  const Outcome refused = run(command + " -Werror");
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.text.find("error[unused-node]"), std::string::npos) << refused.text;
+  EXPECT_EQ(run(command + " -Werror -Wno-unused-node").text, "");
+  const Outcome unknown = run(command + " -Wno-such");
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_NE(unknown.text.find("unused-node"), std::string::npos) << unknown.text;
+}
+
+TEST_F(Cli, FilesOutsideOfTheCollectionAreRefusedUnlessAllowed) {
+  fs::create_directories(folder_ / "a");
+  fs::create_directories(folder_ / "b");
+  file("a/part.json", R"({"isoshade": 1, "function": "part", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "sin", "in": "x"}}, "outputs": {"out": "n"}})");
+  const std::string user =
+      file("b/user.json", R"({"isoshade": 1, "function": "user", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "../a/part.json", "x": "x"}}, "outputs": {"out": "n"}})");
+  const std::string command = "compile " + user + " -q -o " + file("out");
+  const Outcome refused = run(command);
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.text.find("error[outside-reference]"), std::string::npos) << refused.text;
+  EXPECT_EQ(run(command + " --allow-outside").exit, 0);
+  file("isoshade.root", "here");
+  EXPECT_EQ(run(command).exit, 0);
+}
+
+}  // namespace
+}  // namespace isoshade
