@@ -29,6 +29,7 @@ glm::vec3 parse_scale(const Document& document, ObjectReader& reader, const std:
                       Diagnostics& diagnostics) {
   constexpr Range range{-1e6, 1e6};
   const Json* json = reader.value("scale", Need::optional);
+  const size_t errors_before = diagnostics.error_count();
   glm::vec3 scale(1);
   if (json == nullptr) return scale;
   if (json->kind == Json::Kind::number) {
@@ -38,6 +39,7 @@ glm::vec3 parse_scale(const Document& document, ObjectReader& reader, const std:
   } else {
     reader.report_wrong("scale", *json, "a number or an array of 3 numbers");
   }
+  if (diagnostics.error_count() != errors_before) return glm::vec3(1);
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(scale[axis]) >= 1e-6f) continue;
     diagnostics.report(Id::degenerate, document.span(*json), "\"scale\" of " + what + " is zero or nearly so")

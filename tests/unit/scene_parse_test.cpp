@@ -191,6 +191,7 @@ TEST(ParseScene, RefusesWhatHasNoExtentOrDirection) {
   EXPECT_TRUE(transform(R"("scale": 0)").fails_with("degenerate"));
   EXPECT_TRUE(transform(R"("scale": [1, 0, 1])").fails_with("degenerate"));
   EXPECT_TRUE(transform(R"("scale": [1, 1e-44, 1])").fails_with("degenerate"));
+  EXPECT_EQ(transform(R"("scale": 2e6)").diagnostics.error_count(), 1u);
   EXPECT_TRUE(transform(R"("rotate": [0, 0, 0, 0])").fails_with("quaternion"));
   EXPECT_TRUE(transform(R"("rotate": [1e9, 0, 0])").fails_with("out-of-range"));
   EXPECT_TRUE(parse_members(R"("lights": {"l": {"type": "directional", "direction": [0, 0, 0]}})")
