@@ -71,6 +71,8 @@ class Backend {
   virtual std::string_view name() const = 0;
   /// Device or compiler, lanes, division: one line for reports.
   virtual std::string description() const = 0;
+  /// The seconds that went so far into code for the machine: compiled, or found and loaded, where programs are first run.
+  virtual double build_seconds() const { return 0; }
 
   /// Runs the vertex programs: clip[d] receives 4 floats for each vertex of draws[d], NaN canonical.
   virtual bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,

@@ -75,6 +75,7 @@ class CpuBackend final : public backends::Backend {
            std::to_string(workers_.count()) + (workers_.count() == 1 ? " thread" : " threads") +
            ", native division";
   }
+  double build_seconds() const override { return kernels_.seconds(); }
 
   bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
                  Diagnostics& diagnostics) override;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "backends/cpu/lanes_headers.h"
+#include "backends/timed.h"
 #include "compiler/support/check.h"
 #include "compiler/support/sha256.h"
 #include "compiler/support/visible.h"
@@ -104,6 +105,7 @@ std::string KernelStore::key_of(const std::string& text) const {
 
 std::optional<std::vector<const Kernel*>> KernelStore::kernels(
     std::span<const driver::Program* const> programs, Diagnostics& diagnostics) {
+  const backends::Timed timed(seconds_);
   struct Missing {
     const driver::Program* program;
     std::string text;

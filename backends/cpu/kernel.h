@@ -64,6 +64,8 @@ class KernelStore {
   std::optional<std::vector<const Kernel*>> kernels(std::span<const driver::Program* const> programs,
                                                     support::Diagnostics& diagnostics);
 
+  /// What all calls of kernels() took.
+  double seconds() const { return seconds_; }
   const Compiler& compiler() const { return compiler_; }
   LaneCount lanes() const { return lanes_; }
 
@@ -80,6 +82,7 @@ class KernelStore {
   std::string keep_;
   std::string surroundings_;  ///< the hash of all that decides what a text compiles to
   std::map<std::string, std::unique_ptr<Kernel>> loaded_;
+  double seconds_ = 0;
 };
 
 }  // namespace isoshade::cpu

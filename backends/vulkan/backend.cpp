@@ -130,6 +130,8 @@ std::string VulkanBackend::description() const {
          (device_->validates() ? ", validated" : "");
 }
 
+double VulkanBackend::build_seconds() const { return device_->build_seconds(); }
+
 /// Runs `work`; what Vulkan threw or the validation layers said becomes a diagnostic.
 template <class Work>
 bool VulkanBackend::guarded(Diagnostics& diagnostics, Work work) {

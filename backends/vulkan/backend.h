@@ -45,6 +45,7 @@ class VulkanBackend : public backends::Backend {
 
   std::string_view name() const override { return "vulkan"; }
   std::string description() const override;
+  double build_seconds() const override;
 
   bool transform(const backends::Frame& frame, std::vector<std::vector<float>>& clip,
                  support::Diagnostics& diagnostics) override;

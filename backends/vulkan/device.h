@@ -82,6 +82,8 @@ class Device {
 
   /// Compiled at the first use of a source, then kept. Nothing where a text does not compile.
   std::optional<PipelineIndex> pipeline(const PipelineSource& source, support::Diagnostics& diagnostics);
+  /// What all calls of pipeline() took.
+  double build_seconds() const;
 
   /// Replaces the contents of a buffer that shaders read; at most max_buffer_bytes().
   void upload(lower::FrameBuffer buffer, const void* data, size_t bytes);

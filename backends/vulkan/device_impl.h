@@ -113,6 +113,7 @@ struct Device::Impl {
   std::map<std::pair<Target, uint32_t>, vk::raii::RenderPass> render_passes;
   std::vector<vk::raii::Pipeline> pipelines;
   std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
+  double build_seconds = 0;
 };
 
 template <class Record>

@@ -2,6 +2,7 @@
 // Render passes and pipelines: the fixed state that each kind of target implies.
 #include <stdexcept>
 
+#include "backends/timed.h"
 #include "backends/vulkan/device_impl.h"
 #include "compiler/emit/spirv.h"
 #include "compiler/support/check.h"
@@ -144,8 +145,11 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
                                          .renderPass = *render_pass(source.target, source.attachments)}};
 }
 
+double Device::build_seconds() const { return impl_->build_seconds; }
+
 std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
                                               support::Diagnostics& diagnostics) {
+  const backends::Timed timed(impl_->build_seconds);
   std::string source_key = key(source);
   if (const auto found = impl_->pipeline_of.find(source_key); found != impl_->pipeline_of.end())
     return found->second;

@@ -191,7 +191,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(backend_names)
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
-  render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why");
+  render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why, and what each step took");
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
   add_choice(*render_app, render.choice);

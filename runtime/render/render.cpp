@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/render/render.h"
 
+#include <utility>
+
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/check.h"
 #include "runtime/raster/clip.h"
@@ -24,10 +26,17 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
             support::Diagnostics& diagnostics) {
   const backends::Frame& frame = plan.frame;
   Clock clock;
+  double built = backend.build_seconds();
+  stats.build_seconds = 0;
+  const auto lap = [&] {
+    const double before = std::exchange(built, backend.build_seconds());
+    stats.build_seconds += built - before;
+    return clock.lap() - (built - before);
+  };
   std::vector<std::vector<float>> clip;
   if (!backend.transform(frame, clip, diagnostics)) return false;
   support::check(clip.size() == frame.draws.size(), "a backend transformed another number of draws");
-  stats.transform_seconds = clock.lap();
+  stats.transform_seconds = lap();
 
   std::vector<float> vertices = frame.vertices;
   std::vector<int32_t> triangles;
@@ -41,12 +50,12 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
   stats.triangles = static_cast<int64_t>(triangles.size()) / lower::triangle_word::stride;
   stats.made_vertices =
       static_cast<int64_t>(vertices.size() - frame.vertices.size()) / lower::vertex_word::stride;
-  stats.clip_seconds = clock.lap();
+  stats.clip_seconds = lap();
 
   if (!backend.draw(frame, vertices, triangles, image, diagnostics)) return false;
-  stats.draw_seconds = clock.lap();
+  stats.draw_seconds = lap();
   if (!run_posts(plan.posts, frame.frame, backend, image, stats, diagnostics)) return false;
-  stats.post_seconds = clock.lap();
+  stats.post_seconds = lap();
   return true;
 }
 

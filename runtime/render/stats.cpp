@@ -25,11 +25,12 @@ std::string text(const PlanStats& stats) {
 
 std::string text(const DrawStats& stats) {
   std::string text = fmt::format(
+      "build:    {:.1f} ms\n"
       "vertices: {:.1f} ms\n"
       "clip:     {:.1f} ms; leaves {} triangles, makes {} vertices\n"
       "draw:     {:.1f} ms\n",
-      1e3 * stats.transform_seconds, 1e3 * stats.clip_seconds, stats.triangles, stats.made_vertices,
-      1e3 * stats.draw_seconds);
+      1e3 * stats.build_seconds, 1e3 * stats.transform_seconds, 1e3 * stats.clip_seconds, stats.triangles,
+      stats.made_vertices, 1e3 * stats.draw_seconds);
   if (stats.kept_images > 0)
     text += fmt::format("posts:    {:.1f} ms; at most {} images at a time\n", 1e3 * stats.post_seconds,
                         stats.kept_images);

@@ -79,6 +79,16 @@ TEST_P(CpuLanes, TransformsEveryVertex) {
   }
 }
 
+TEST_P(CpuLanes, TellsWhatItTookToBuildPrograms) {
+  const Scene test(64, 64, 5);
+  const auto cpu = backend(GetParam(), 2);
+  EXPECT_EQ(cpu->build_seconds(), 0);
+  Diagnostics diagnostics;
+  std::vector<std::vector<float>> clip;
+  ASSERT_TRUE(cpu->transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  EXPECT_GT(cpu->build_seconds(), 0);
+}
+
 TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
   const auto cpu = backend(GetParam(), 2);
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{200, 150}, std::pair{65, 129}}) {
