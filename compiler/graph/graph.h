@@ -63,9 +63,15 @@ struct Literal {
   bool integral = false;       ///< a number written without fraction or exponent that fits int64
   float number = 0;            ///< of a number
   int64_t integer = 0;         ///< of an integral number
-  std::vector<float> numbers;  ///< of an array: at most 16
+  std::vector<float> numbers;  ///< of an array: at most max_literal_numbers
   std::string string;
 };
+
+inline constexpr size_t max_literal_numbers = 16;  ///< a matrix has so many
+
+/// Reports what is no literal; `key` is what messages call it.
+std::optional<Literal> parse_literal(const Document& document, const Json& json, std::string_view key,
+                                     support::Diagnostics& diagnostics);
 
 /// "node", "node.port", "node.xyz" or "node.port.xyz", taken apart at the dots but not resolved.
 struct Link {

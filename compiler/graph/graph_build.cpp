@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Document -> Graph.
-#include <cmath>
 #include <utility>
 
 #include "compiler/graph/expression.h"
@@ -31,54 +30,6 @@ void GraphBuilder::enter(const Member& member, std::string_view what, Graph::Nam
       .report(Id::duplicate_name, document_.key_span(member),
               std::string(what) + " is called " + quote(member.key) + ", as an input or parameter is")
       .note(graph_.span(graph_.inputs[found->second.index].name_place), "which is named here");
-}
-
-std::optional<Literal> GraphBuilder::literal(const Json& json, std::string_view key) {
-  Literal literal;
-  const auto finite = [&](const Json& number) {
-    if (std::isfinite(document_.to_float(number))) return true;
-    diagnostics_.report(Id::out_of_range, document_.span(number),
-                        quote(key) + " is beyond the range of float");
-    return false;
-  };
-  switch (json.kind) {
-    case Json::Kind::boolean:
-      literal.kind = Literal::Kind::boolean;
-      literal.boolean = json.boolean;
-      return literal;
-    case Json::Kind::number:
-      if (!finite(json)) return std::nullopt;
-      literal.number = document_.to_float(json);
-      literal.integral = json.integral;
-      if (json.integral) literal.integer = document_.to_integer(json);
-      return literal;
-    case Json::Kind::string:
-      literal.kind = Literal::Kind::string;
-      literal.string = json.string;
-      return literal;
-    case Json::Kind::array:
-      literal.kind = Literal::Kind::numbers;
-      if (json.items.empty() || json.items.size() > 16) break;
-      for (const Json& item : json.items) {
-        if (item.kind != Json::Kind::number) {
-          diagnostics_.report(
-              Id::wrong_type, document_.span(item),
-              quote(key) + " is an array of numbers, not with " + std::string(kind_name(item.kind)));
-          return std::nullopt;
-        }
-        if (!finite(item)) return std::nullopt;
-        literal.numbers.push_back(document_.to_float(item));
-      }
-      return literal;
-    case Json::Kind::null:
-    case Json::Kind::object: break;
-  }
-  const bool array = json.kind == Json::Kind::array;
-  diagnostics_.report(
-      Id::wrong_type, document_.span(json),
-      array ? quote(key) + " is an array of 1 to 16 numbers, not of " + std::to_string(json.items.size())
-            : quote(key) + " cannot be " + std::string(kind_name(json.kind)));
-  return std::nullopt;
 }
 
 std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
@@ -137,7 +88,7 @@ void GraphBuilder::read_node(const Member& member) {
     Port port{entry.key, Literal{}, key_place(entry), place_of(value)};
     if (value.kind == Json::Kind::object) {
       if (std::optional<Link> found = link(value, entry.key)) port.value = std::move(*found);
-    } else if (std::optional<Literal> found = literal(value, entry.key)) {
+    } else if (std::optional<Literal> found = parse_literal(document_, value, entry.key, diagnostics_)) {
       port.value = std::move(*found);
     }
     node.ports.push_back(std::move(port));

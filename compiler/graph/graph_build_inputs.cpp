@@ -118,7 +118,7 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
   if (!is_parameter && is_vector) input.unit = reader.boolean("unit", false);
   const Json* value = reader.value("value", is_parameter ? Need::required : Need::optional);
   if (value != nullptr) {
-    input.value = literal(*value, "value");
+    input.value = parse_literal(document_, *value, "value", diagnostics_);
     const bool is_name = input.value && input.value->kind == Literal::Kind::string && !input.names.empty();
     if (is_name) {
       const std::vector<std::string_view> names(input.names.begin(), input.names.end());

@@ -27,7 +27,6 @@ class GraphBuilder {
   /// Enters an input or a node under its name.
   void enter(const Member& member, std::string_view what, Graph::Name name);
 
-  std::optional<Literal> literal(const Json& json, std::string_view key);
   std::optional<Link> link(const Json& json, std::string_view key);
 
   void read_inputs(const Json& inputs, bool are_parameters);

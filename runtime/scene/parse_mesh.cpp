@@ -42,12 +42,12 @@ ProfilePoint parse_point(const Document& document, const Json& json, bool smooth
   ProfilePoint point{0, 0, smooth};
   std::array<float, 2> at{};
   if (json.kind == Json::Kind::object) {
-    ObjectReader reader(document, json, "a point of a profile", diagnostics);
+    ObjectReader reader(document, json, "profile", diagnostics);
     at = reader.numbers<2>("at", {-most_size, most_size});
     point.smooth = reader.boolean("smooth", smooth);
     if (!reader.finish()) return point;
   } else {
-    const auto literal = parse_literal(document, json, diagnostics);
+    const auto literal = graph::parse_literal(document, json, "profile", diagnostics);
     if (!literal) return point;
     if (literal->numbers.size() != 2) {
       diagnostics.report(Id::wrong_type, document.span(json),

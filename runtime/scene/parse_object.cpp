@@ -23,7 +23,6 @@ using Need = ObjectReader::Need;
 namespace {
 
 constexpr Range degrees{-max_degrees, max_degrees};
-constexpr size_t max_numbers = 16;  // of a matrix
 
 glm::vec3 parse_scale(const Document& document, ObjectReader& reader, const std::string& what,
                       Diagnostics& diagnostics) {
@@ -93,13 +92,13 @@ std::optional<Variation> parse_variation(const Document& document, const Member&
                              std::to_string(count) + " places, not " + std::to_string(values->items.size()));
     }
     for (const Json& item : values->items) {
-      if (const auto literal = parse_literal(document, item, diagnostics))
+      if (const auto literal = graph::parse_literal(document, item, member.key, diagnostics))
         variation.values.push_back(*literal);
     }
   } else {
     for (const std::string_view key : {"from", "to"}) {
       const Json* json = reader.value(key);
-      const auto literal = json ? parse_literal(document, *json, diagnostics) : std::nullopt;
+      const auto literal = json ? graph::parse_literal(document, *json, key, diagnostics) : std::nullopt;
       if (!literal) continue;
       if (number_count(*literal) == 0) reader.report_wrong(key, *json, "a number or an array of numbers");
       variation.values.push_back(*literal);
@@ -155,51 +154,12 @@ std::vector<Parameter> parse_parameters(const Document& document, const Json& js
                                         Diagnostics& diagnostics) {
   std::vector<Parameter> parameters;
   for (const Member& member : json.members) {
-    const std::optional<Literal> literal = parse_literal(document, member.value, diagnostics);
+    const std::optional<Literal> literal =
+        graph::parse_literal(document, member.value, member.key, diagnostics);
     if (!literal) continue;
     parameters.push_back({member.key, *literal, document.key_span(member), document.span(member.value)});
   }
   return parameters;
-}
-
-std::optional<Literal> parse_literal(const Document& document, const Json& json, Diagnostics& diagnostics) {
-  Literal literal;
-  const auto finite = [&](const Json& number) {
-    if (std::isfinite(document.to_float(number))) return true;
-    diagnostics.report(Id::out_of_range, document.span(number), "the number is beyond the range of float");
-    return false;
-  };
-  switch (json.kind) {
-    case Json::Kind::boolean:
-      literal.kind = Literal::Kind::boolean;
-      literal.boolean = json.boolean;
-      return literal;
-    case Json::Kind::string:
-      literal.kind = Literal::Kind::string;
-      literal.string = json.string;
-      return literal;
-    case Json::Kind::number:
-      if (!finite(json)) return std::nullopt;
-      literal.number = document.to_float(json);
-      literal.integral = json.integral;
-      if (json.integral) literal.integer = document.to_integer(json);
-      return literal;
-    case Json::Kind::array: {
-      literal.kind = Literal::Kind::numbers;
-      const bool numbers = std::all_of(json.items.begin(), json.items.end(),
-                                       [](const Json& item) { return item.kind == Json::Kind::number; });
-      if (!numbers || json.items.empty() || json.items.size() > max_numbers) break;
-      for (const Json& item : json.items) {
-        if (!finite(item)) return std::nullopt;
-        literal.numbers.push_back(document.to_float(item));
-      }
-      return literal;
-    }
-    default: break;
-  }
-  diagnostics.report(Id::wrong_type, document.span(json),
-                     "a parameter is a boolean, a number, a string or an array of 1 to 16 numbers");
-  return std::nullopt;
 }
 
 Object parse_object(const Document& document, const Member& member, Diagnostics& diagnostics) {

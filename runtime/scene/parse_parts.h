@@ -29,10 +29,6 @@ std::vector<Parameter> parse_parameters(const graph::Document& document, const g
 /// A string ("sphere") or an object ({"type": "sphere", "radius": 2}).
 MeshShape parse_mesh(const graph::Document& document, const graph::Json& json,
                      support::Diagnostics& diagnostics);
-/// A boolean, a finite number, an array of at most 16 of them, or a string.
-std::optional<graph::Literal> parse_literal(const graph::Document& document, const graph::Json& json,
-                                            support::Diagnostics& diagnostics);
-
 inline glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 }  // namespace isoshade::scene
