@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "compiler/emit/cpp.h"
 #include "compiler/emit/names.h"
 #include "compiler/emit/result_words.h"
@@ -150,7 +152,15 @@ std::string cpp_stage(const ir::Module& module, uint32_t entry, lower::Stage sta
     case lower::Stage::depth: support::bug("depth has no C++ stage");
   }
   text.append("extern \"C\" __attribute__((visibility(\"default\"))) void ").append(signature);
-  text.append(" {\n  using namespace isoshade_program;\n").append(bind(module)).append(body).append("}\n");
+  text.append(" {\n  using namespace isoshade_program;\n");
+  if (std::ranges::count(used_buffers(module, entry), true) != 0) {
+    text += bind(module);
+  } else {  // what reads nothing is given nothing
+    constexpr std::string_view argument = "buffers, ";
+    body.erase(body.find(argument), argument.size());
+    text += "  static_cast<void>(views);\n";
+  }
+  text.append(body).append("}\n");
   return text;
 }
 

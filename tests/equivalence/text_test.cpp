@@ -130,6 +130,36 @@ TEST(Text, CppCompilesWithoutWarningsByBothCompilers) {
   }
 }
 
+TEST(Text, CompilesWhereAProgramReadsNothing) {
+  support::Diagnostics diagnostics;
+  check::Library library("");
+  driver::Options options;
+  options.library = &library;
+  const auto source = [](const std::string& text) {
+    return std::make_shared<support::SourceFile>("a.json", R"({"isoshade": 1, )" + text + "}");
+  };
+  const std::string nodes = R"("nodes": {"c": {"type": "constant", "value": [1, 2, 3], "to": "color3"},
+    "p": {"type": "constant", "value": [1, 2, 3]}})";
+  const auto effect = driver::compile_effect(
+      source(R"("effect": "e", "passes": [{"name": "p", "color": "c", "position": "p"}], )" + nodes), options,
+      diagnostics);
+  const auto post = driver::compile_post(source(R"("post": "s", "outputs": {"color": "c"}, )" + nodes),
+                                         options, diagnostics);
+  const auto function = driver::compile_function(
+      source(R"("function": "f", "outputs": {"out": "c", "other": "p"}, )" + nodes), options, diagnostics);
+  ASSERT_TRUE(effect && post && function) << diagnostics.text();
+  const Folder folder;
+  for (const driver::Program* program :
+       {&effect->passes[0].vertex, &effect->passes[0].pixel, &post->program, &*function}) {
+    const std::string path =
+        folder.write(std::string(lower::name(program->stage)) + ".cpp", driver::cpp(*program)).string();
+    for (const char* compiler : {"g++", "clang++"})
+      for (const char* lanes : {"", " -DISOSHADE_LANES=4"})
+        expect_success(std::string(compiler) + lanes +
+                       " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + path);
+  }
+}
+
 TEST(Text, CompilesWhateverItsPartsAreCalled) {
   // Keywords and macros of both languages, and what the texts around functions say, some with forms of their own.
   const std::vector<std::string> names = {"main",
