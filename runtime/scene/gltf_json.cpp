@@ -36,6 +36,22 @@ bool check_index(const graph::Document& document, const Json& value, Refusal& re
                         ", not a whole number from 0 to 2147483647");
 }
 
+/// The keys of what is read whose values are numbers: tinygltf takes what is none for nothing.
+bool is_quantity(std::string_view key) {
+  static constexpr std::string_view keys[] = {"baseColorFactor", "emissiveFactor",  "matrix",
+                                              "metallicFactor",  "roughnessFactor", "rotation",
+                                              "scale",           "strength",        "translation"};
+  return std::ranges::find(keys, key) != std::end(keys);
+}
+
+bool check_quantity(const graph::Document& document, const Json& value, Refusal& refusal) {
+  const Json* wrong = value.kind == Json::Kind::number || value.kind == Json::Kind::array ? nullptr : &value;
+  for (const Json& item : value.items)
+    if (item.kind != Json::Kind::number) wrong = &item;
+  return wrong == nullptr || refusal.refuse(graph::pointer_at(document, wrong->begin) + " is " +
+                                            std::string(graph::kind_name(wrong->kind)) + ", not a number");
+}
+
 /// All below `value`, whose own members all are indices if `attributes`.
 bool check_indices(const graph::Document& document, const Json& value, bool attributes, Refusal& refusal) {
   for (const Json& item : value.items)
@@ -44,12 +60,48 @@ bool check_indices(const graph::Document& document, const Json& value, bool attr
     if (key == "extensions" || key == "extras") continue;
     const bool nested = member.kind == Json::Kind::object || member.kind == Json::Kind::array;
     if ((attributes || is_index(key)) && !nested && !check_index(document, member, refusal)) return false;
+    if (is_quantity(key) && !check_quantity(document, member, refusal)) return false;
     if (key.ends_with("Texture") && member.kind == Json::Kind::object && member.find("index") == nullptr)
       return refusal.refuse(graph::pointer_at(document, member.begin) + " has no index");
     for (const Json& item : member.items)
       if (is_index(key) && item.kind != Json::Kind::object && !check_index(document, item, refusal))
         return false;
     if (nested && !check_indices(document, member, key == "attributes", refusal)) return false;
+  }
+  return true;
+}
+
+/// That it says it is glTF 2.
+bool check_version(const Json& root, Refusal& refusal) {
+  const Json* asset = root.find("asset");
+  const Json* version = asset == nullptr ? nullptr : asset->find("version");
+  if (version == nullptr || version->kind != Json::Kind::string)
+    return refusal.refuse("it is no glTF: it has no \"asset\" with a \"version\"");
+  if (version->string == "2" || version->string.starts_with("2.")) return true;
+  return refusal.refuse("it is of version " + quote(version->string) + ", not 2");
+}
+
+bool decodes(const std::string& uri) {
+  std::vector<unsigned char> bytes;
+  std::string type;
+  return !tinygltf::IsDataURI(uri) || tinygltf::DecodeDataURI(&bytes, type, uri, 0, false);
+}
+
+/// That each image says where its bytes are: tinygltf would refuse the whole file for one.
+bool check_images(const Json& root, Refusal& refusal) {
+  const Json* images = root.find("images");
+  if (images == nullptr) return true;
+  for (size_t i = 0; i < images->items.size(); ++i) {
+    const Json* uri = images->items[i].find("uri");
+    std::string_view reason;
+    if ((images->items[i].find("bufferView") != nullptr) == (uri != nullptr))
+      reason = "it has not one of \"uri\" and \"bufferView\"";
+    else if (uri != nullptr && (uri->kind != Json::Kind::string || uri->string.empty()))
+      reason = "its \"uri\" is no text, or an empty one";
+    else if (uri != nullptr && !decodes(uri->string))
+      reason = "its data URI cannot be decoded";
+    if (!reason.empty())
+      return refusal.refuse(support::Id::bad_image, "the image " + std::to_string(i), std::string(reason));
   }
   return true;
 }
@@ -73,6 +125,7 @@ std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal) {
 }
 
 bool check_json(const graph::Document& document, Refusal& refusal) {
+  if (!check_version(document.root, refusal) || !check_images(document.root, refusal)) return false;
   double bytes = 0;
   if (const Json* buffers = document.root.find("buffers")) {
     for (const Json& buffer : buffers->items) {

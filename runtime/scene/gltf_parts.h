@@ -49,8 +49,9 @@ std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal);
 bool is_binary(const std::string& bytes);
 
 /// What is asked of the text before tinygltf may read it: that it is JSON and not nested too deep, which would crash
-/// it; that its buffers are not too large together; that it needs no extension that we lack; and that its indices are
-/// such: tinygltf takes their lowest 32 bits, and what is no integer for none.
+/// it; that it is glTF 2; that its buffers are not too large together; that it needs no extension that we lack; that each
+/// image is somewhere; and that indices and numbers are such: tinygltf takes the lowest 32 bits of an integer, and what
+/// is of the wrong kind for nothing.
 bool check_json(const graph::Document& document, Refusal& refusal);
 
 /// The numbers of an accessor, `width` for each of `count` elements, as floats: integers of normalised ones

@@ -204,6 +204,19 @@ TEST_F(Gltf, RefusesIndicesThatAreNone) {
   EXPECT_TRUE(refuses_json(R"("componentType": 5126)", R"("componentType": 4294972422)", none));
 }
 
+TEST_F(Gltf, RefusesQuantitiesThatAreNone) {
+  EXPECT_TRUE(refuses_json(R"("metallicFactor": 0.75)", R"("metallicFactor": "0.75")",
+                           "/materials/0/pbrMetallicRoughness/metallicFactor is a string, not a number"));
+  EXPECT_TRUE(refuses_json(R"([0.5, 0.25, 1, 1])", R"([0.5, null, 1, 1])", "/baseColorFactor/1 is null"));
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"mesh": 0, "translation": ["1", 0, 0]}])",
+                           "/nodes/0/translation/0 is a string"));
+}
+
+TEST_F(Gltf, RefusesOtherVersions) {
+  EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": "1.0"})", "of version \"1.0\", not 2"));
+  EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": 2.0})", "it is no glTF"));
+}
+
 TEST_F(Gltf, LooksAtNothingThatItDoesNotRead) {
   std::string json = square_json();
   json.insert(1, R"("extras": {"source": -1}, "animations": [{"channels": [{"sampler": -1}]}], )");

@@ -98,6 +98,14 @@ TEST_F(GltfTextures, ThatLeadNowhereAreRefused) {
   EXPECT_TRUE(refuses(gltf(image, texture, R"("baseColorTexture": {})"), "/baseColorTexture has no index"));
 }
 
+TEST_F(GltfTextures, ThatAreNowhereAreRefused) {
+  const std::string image = "error[bad-image]: cannot read the image 0 of ";
+  for (const char* nowhere :
+       {"{}", R"({"uri": 5})", R"({"uri": ""})", R"({"uri": "data:image/png;base64,@@@@"})",
+        R"({"uri": "a.png", "bufferView": 0})"})
+    EXPECT_TRUE(refuses(gltf(nowhere), image)) << nowhere;
+}
+
 TEST_F(GltfTextures, OfIndicesThatAreNoneAreRefused) {
   const std::string image = R"({"uri": "m.bin"})", none = ", not a whole number from 0 to 2147483647";
   for (const std::string bad : {"-1", "1e18", "1000000000000000000", "4294967296", "0.5"}) {
