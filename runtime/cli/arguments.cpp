@@ -53,6 +53,15 @@ const CLI::Validator range_text(
     },
     "NAME=LEAST:MOST");
 
+/// CLI::Range takes what is no number.
+const CLI::Validator time_text(
+    [](std::string& text) {
+      const auto time = support::parse_float(text);
+      return time && *time >= -1e9f && *time <= 1e9f ? std::string()
+                                                     : "\"" + text + "\" is no number from -1e9 to 1e9";
+    },
+    "SECONDS");
+
 /// "error" or "no-" and the id of a warning.
 const CLI::Validator warning_text(
     [](std::string& text) -> std::string {
@@ -108,7 +117,7 @@ void add_changes(CLI::App& app, SceneChanges& changes) {
   app.add_option("--mesh", changes.mesh,
                  "A glTF file (.gltf, .glb) in place of the scene's one, or of its only object's mesh");
   app.add_option("--time", changes.time, "Seconds for the node `time` instead of the scene's")
-      ->check(CLI::Range(-1e9, 1e9));
+      ->check(time_text);
 }
 
 std::string subcommand_names(const CLI::App& app) {
@@ -191,7 +200,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(backend_names)
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
-  render_app->add_flag("--stats", render.stats, "Say what was drawn, what was skipped and why, and what each step took");
+  render_app->add_flag("--stats", render.stats,
+                       "Say what was drawn, what was skipped and why, and what each step took");
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
   add_choice(*render_app, render.choice);

@@ -138,7 +138,7 @@ std::optional<std::vector<const Column*>> read_heading(Reader& reader, const std
   }
   for (const Column& column : columns) {
     if (!good || std::ranges::find(heading, &column) != heading.end()) continue;
-    reader.report({}, "there is no column \"" + column.name + "\"");
+    reader.report({}, "there is no column \"" + column.name + "\"").note("the columns are " + joined(names));
     good = false;
   }
   return good ? std::optional(std::move(heading)) : std::nullopt;
@@ -169,7 +169,8 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
   while (reader.next_line()) {
     const std::vector<std::string_view> cells = reader.cells();
     if (cells.size() != heading->size()) {
-      reader.report({}, "this row has " + std::to_string(cells.size()) + " cells, and there are " +
+      reader.report({}, "this row has " + std::to_string(cells.size()) +
+                            (cells.size() == 1 ? " cell" : " cells") + ", and there are " +
                             std::to_string(heading->size()) + " columns");
       return std::nullopt;
     }

@@ -180,6 +180,11 @@ TEST_F(Cli, ShowsAnotherTime) {
   EXPECT_EQ(hash_of(""), hash_of("--time 2.125")) << "the scene's own";
   EXPECT_NE(hash_of(""), hash_of("--time 2.5"));
   EXPECT_EQ(run("render " + scene + " -o " + file("a.png") + " --time soon").exit, 2);
+  for (const char* time : {"nan", "inf", "-2e9", "soon"})
+    EXPECT_NE(
+        run("render " + scene + " -o " + file("c.png") + " --time " + time).text.find("is no number from"),
+        std::string::npos)
+        << time;
 }
 
 TEST_F(Cli, TellsOfPostsThatAreSwitchedOff) {
