@@ -95,10 +95,13 @@ bool ChainPlanner::find_sources(size_t p, Planned& planned) {
   for (const scene::PostInput& input : post.inputs) {
     const auto found = std::ranges::find(names, input.image);
     if (found == names.end()) {
-      diagnostics_.report_unknown(
-          Id::unknown_image, input.image_where,
-          "the document of post " + quote(post.name) + " has no image " + quote(input.image), input.image,
-          names);
+      std::string list;
+      for (const std::string_view name : names) list.append(list.empty() ? "" : ", ").append(name);
+      diagnostics_
+          .report_unknown(Id::unknown_image, input.image_where,
+                          "the document of post " + quote(post.name) + " has no image " + quote(input.image),
+                          input.image, names)
+          .note("it has " + list);
       good = false;
     } else {
       planned.sources[static_cast<size_t>(found - names.begin())] = input.source;

@@ -131,8 +131,12 @@ MeshShape parse_mesh(const Document& document, const Json& json, Diagnostics& di
   if (json.kind == Json::Kind::string) {
     const auto found = std::find(kinds.begin(), kinds.end(), json.string);
     if (found == kinds.end()) {
-      diagnostics.report_unknown(Id::out_of_range, document.span(json),
-                                 "no mesh is called " + quote(json.string), json.string, kinds);
+      std::string list;
+      for (const std::string_view kind : kinds) list.append(list.empty() ? "" : ", ").append(kind);
+      diagnostics
+          .report_unknown(Id::out_of_range, document.span(json), "no mesh is called " + quote(json.string),
+                          json.string, kinds)
+          .note("there are " + list);
       return {};
     }
     const auto kind = static_cast<MeshKind>(found - kinds.begin());

@@ -57,7 +57,11 @@ Post parse_post(const Document& document, const Json& json, const std::vector<Po
   Post post;
   ObjectReader reader(document, json, "a post of the scene", diagnostics);
   post.name = reader.string("name");
-  if (const Json* name = reader.value("name", Need::optional)) post.name_where = document.span(*name);
+  if (const Json* name = reader.value("name", Need::optional)) {
+    post.name_where = document.span(*name);
+    if (name->kind == Json::Kind::string && name->string.empty())
+      diagnostics.report(Id::bad_id, post.name_where, "a post needs a name that is not empty");
+  }
   post.effect = reader.path("effect");
   if (const Json* effect = reader.value("effect", Need::optional)) post.effect_where = document.span(*effect);
   if (const Json* parameters = reader.object("parameters", Need::optional))

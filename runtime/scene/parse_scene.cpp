@@ -59,12 +59,15 @@ class Names {
   std::unordered_map<std::string, Named> names_;
 };
 
-void parse_size(const Document& document, ObjectReader& reader, Scene& scene) {
+void parse_size(const Document& document, ObjectReader& reader, Scene& scene, Diagnostics& diagnostics) {
   const Json* size = reader.array("size", Need::optional);
   if (size == nullptr) return;
   const bool integers = size->items.size() == 2 && std::all_of(size->items.begin(), size->items.end(),
                                                                [](const Json& i) { return i.integral; });
-  if (!integers) return reader.report_wrong("size", *size, "an array of 2 integers");
+  if (!integers) {
+    diagnostics.report(Id::wrong_type, document.span(*size), "\"size\" of a scene is an array of 2 integers");
+    return;
+  }
   const auto side = [&](const Json& json) {
     return reader.check_range("size", json, {1, max_size}) ? static_cast<int>(document.to_integer(json)) : 1;
   };
@@ -148,7 +151,7 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   scene.source = document.source;
   scene.name = reader.string("scene");
   Names names(document, diagnostics);
-  parse_size(document, reader, scene);
+  parse_size(document, reader, scene, diagnostics);
   scene.time = reader.number("time", coordinates, 0.0f);
   if (const Json* camera = reader.object("camera"))
     scene.camera = parse_camera(document, *camera, diagnostics);

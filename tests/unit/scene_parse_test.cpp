@@ -165,6 +165,11 @@ TEST(ParseScene, ReportsSeveralErrorsWithTheirPlaces) {
     EXPECT_GT(diagnostic.where.line(), 0u) << diagnostic.message;
 }
 
+TEST(ParseScene, RefusesPostsWithoutNames) {
+  EXPECT_TRUE(parse_members(R"("posts": [{"name": "", "effect": "p.json"}])").fails_with("bad-id"));
+  EXPECT_TRUE(parse_members(R"("posts": [{"effect": "p.json"}])").fails_with("missing-key"));
+}
+
 TEST(ParseScene, RefusesViewsWithoutDirection) {
   const auto camera = [](const std::string& members) {
     return parse_members("\"camera\": {" + members + "}");
