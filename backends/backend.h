@@ -38,6 +38,13 @@ struct Draw {
   Cull cull = Cull::back;
 };
 
+/// What takes the most room in an array of a frame, for those who find the array too large.
+struct Largest {
+  std::string what;  ///< "the image \"a.png\", 2048 x 2048 with mip levels"; empty if there is none
+  size_t bytes = 0;
+  support::Span where;  ///< what names it
+};
+
 /// A frame ready to be drawn: programs and the arrays of lower/frame_layout.h.
 struct Frame {
   int width = 0;
@@ -48,10 +55,12 @@ struct Frame {
   std::vector<float> lights;
   std::vector<float> frame;
   std::vector<float> texels;
+  std::vector<uint32_t> texel_bytes;
   std::vector<int32_t> textures;
   int light_count = 0;
   std::vector<Draw> draws;
   float background[4] = {0, 0, 0, 0};
+  Largest largest_texture, largest_mesh;
 };
 
 /// A full-screen pass ready to be run: a program of Stage::post and its arrays of lower/frame_layout.h.

@@ -45,6 +45,7 @@ class Buffers {
     return bind(FrameBuffer::vertices, vertices) && bind<float>(FrameBuffer::objects, frame.objects) &&
            bind<float>(FrameBuffer::lights, frame.lights) && bind<float>(FrameBuffer::frame, frame.frame) &&
            bind<float>(FrameBuffer::texels, frame.texels) &&
+           bind<uint32_t>(FrameBuffer::texel_bytes, frame.texel_bytes) &&
            bind<int32_t>(FrameBuffer::textures, frame.textures);
   }
   const BufferView* views() const { return views_; }

@@ -38,6 +38,7 @@ class Buffers {
     bind<float>(FrameBuffer::lights, frame.lights);
     bind<float>(FrameBuffer::frame, frame.frame);
     bind<float>(FrameBuffer::texels, frame.texels);
+    bind<uint32_t>(FrameBuffer::texel_bytes, frame.texel_bytes);
     bind<int32_t>(FrameBuffer::textures, frame.textures);
   }
   const std::vector<uint32_t>& operator[](size_t buffer) const { return words_[buffer]; }

@@ -158,6 +158,7 @@ bool VulkanBackend::upload_frame(const Frame& frame, std::span<const float> vert
 
 bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics) {
   return upload<float>(*device_, FrameBuffer::texels, frame.texels, diagnostics) &&
+         upload<uint32_t>(*device_, FrameBuffer::texel_bytes, frame.texel_bytes, diagnostics) &&
          upload<int32_t>(*device_, FrameBuffer::textures, frame.textures, diagnostics);
 }
 

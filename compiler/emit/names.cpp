@@ -36,7 +36,7 @@ const std::unordered_set<std::string_view> reserved = {
     "umulExtended", "unsigned_less", "unsigned_mul_hi", "vec", "F", "I", "B", "buffers", "push", "Push",
     "frame", "inputs", "lights", "objects", "triangles", "vertices", "clip", "ids", "id", "isoshade",
     "int_of", "bool_of", "float_of", "lane_count", "pixel", "vertex", "depth", "eval", "shade", "light_at",
-    "texel_at", "texture_size", "texels", "textures", "post", "post_process", "layers", "layer_records",
+    "texel_at", "texture_size", "texels", "texel_bytes", "textures", "post", "post_process", "layers", "layer_records",
     "edges_at", "attribute2", "attribute3", "Buffers", "NULL", "INFINITY", "NAN", "assert", "errno", "linux",
     "unix", "near", "far", "ISO_ZERO", "iso_zero", "iso_zero_block", "words", "VULKAN", "Lanes", "batch",
     // rarer words of GLSL that glslang takes as keywords

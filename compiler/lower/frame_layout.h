@@ -19,6 +19,7 @@ enum class FrameBuffer : uint32_t {
   frame,
   inputs,
   texels,
+  texel_bytes,
   textures,
   layers,
   layer_records
@@ -35,9 +36,10 @@ inline constexpr FrameBufferInfo frame_buffers[] = {
     {"lights", ir::Scalar::floating},    //
     {"frame", ir::Scalar::floating},     ///< the camera and the time
     {"inputs", ir::Scalar::integer},     ///< of `eval`: one row a record, floats as bits
-    {"texels", ir::Scalar::floating},    ///< of all textures: r g b a, linear, row by row from the top
-    {"textures", ir::Scalar::integer},   ///< where each texture lies in `texels`
-    {"layers", ir::Scalar::floating},    ///< of `post`: images, rows top down; r g b a, or the depth alone
+    {"texels", ir::Scalar::floating},    ///< of textures of floats: r g b a, linear, row by row from the top
+    {"texel_bytes", ir::Scalar::integer},  ///< of textures of bytes: r g b a in a word, r in its lowest byte
+    {"textures", ir::Scalar::integer},     ///< where each texture lies in one of the two
+    {"layers", ir::Scalar::floating},      ///< of `post`: images, rows top down; r g b a, or the depth alone
     {"layer_records", ir::Scalar::integer},
 };
 
@@ -93,12 +95,21 @@ inline constexpr int stride = 16;
 /// textures: one record a texture, followed by those of its mip levels: each is a texture, of half the width and
 /// height of the one before (rounded down, at least 1).
 namespace texture_word {
-inline constexpr int first = 0;  ///< the first of its words in `texels`; 4 a texel
+inline constexpr int first = 0;  ///< the first of its words: in `texel_bytes` 1 a texel, in `texels` 4
 inline constexpr int width = 1;  ///< in texels
 inline constexpr int height = 2;
 inline constexpr int smaller = 3;  ///< how many of the records that follow are its mip levels
-inline constexpr int stride = 4;
+/// Of bytes: the first word of the table in `texels` that says which floats their colours are. Of floats: -1.
+inline constexpr int table = 4;
+inline constexpr int stride = 5;
 }  // namespace texture_word
+
+/// Where textures of bytes are stored, `texels` begins with the floats that bytes are.
+namespace byte_table {
+inline constexpr int size = 256;
+inline constexpr int linear = 0;   ///< n / 255; alpha is always by this
+inline constexpr int srgb = size;  ///< srgb_decode(n / 255)
+}  // namespace byte_table
 
 /// frame: the camera and the time.
 namespace frame_word {

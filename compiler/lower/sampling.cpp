@@ -166,6 +166,21 @@ uint32_t trilinear_sampler(ir::Module& module, const Sampling& sampling) {
   return k.index;
 }
 
+/// texel_at of a texture whose texels begin at `first`, of the texel at `place` after it. No branch: the word of bytes,
+/// which of floats is nobody's, costs less.
+Vec4 load_texel(Kernel& k, Int first, Int place, Int table) {
+  const Bool floats = table < Int(0);
+  const Int bytes =
+      k.named("bytes", k.load_int(FrameBuffer::texel_bytes, select(floats, Int(0), first + place)));
+  const Int words = k.named("words", first + shift_left(place, Int(2)));
+  const auto load = [&](int channel, Int table, Int byte) {
+    return k.load(FrameBuffer::texels, select(floats, words + Int(channel), table + byte));
+  };
+  const auto byte = [&](int i) { return shift_right(bytes, Int(8 * i)) & Int(255); };
+  return Vec4(load(0, table, bytes & Int(255)), load(1, table, byte(1)), load(2, table, byte(2)),
+              k.load(FrameBuffer::texels, select(floats, words + Int(3), shift_right(bytes, Int(24)))));
+}
+
 }  // namespace
 
 ir::ValueId sample(ir::Builder& b, const Sampling& sampling, ir::ValueId texture, ir::ValueId texcoord) {
@@ -187,9 +202,10 @@ void define_texture_reads(ir::Module& module) {
   }
   if (const uint32_t texel = module.find(texel_at_name); texel != ir::none) {
     Kernel k(module, texel);
-    const Int place = k.integer(2) * word(k, texture_word::width) + k.integer(1);
-    const Int first = k.named("first", word(k, texture_word::first) + place * Int(4));
-    k.b.finish(std::array{k.load4(FrameBuffer::texels, first, 0).value});
+    const Int place = k.named("place", k.integer(2) * word(k, texture_word::width) + k.integer(1));
+    const Int first = k.named("first", word(k, texture_word::first));
+    const Int table = k.named("table", word(k, texture_word::table));
+    k.b.finish(std::array{load_texel(k, first, place, table).value});
   }
 }
 

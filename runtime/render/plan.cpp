@@ -342,7 +342,8 @@ std::optional<Plan> Planner::plan() {
   stats.effects = static_cast<int64_t>(plan_.effects.size());
   stats.programs = static_cast<int64_t>(frame.programs.size());
   stats.textures = static_cast<int64_t>(textures_.count());
-  stats.texels = static_cast<int64_t>(frame.texels.size()) / 4;
+  stats.texels = textures_.texel_count();
+  stats.texture_bytes = static_cast<int64_t>(4 * (frame.texels.size() + frame.texel_bytes.size()));
   stats.lights = frame.light_count;
   stats.posts = static_cast<int64_t>(plan_.posts.steps.size());
   stats.plan_seconds = clock.lap();

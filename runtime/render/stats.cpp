@@ -6,9 +6,10 @@
 namespace isoshade::render {
 
 std::string text(const PlanStats& stats) {
-  const std::string textures =
-      stats.textures == 0 ? ""
-                          : fmt::format("textures: {} stored with {} texels\n", stats.textures, stats.texels);
+  const std::string textures = stats.textures == 0
+                                   ? ""
+                                   : fmt::format("textures: {} stored with {} texels in {} bytes\n",
+                                                 stats.textures, stats.texels, stats.texture_bytes);
   std::string text = fmt::format(
       "scene:    {} objects, {} draws, {} lights\n"
       "meshes:   {} stored with {} vertices; {} vertices and {} triangles are drawn\n"

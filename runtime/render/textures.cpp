@@ -2,6 +2,7 @@
 #include "runtime/render/textures.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "compiler/graph/files.h"
 #include "compiler/lower/frame_layout.h"
@@ -11,14 +12,18 @@ namespace isoshade::render {
 namespace {
 
 /// Of a texture of this size, with its mip levels or without.
-int64_t texel_count(int width, int height, bool mips) {
-  int64_t count = int64_t{width} * height;
+int64_t texel_count(const scene::ImageHeader& header, bool mips) {
+  int64_t width = header.width, height = header.height, count = width * height;
   while (mips && (width > 1 || height > 1)) {
-    width = std::max(1, width / 2);
-    height = std::max(1, height / 2);
-    count += int64_t{width} * height;
+    width = std::max<int64_t>(1, width / 2);
+    height = std::max<int64_t>(1, height / 2);
+    count += width * height;
   }
   return count;
+}
+
+int64_t bytes_of(const scene::ImageHeader& header, bool mips) {
+  return texel_count(header, mips) * (header.bytes ? 4 : 16);
 }
 
 bool is_srgb(lower::Decoding decoding, bool bytes) {
@@ -41,69 +46,138 @@ std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects) {
   return skips;
 }
 
-bool TextureStore::fits(int64_t texels, const std::string& path, const support::Span& where,
-                        support::Diagnostics& diagnostics) {
-  for (const Texture& texture : textures_)
-    texels += texel_count(texture.largest.width, texture.largest.height, texture.mips);
-  if (texels <= max_texels && textures_.size() < max_textures) return true;
+int64_t TextureStore::Texture::texel_count() const { return render::texel_count(header, mips); }
+int64_t TextureStore::Texture::bytes() const { return bytes_of(header, mips); }
+
+backends::Largest TextureStore::Texture::described() const {
+  return {"the image " + support::quote(source.path) + ", " + std::to_string(header.width) + " x " +
+              std::to_string(header.height) + (mips ? " with mip levels" : ""),
+          static_cast<size_t>(bytes()), source.where};
+}
+
+int64_t TextureStore::texel_count() const {
+  int64_t count = 0;
+  for (const Texture& texture : textures_) count += texture.texel_count();
+  return count;
+}
+
+bool TextureStore::fits(int64_t bytes, bool is_new, const ImageSource& source,
+                        support::Diagnostics& diagnostics) const {
+  for (const Texture& texture : textures_) bytes += texture.bytes();
+  std::string reason;
+  if (bytes > most_bytes_)
+    reason = "take " + std::to_string(bytes) + " bytes; at most " + std::to_string(most_bytes_);
+  if (is_new && textures_.size() == max_textures) reason = "are more than " + std::to_string(max_textures);
+  if (reason.empty()) return true;
   diagnostics
-      .report(support::Id::too_large, where,
-              "with the image " + support::quote(path) + " the scene has more than " +
-                  (texels <= max_texels ? std::to_string(max_textures) + " textures"
-                                        : std::to_string(max_texels) + " texels"))
+      .report(support::Id::too_large, source.where,
+              "with the image " + support::quote(source.path) + " the textures of the scene " + reason)
       .suggest("use smaller images");
   return false;
 }
 
 std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding decoding, bool mips,
                                       support::Diagnostics& diagnostics) {
-  const auto& [path, bytes, where] = source;
-  const std::string canonical = graph::canonical_path(path);
-  if (const auto read = has_bytes_.find(canonical); read != has_bytes_.end()) {
-    const auto known = numbers_.find({canonical, is_srgb(decoding, read->second)});
+  const std::string canonical = graph::canonical_path(source.path);
+  if (const auto read = headers_.find(canonical); read != headers_.end()) {
+    const auto known = numbers_.find({canonical, is_srgb(decoding, read->second.bytes)});
     if (known != numbers_.end()) {
       Texture& texture = textures_[static_cast<size_t>(known->second)];
-      const scene::TextureLevel& largest = texture.largest;
       if (mips && !texture.mips) {
-        const int64_t more = texel_count(largest.width, largest.height, true) -
-                             texel_count(largest.width, largest.height, false);
-        if (!fits(more, path, where, diagnostics)) return std::nullopt;
+        const int64_t more = bytes_of(texture.header, true) - texture.bytes();
+        if (!fits(more, false, source, diagnostics)) return std::nullopt;
         texture.mips = true;
       }
       return known->second;
     }
   }
-  const std::optional<scene::FloatImage> image = bytes != nullptr
-                                                     ? scene::read_image(path, *bytes, diagnostics, where)
-                                                     : scene::read_image(path, diagnostics, where);
-  if (!image || !fits(texel_count(image->width, image->height, mips), path, where, diagnostics))
-    return std::nullopt;
-  has_bytes_[canonical] = image->bytes;
-  const bool srgb = is_srgb(decoding, image->bytes);
+  std::optional<std::string> file;
+  if (source.bytes == nullptr) file = scene::read_image_file(source.path, diagnostics, source.where);
+  if (source.bytes == nullptr && !file) return std::nullopt;
+  const std::string_view bytes = file ? *file : *source.bytes;
+  const auto header = scene::read_header(source.path, bytes, diagnostics, source.where);
+  if (!header || !fits(bytes_of(*header, mips), true, source, diagnostics)) return std::nullopt;
+  auto image = scene::read_image(source.path, bytes, diagnostics, source.where);
+  if (!image) return std::nullopt;
+  const bool srgb = is_srgb(decoding, header->bytes);
   const auto number = static_cast<int>(textures_.size());
+  headers_[canonical] = *header;
   numbers_[{canonical, srgb}] = number;
-  textures_.push_back({canonical, srgb, mips, scene::linear_level(*image, srgb)});
+  Texture& texture = textures_.emplace_back(Texture{source, srgb, mips, *header, {}});
+  if (header->bytes)
+    texture.largest = scene::ByteLevel{image->width, image->height, std::move(image->bytes)};
+  else
+    texture.largest = scene::linear_level(*std::move(image), srgb);
   return number;
 }
 
+namespace {
+
+namespace word = lower::texture_word;
+
+/// Adds the record of a level whose texels will come after those that are stored.
+void add_record(size_t first, int width, int height, int smaller, int table, backends::Frame& frame) {
+  int32_t record[word::stride];
+  record[word::first] = static_cast<int32_t>(first);
+  record[word::width] = width;
+  record[word::height] = height;
+  record[word::smaller] = smaller;
+  record[word::table] = table;
+  frame.textures.insert(frame.textures.end(), std::begin(record), std::end(record));
+}
+
+void add_level(const scene::ByteLevel& level, bool srgb, int smaller, backends::Frame& frame) {
+  const int table = srgb ? lower::byte_table::srgb : lower::byte_table::linear;
+  add_record(frame.texel_bytes.size(), level.width, level.height, smaller, table, frame);
+  frame.texel_bytes.insert(frame.texel_bytes.end(), level.texels.begin(), level.texels.end());
+}
+
+void add_level(const scene::TextureLevel& level, int smaller, backends::Frame& frame) {
+  add_record(frame.texels.size(), level.width, level.height, smaller, -1, frame);
+  frame.texels.insert(frame.texels.end(), level.texels.begin(), level.texels.end());
+}
+
+int smaller_levels(const scene::ImageHeader& header) {
+  return std::bit_width(static_cast<unsigned>(std::max(header.width, header.height))) - 1;
+}
+
+}  // namespace
+
 void TextureStore::store(backends::Frame& frame) {
-  namespace word = lower::texture_word;
+  size_t byte_words = 0, float_words = 0;
+  for (const Texture& texture : textures_)
+    (texture.header.bytes ? byte_words : float_words) += static_cast<size_t>(texture.bytes()) / 4;
+  frame.texel_bytes.reserve(1 + byte_words);
+  if (!textures_.empty()) frame.texel_bytes.push_back(0);
+  frame.texels.reserve(2 * lower::byte_table::size + float_words);
+  if (byte_words > 0) {
+    for (const bool srgb : {false, true})
+      frame.texels.insert(frame.texels.end(), scene::byte_table(srgb).begin(), scene::byte_table(srgb).end());
+  }
   for (Texture& texture : textures_) {
     records_.push_back(static_cast<int>(frame.textures.size() / word::stride));
-    std::vector<scene::TextureLevel> levels;
-    levels.push_back(std::move(texture.largest));
-    while (texture.mips && (levels.back().width > 1 || levels.back().height > 1))
-      levels.push_back(scene::half_size(levels.back()));
-    for (size_t i = 0; i < levels.size(); ++i) {
-      int32_t record[word::stride];
-      record[word::first] = static_cast<int32_t>(frame.texels.size());
-      record[word::width] = levels[i].width;
-      record[word::height] = levels[i].height;
-      record[word::smaller] = static_cast<int32_t>(levels.size() - 1 - i);
-      frame.textures.insert(frame.textures.end(), std::begin(record), std::end(record));
-      frame.texels.insert(frame.texels.end(), levels[i].texels.begin(), levels[i].texels.end());
+    int smaller = texture.mips ? smaller_levels(texture.header) : 0;
+    scene::TextureLevel next;
+    if (const auto* bytes = std::get_if<scene::ByteLevel>(&texture.largest)) {
+      add_level(*bytes, texture.srgb, smaller, frame);
+      if (smaller > 0) next = scene::half_size(*bytes, texture.srgb);
+    } else {
+      next = std::get<scene::TextureLevel>(std::move(texture.largest));
+      add_level(next, smaller, frame);
+      if (smaller > 0) next = scene::half_size(next);
+    }
+    texture.largest = scene::ByteLevel{};
+    // Each level of bytes is made of floats that are not yet rounded to bytes, so that errors do not add up.
+    while (smaller-- > 0) {
+      if (texture.header.bytes)
+        add_level(scene::byte_level(next, texture.srgb), texture.srgb, smaller, frame);
+      else
+        add_level(next, smaller, frame);
+      if (smaller > 0) next = scene::half_size(next);
     }
   }
+  const auto largest = std::ranges::max_element(textures_, {}, &Texture::bytes);
+  if (largest != textures_.end()) frame.largest_texture = largest->described();
 }
 
 }  // namespace isoshade::render

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "backends/backend.h"
@@ -17,7 +18,9 @@
 namespace isoshade::render {
 
 /// Limits that keep hostile scenes harmless. A side is limited by scene::max_size.
-inline constexpr int64_t max_texels = 96'000'000;  ///< 16 bytes each, of all textures with their mip levels
+/// Of all textures with their mip levels: 4 bytes a texel where a file has 8 bits a number or fewer, else 16. It is
+/// known before an image is unpacked.
+inline constexpr int64_t max_texture_bytes = int64_t{3} << 29;
 inline constexpr size_t max_textures = 4096;
 
 /// Where an image comes from.
@@ -32,31 +35,40 @@ std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects);
 
 class TextureStore {
  public:
+  explicit TextureStore(int64_t most_bytes = max_texture_bytes) : most_bytes_(most_bytes) {}
+
   /// The number of the texture; it is `mips` for all who ask for it, if it is for one. Reports what is no image, or too
   /// large.
   std::optional<int> find(const ImageSource& source, lower::Decoding decoding, bool mips,
                           support::Diagnostics& diagnostics);
 
-  /// Fills the frame's `texels` and `textures`, after the last find().
+  /// Fills what the frame has of textures, after the last find(); the images are not kept.
   void store(backends::Frame& frame);
   /// The record of a stored texture, by its number; -1 for -1.
   int record(int number) const { return number < 0 ? -1 : records_[static_cast<size_t>(number)]; }
 
   size_t count() const { return textures_.size(); }
+  int64_t texel_count() const;  ///< of all textures, with their mip levels
 
  private:
   struct Texture {
-    std::string path;  ///< canonical
+    ImageSource source;  ///< of whoever asked first
     bool srgb;
     bool mips;
-    scene::TextureLevel largest;
-  };
-  bool fits(int64_t texels, const std::string& path, const support::Span& where,
-            support::Diagnostics& diagnostics);
+    scene::ImageHeader header;
+    std::variant<scene::ByteLevel, scene::TextureLevel> largest;
 
+    int64_t texel_count() const;
+    int64_t bytes() const;
+    backends::Largest described() const;
+  };
+  /// Whether there is room for this many bytes more, and one texture more if it is a new one.
+  bool fits(int64_t bytes, bool is_new, const ImageSource& source, support::Diagnostics& diagnostics) const;
+
+  int64_t most_bytes_;
   std::vector<Texture> textures_;
   std::map<std::pair<std::string, bool>, int> numbers_;  ///< by path and srgb
-  std::map<std::string, bool> has_bytes_;                ///< by path, of files that were read
+  std::map<std::string, scene::ImageHeader> headers_;    ///< by path, of files that were read
   std::vector<int> records_;
 };
 

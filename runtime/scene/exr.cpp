@@ -58,8 +58,9 @@ std::string refuse(const EXRVersion& version, const EXRHeader& header) {
   const int64_t width = int64_t{window.max_x} - window.min_x + 1;
   const int64_t height = int64_t{window.max_y} - window.min_y + 1;
   if (std::string reason = refuse_size(width, height); !reason.empty()) return reason;
-  constexpr int most_channels = 64;  // tinyexr allocates all of them
-  if (header.num_channels > most_channels) return "it has too many channels";
+  constexpr int64_t most_values = int64_t{8} * max_size * max_size;  // tinyexr unpacks all channels
+  if (header.num_channels > most_values / (width * height) || header.num_channels > 64)
+    return "it has too many channels";
   for (const char* name : {"R", "G", "B"})
     if (!is_grey(header) && find_channel(header, name) < 0) return "it has no channel " + std::string(name);
   for (int c = 0; c < header.num_channels; ++c) {
@@ -115,17 +116,35 @@ std::string exr(const ImageView& image) {
 
 bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
-Decoded decode_exr(std::string_view bytes) {
+namespace {
+
+/// Why there is none; empty if it was read and describes what we read.
+std::string read_into(Header& header, std::string_view bytes) {
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   EXRVersion version;
   if (ParseEXRVersionFromMemory(&version, data, bytes.size()) != TINYEXR_SUCCESS)
-    return {{}, "it is no OpenEXR file"};
-  Header header;
+    return "it is no OpenEXR file";
+  if (version.multipart != 0) return "it is of several parts";
   const char* message = nullptr;
-  if (version.multipart != 0) return {{}, "it is of several parts"};
   if (ParseEXRHeaderFromMemory(&header, &version, data, bytes.size(), &message) != TINYEXR_SUCCESS)
-    return {{}, take_message(message)};
-  if (std::string reason = refuse(version, header); !reason.empty()) return {{}, std::move(reason)};
+    return take_message(message);
+  return refuse(version, header);
+}
+
+}  // namespace
+
+Read<ImageHeader> read_exr_header(std::string_view bytes) {
+  Header header;
+  if (std::string reason = read_into(header, bytes); !reason.empty()) return {{}, std::move(reason)};
+  const EXRBox2i& window = header.data_window;
+  return {ImageHeader{window.max_x - window.min_x + 1, window.max_y - window.min_y + 1, false}, {}};
+}
+
+Read<FileImage> decode_exr(std::string_view bytes) {
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  Header header;
+  if (std::string reason = read_into(header, bytes); !reason.empty()) return {{}, std::move(reason)};
+  const char* message = nullptr;
   for (int c = 0; c < header.num_channels; ++c) header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
   LoadedImage loaded;
   loaded.num_channels = header.num_channels;  // so that on failure tinyexr frees all of them
@@ -135,7 +154,7 @@ Decoded decode_exr(std::string_view bytes) {
   }
   if (loaded.images == nullptr) return {{}, "it holds no scanlines"};
 
-  FloatImage image;
+  FileImage image;
   image.width = loaded.width;
   image.height = loaded.height;
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);

@@ -78,14 +78,8 @@ bool read_row(Reader& reader, std::vector<Pixel>& row) {
   return true;
 }
 
-}  // namespace
-
-bool is_hdr(std::string_view bytes) {
-  return bytes.starts_with("#?RADIANCE\n") || bytes.starts_with("#?RGBE\n");
-}
-
-Decoded decode_hdr(std::string_view bytes) {
-  Reader reader(bytes);
+/// Reads to where the rows begin.
+Read<ImageHeader> read_to_rows(Reader& reader) {
   bool known = false;
   while (true) {
     if (!reader.has(1)) return {{}, "the header has no end"};
@@ -93,19 +87,40 @@ Decoded decode_hdr(std::string_view bytes) {
     known = known || line == "FORMAT=32-bit_rle_rgbe";
     if (line.empty()) break;
   }
-  FloatImage image;
+  ImageHeader header;
   if (!known) return {{}, "it is not of the format 32-bit_rle_rgbe"};
-  if (!read_size(reader.line(), image.width, image.height))
+  if (!read_size(reader.line(), header.width, header.height))
     return {{}, "its size is not told as -Y rows +X columns"};
-  if (std::string reason = refuse_size(image.width, image.height); !reason.empty())
+  if (std::string reason = refuse_size(header.width, header.height); !reason.empty())
     return {{}, std::move(reason)};
+  return {header, {}};
+}
+
+}  // namespace
+
+bool is_hdr(std::string_view bytes) {
+  return bytes.starts_with("#?RADIANCE\n") || bytes.starts_with("#?RGBE\n");
+}
+
+Read<ImageHeader> read_hdr_header(std::string_view bytes) {
+  Reader reader(bytes);
+  return read_to_rows(reader);
+}
+
+Read<FileImage> decode_hdr(std::string_view bytes) {
+  Reader reader(bytes);
+  Read<ImageHeader> header = read_to_rows(reader);
+  if (!header.found) return {{}, std::move(header.reason)};
+  FileImage image;
+  image.width = header.found->width;
+  image.height = header.found->height;
   std::vector<Pixel> row(static_cast<size_t>(image.width));
   for (int y = 0; y < image.height; ++y) {
     if (!read_row(reader, row)) return {{}, "the file is damaged"};
     for (const Pixel& pixel : row) {
       for (size_t channel = 0; channel < 3; ++channel)
-        image.rgba.push_back(
-            pixel[3] == 0 ? 0.0f : std::ldexp(static_cast<float>(pixel[channel]), pixel[3] - 136));
+        image.rgba.push_back(pixel[3] == 0 ? 0.0f
+                                           : std::ldexp(static_cast<float>(pixel[channel]), pixel[3] - 136));
       image.rgba.push_back(1.0f);
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/image_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -28,8 +29,49 @@ Format format_of(const std::string& path) {
   return Format::unknown;
 }
 
-std::optional<std::string> read_bytes(const std::string& path, Diagnostics& diagnostics,
-                                      const support::Span& where) {
+}  // namespace
+
+bool check_image_path(const std::string& path, Diagnostics& diagnostics) {
+  if (format_of(path) != Format::unknown) return true;
+  diagnostics.report(Id::unwritable_file, "no image format is written to " + quote(path))
+      .suggest("end the name in .png or .exr");
+  return false;
+}
+
+bool write_image(const std::string& path, const ImageView& image, Encoding encoding, float exposure,
+                 Diagnostics& diagnostics) {
+  if (!check_image_path(path, diagnostics)) return false;
+  if (format_of(path) == Format::exr) return write_file(path, exr(image), diagnostics);
+  return write_file(path, png(image.width, image.height, encode(image.rgba, encoding, exposure)),
+                    diagnostics);
+}
+
+std::vector<float> numbers_of(const FileImage& image) {
+  std::vector<float> numbers = image.rgba;
+  numbers.reserve(std::max(numbers.size(), 4 * image.bytes.size()));
+  for (const uint32_t word : image.bytes)
+    for (int shift = 0; shift < 32; shift += 8)
+      numbers.push_back(static_cast<float>(word >> shift & 255) / 255.0f);
+  return numbers;
+}
+
+Read<ImageHeader> read_header(std::string_view bytes) {
+  if (is_exr(bytes)) return read_exr_header(bytes);
+  return is_hdr(bytes) ? read_hdr_header(bytes) : read_stb_header(bytes);
+}
+
+Read<FileImage> decode_image(std::string_view bytes) {
+  if (is_exr(bytes)) return decode_exr(bytes);
+  return is_hdr(bytes) ? decode_hdr(bytes) : decode_by_stb(bytes);
+}
+
+std::string refuse_size(int64_t width, int64_t height) {
+  if (width >= 1 && height >= 1 && width <= max_size && height <= max_size) return {};
+  return "a side is not from 1 to " + std::to_string(max_size) + " pixels";
+}
+
+std::optional<std::string> read_image_file(const std::string& path, Diagnostics& diagnostics,
+                                           const support::Span& where) {
   constexpr uintmax_t most = uintmax_t{2} << 30;  // stb counts in int
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
@@ -52,47 +94,34 @@ std::optional<std::string> read_bytes(const std::string& path, Diagnostics& diag
   return std::nullopt;
 }
 
+namespace {
+
+template <class T>
+std::optional<T> reported(Read<T> read, const std::string& name, Diagnostics& diagnostics,
+                          const support::Span& where) {
+  if (!read.found) {
+    diagnostics.report(Id::bad_image, where,
+                       "cannot read the image " + quote(name) + ": " + support::visible(read.reason));
+  }
+  return std::move(read.found);
+}
+
 }  // namespace
 
-bool check_image_path(const std::string& path, Diagnostics& diagnostics) {
-  if (format_of(path) != Format::unknown) return true;
-  diagnostics.report(Id::unwritable_file, "no image format is written to " + quote(path))
-      .suggest("end the name in .png or .exr");
-  return false;
+std::optional<ImageHeader> read_header(const std::string& name, std::string_view bytes,
+                                       Diagnostics& diagnostics, const support::Span& where) {
+  return reported(read_header(bytes), name, diagnostics, where);
 }
 
-bool write_image(const std::string& path, const ImageView& image, Encoding encoding, float exposure,
-                 Diagnostics& diagnostics) {
-  if (!check_image_path(path, diagnostics)) return false;
-  if (format_of(path) == Format::exr) return write_file(path, exr(image), diagnostics);
-  return write_file(path, png(image.width, image.height, encode(image.rgba, encoding, exposure)),
-                    diagnostics);
+std::optional<FileImage> read_image(const std::string& name, std::string_view bytes, Diagnostics& diagnostics,
+                                    const support::Span& where) {
+  return reported(decode_image(bytes), name, diagnostics, where);
 }
 
-Decoded decode_image(std::string_view bytes) {
-  if (is_exr(bytes)) return decode_exr(bytes);
-  return is_hdr(bytes) ? decode_hdr(bytes) : decode_by_stb(bytes);
-}
-
-std::string refuse_size(int64_t width, int64_t height) {
-  if (width >= 1 && height >= 1 && width <= max_size && height <= max_size) return {};
-  return "a side is not from 1 to " + std::to_string(max_size) + " pixels";
-}
-
-std::optional<FloatImage> read_image(const std::string& path, Diagnostics& diagnostics,
-                                     const support::Span& where) {
-  const std::optional<std::string> bytes = read_bytes(path, diagnostics, where);
+std::optional<FileImage> read_image(const std::string& path, Diagnostics& diagnostics,
+                                    const support::Span& where) {
+  const std::optional<std::string> bytes = read_image_file(path, diagnostics, where);
   return bytes ? read_image(path, *bytes, diagnostics, where) : std::nullopt;
-}
-
-std::optional<FloatImage> read_image(const std::string& name, std::string_view bytes,
-                                     Diagnostics& diagnostics, const support::Span& where) {
-  Decoded decoded = decode_image(bytes);
-  if (!decoded.image) {
-    diagnostics.report(Id::bad_image, where,
-                       "cannot read the image " + quote(name) + ": " + support::visible(decoded.reason));
-  }
-  return std::move(decoded.image);
 }
 
 }  // namespace isoshade::scene

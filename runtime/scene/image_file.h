@@ -22,17 +22,22 @@ struct ImageView {
   std::span<const float> depth;  ///< one a pixel
 };
 
-/// An image as a file holds it. Bytes are over 255, numbers of 16 bits over 65535, as encoded; where a file is grey,
+/// An image as a file holds it, as encoded: in `bytes` or in `rgba`, the other of which is empty. Where a file is grey,
 /// its three colours are alike; where it has no alpha, it is 1; where it has no depth, `depth` is empty.
-struct FloatImage {
+struct FileImage {
   int width = 0;
   int height = 0;
-  std::vector<float> rgba;
+  /// A word a pixel, r g b a from its lowest byte on, of files with 8 bits a number or fewer.
+  std::vector<uint32_t> bytes;
+  std::vector<float> rgba;  ///< 4 a pixel; numbers of 16 bits are over 65535
   std::vector<float> depth;
-  bool bytes = false;  ///< the file has 8 bits a number, or fewer
 
+  bool has_bytes() const { return !bytes.empty(); }
   ImageView view() const { return {width, height, rgba, depth}; }
 };
+
+/// The bytes over 255, or `rgba` as it is: 4 floats a pixel.
+std::vector<float> numbers_of(const FileImage& image);
 
 /// The bytes of an 8-bit RGBA PNG; `rgba` has 4 bytes a pixel.
 std::string png(int width, int height, std::span<const uint8_t> rgba);
@@ -48,21 +53,37 @@ bool check_image_path(const std::string& path, support::Diagnostics& diagnostics
 bool write_image(const std::string& path, const ImageView& image, Encoding encoding, float exposure,
                  support::Diagnostics& diagnostics);
 
-/// An image, or the reason why there is none: "it is tiled".
-struct Decoded {
-  std::optional<FloatImage> image;
+/// What a file says of its image before its data: enough to know what room it takes.
+struct ImageHeader {
+  int width = 0;  ///< both from 1 to max_size
+  int height = 0;
+  bool bytes = false;  ///< the image will be in FileImage::bytes
+};
+
+/// What is in a file, or the reason why it is not: "it is tiled".
+template <class T>
+struct Read {
+  std::optional<T> found;
   std::string reason;
 };
 
-/// PNG, JPEG, Radiance HDR or OpenEXR, by how they begin. Not beyond 8192 pixels a side, which is known before anything
-/// is unpacked.
-Decoded decode_image(std::string_view bytes);
+/// PNG, JPEG, Radiance HDR or OpenEXR, by how they begin. Not beyond 8192 pixels a side.
+Read<ImageHeader> read_header(std::string_view bytes);
+/// Also refuses what read_header does, before anything is unpacked.
+Read<FileImage> decode_image(std::string_view bytes);
 
-/// Reads an image file. Reports what is no such file, is damaged or too large, at `where`.
-std::optional<FloatImage> read_image(const std::string& path, support::Diagnostics& diagnostics,
-                                     const support::Span& where = {});
-/// The same of the bytes of a file that messages call `name`.
-std::optional<FloatImage> read_image(const std::string& name, std::string_view bytes,
-                                     support::Diagnostics& diagnostics, const support::Span& where);
+/// The bytes of an image file. Reports a file that cannot be read, or has more than 2 GiB, at `where`.
+std::optional<std::string> read_image_file(const std::string& path, support::Diagnostics& diagnostics,
+                                           const support::Span& where);
+
+/// What a file that messages call `name` says of its image; or reports at `where` that it is no image, or too large.
+std::optional<ImageHeader> read_header(const std::string& name, std::string_view bytes,
+                                       support::Diagnostics& diagnostics, const support::Span& where);
+/// The image in such a file. Reports also what is damaged.
+std::optional<FileImage> read_image(const std::string& name, std::string_view bytes,
+                                    support::Diagnostics& diagnostics, const support::Span& where);
+/// The same of a file on the disk.
+std::optional<FileImage> read_image(const std::string& path, support::Diagnostics& diagnostics,
+                                    const support::Span& where = {});
 
 }  // namespace isoshade::scene

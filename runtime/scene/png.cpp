@@ -76,37 +76,55 @@ std::string failure() {
 
 }  // namespace
 
-Decoded decode_by_stb(std::string_view bytes) {
+Read<ImageHeader> read_stb_header(std::string_view bytes) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
-  int width = 0, height = 0, channels = 0;
+  ImageHeader header;
+  int channels = 0;
   if (!is_png(bytes) && !bytes.starts_with("\xff\xd8\xff"))
     return {{}, "it is no PNG, JPEG, HDR or EXR file"};
   if (is_png(bytes) && bytes.size() >= 24 && bytes.substr(12, 4) == "IHDR") {  // stb would tell no size
     std::string reason = refuse_size(big_endian(bytes, 16), big_endian(bytes, 20));
     if (!reason.empty()) return {{}, std::move(reason)};
   }
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
+  if (stbi_info_from_memory(data, size, &header.width, &header.height, &channels) == 0)
     return {{}, "its header is damaged"};
-  if (std::string reason = refuse_size(width, height); !reason.empty()) return {{}, std::move(reason)};
-  if (is_png(bytes) && !unpacks_to_its_rows(bytes, width, height))
+  if (std::string reason = refuse_size(header.width, header.height); !reason.empty())
+    return {{}, std::move(reason)};
+  header.bytes = stbi_is_16_bit_from_memory(data, size) == 0;
+  return {header, {}};
+}
+
+Read<FileImage> decode_by_stb(std::string_view bytes) {
+  Read<ImageHeader> header = read_stb_header(bytes);
+  if (!header.found) return {{}, std::move(header.reason)};
+  FileImage image;
+  image.width = header.found->width;
+  image.height = header.found->height;
+  if (is_png(bytes) && !unpacks_to_its_rows(bytes, image.width, image.height))
     return {{}, "its data do not unpack to what its size needs"};
-  FloatImage image;
-  image.width = width;
-  image.height = height;
-  const bool words = stbi_is_16_bit_from_memory(data, size) != 0;
-  image.bytes = !words;
-  const auto take = [&](auto* loaded, float whole) -> Decoded {
-    if (loaded == nullptr) return {{}, failure()};
-    const std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, void (*)(void*)> pixels(loaded,
-                                                                                           stbi_image_free);
-    const size_t values = size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height);
-    image.rgba.reserve(values);
-    for (size_t i = 0; i < values; ++i) image.rgba.push_back(static_cast<float>(pixels.get()[i]) / whole);
-    return {std::move(image), {}};
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const int size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+  const auto owned = [](auto* loaded) {
+    return std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, void (*)(void*)>(loaded, stbi_image_free);
   };
-  if (words) return take(stbi_load_16_from_memory(data, size, &width, &height, &channels, 4), 65535.0f);
-  return take(stbi_load_from_memory(data, size, &width, &height, &channels, 4), 255.0f);
+  if (header.found->bytes) {
+    const auto loaded = owned(stbi_load_from_memory(data, size, &width, &height, &channels, 4));
+    if (loaded == nullptr) return {{}, failure()};
+    image.bytes.resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+      const auto byte = [&](size_t channel) { return uint32_t{loaded.get()[4 * i + channel]}; };
+      image.bytes[i] = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
+    }
+  } else {
+    const auto loaded = owned(stbi_load_16_from_memory(data, size, &width, &height, &channels, 4));
+    if (loaded == nullptr) return {{}, failure()};
+    image.rgba.resize(4 * pixels);
+    for (size_t i = 0; i < 4 * pixels; ++i) image.rgba[i] = static_cast<float>(loaded.get()[i]) / 65535.0f;
+  }
+  return {std::move(image), {}};
 }
 
 }  // namespace isoshade::scene

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "compiler/functions/color.h"
 #include "runtime/lanes/float_rules.h"
@@ -51,43 +53,120 @@ float weighted(const Cover& cover, const float* from, size_t step) {
   return finite(sum);
 }
 
+/// half_size of a level whose row y is at row(y).
+template <class Row>
+TextureLevel halved(int width, int height, Row row) {
+  const lanes::FpGuard guard;
+  const std::vector<Cover> across = covers(width), down = covers(height);
+  const size_t values = channels * across.size();
+  TextureLevel half{static_cast<int>(across.size()), static_cast<int>(down.size()), {}};
+  half.texels.reserve(values * down.size());
+  std::vector<float> narrow(3 * values);  // the rows that one of half as many covers
+  for (const Cover& rows : down) {
+    for (size_t i = 0; i < rows.count; ++i) {
+      const float* from = row(rows.first + i);
+      for (size_t x = 0; x < across.size(); ++x)
+        for (size_t c = 0; c < channels; ++c)
+          narrow[i * values + x * channels + c] =
+              weighted(across[x], from + across[x].first * channels + c, channels);
+    }
+    for (size_t i = 0; i < values; ++i) half.texels.push_back(weighted(rows, &narrow[i], values));
+  }
+  return half;
+}
+
+/// The byte whose float is nearest to a value in [0, 1], or a little above; half-way the lower one. What is half-way is
+/// exact in double.
+class NearestByte {
+ public:
+  explicit NearestByte(const ByteTable& table) {
+    for (size_t i = 0; i + 1 < table.size(); ++i) ends_[i] = (double{table[i]} + double{table[i + 1]}) / 2;
+    ends_.back() = std::numeric_limits<double>::infinity();
+    for (size_t cell = 0; cell < first_.size(); ++cell) {
+      const auto end = std::ranges::lower_bound(ends_, static_cast<double>(cell) / cells);
+      first_[cell] = static_cast<uint32_t>(end - ends_.begin());
+    }
+  }
+  uint32_t operator()(float value) const {
+    uint32_t byte = first_[std::min(static_cast<size_t>(value * cells), first_.size() - 1)];
+    while (ends_[byte] < double{value}) ++byte;
+    return byte;
+  }
+
+ private:
+  static constexpr int cells = 1024;
+  std::array<double, 256> ends_;             ///< the greatest value of each byte
+  std::array<uint32_t, cells + 1> first_{};  ///< the byte of each multiple of 1 / cells
+};
+
+/// The floats of words, four each.
+void decode(std::span<const uint32_t> words, const ByteTable& colors, float* to) {
+  const ByteTable& alphas = byte_table(false);
+  for (const uint32_t word : words) {
+    for (int shift = 0; shift < 24; shift += 8) *to++ = colors[word >> shift & 255];
+    *to++ = alphas[word >> 24];
+  }
+}
+
 }  // namespace
 
-TextureLevel linear_level(const FloatImage& image, bool srgb) {
+const ByteTable& byte_table(bool srgb) {
+  const auto made = [](bool decoded) {
+    const lanes::FpGuard guard;
+    ByteTable table;
+    for (size_t byte = 0; byte < table.size(); ++byte) {
+      const float encoded = static_cast<float>(byte) / 255.0f;
+      table[byte] = decoded ? functions::srgb_decode(encoded) : encoded;
+    }
+    return table;
+  };
+  static const ByteTable tables[] = {made(false), made(true)};
+  return tables[srgb ? 1 : 0];
+}
+
+TextureLevel linear_level(FileImage image, bool srgb) {
+  if (image.has_bytes())
+    return linear_level(ByteLevel{image.width, image.height, std::move(image.bytes)}, srgb);
   const lanes::FpGuard guard;
-  TextureLevel level{image.width, image.height, image.rgba};
-  std::array<float, 256> decoded{};
-  for (size_t byte = 0; byte < decoded.size(); ++byte)
-    decoded[byte] = functions::srgb_decode(static_cast<float>(byte) / 255.0f);
+  TextureLevel level{image.width, image.height, std::move(image.rgba)};
   for (size_t i = 0; i < level.texels.size(); ++i) {
     float& value = level.texels[i];
     value = finite(value);
-    if (!srgb || i % channels == 3) continue;
-    // Of a byte over 255, the byte again.
-    value = image.bytes ? decoded[static_cast<size_t>(value * 255.0f + 0.5f)]
-                        : finite(functions::srgb_decode(value));
+    if (srgb && i % channels != 3) value = finite(functions::srgb_decode(value));
   }
   return level;
 }
 
-TextureLevel half_size(const TextureLevel& level) {
-  const lanes::FpGuard guard;
-  const std::vector<Cover> across = covers(level.width), down = covers(level.height);
-  const size_t width = across.size(), row = channels * width;
-  std::vector<float> narrow(row * static_cast<size_t>(level.height));
-  for (size_t y = 0; y < static_cast<size_t>(level.height); ++y) {
-    const float* from = &level.texels[y * channels * static_cast<size_t>(level.width)];
-    for (size_t x = 0; x < width; ++x)
-      for (size_t c = 0; c < channels; ++c)
-        narrow[y * row + x * channels + c] =
-            weighted(across[x], from + across[x].first * channels + c, channels);
+TextureLevel linear_level(const ByteLevel& level, bool srgb) {
+  TextureLevel linear{level.width, level.height, std::vector<float>(channels * level.texels.size())};
+  decode(level.texels, byte_table(srgb), linear.texels.data());
+  return linear;
+}
+
+ByteLevel byte_level(const TextureLevel& level, bool srgb) {
+  const NearestByte color(byte_table(srgb)), alpha(byte_table(false));
+  ByteLevel bytes{level.width, level.height, {}};
+  bytes.texels.reserve(level.texels.size() / channels);
+  for (size_t i = 0; i < level.texels.size(); i += channels) {
+    const float* texel = &level.texels[i];
+    bytes.texels.push_back(color(texel[0]) | color(texel[1]) << 8 | color(texel[2]) << 16 |
+                           alpha(texel[3]) << 24);
   }
-  TextureLevel half{static_cast<int>(width), static_cast<int>(down.size()),
-                    std::vector<float>(row * down.size())};
-  for (size_t y = 0; y < down.size(); ++y)
-    for (size_t i = 0; i < row; ++i)
-      half.texels[y * row + i] = weighted(down[y], &narrow[down[y].first * row + i], row);
-  return half;
+  return bytes;
+}
+
+TextureLevel half_size(const TextureLevel& level) {
+  const size_t row = channels * static_cast<size_t>(level.width);
+  return halved(level.width, level.height, [&](size_t y) { return &level.texels[y * row]; });
+}
+
+TextureLevel half_size(const ByteLevel& level, bool srgb) {
+  const auto width = static_cast<size_t>(level.width);
+  std::vector<float> row(channels * width);
+  return halved(level.width, level.height, [&](size_t y) {
+    decode(std::span(level.texels).subspan(y * width, width), byte_table(srgb), row.data());
+    return row.data();
+  });
 }
 
 }  // namespace isoshade::scene

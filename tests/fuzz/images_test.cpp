@@ -23,7 +23,7 @@ std::vector<std::string> images() {
     rgba.insert(rgba.end(), {byte, 3, 200, uint8_t(i)});
     floats.insert(floats.end(), {0.5f * static_cast<float>(i), 1, 3e5f});
   }
-  scene::FloatImage image{19, 11, {}, std::vector<float>(19 * 11, 0.5f)};
+  scene::FileImage image{19, 11, {}, {}, std::vector<float>(19 * 11, 0.5f)};
   for (int i = 0; i < 19 * 11 * 4; ++i) image.rgba.push_back(static_cast<float>(i));
   const std::string palette = png_chunk("PLTE", "\xff\x33\x66\x33\xff\x99") + png_chunk("tRNS", "\x33");
   return {scene::png(19, 11, rgba),
@@ -38,7 +38,7 @@ std::vector<std::string> images() {
 TEST(DamagedImages, AreReadOrRefused) {
   const std::vector<std::string> good = images();
   for (const std::string& bytes : good)
-    ASSERT_TRUE(scene::decode_image(bytes).image) << scene::decode_image(bytes).reason;
+    ASSERT_TRUE(scene::decode_image(bytes).found) << scene::decode_image(bytes).reason;
   std::mt19937 random(11);
   const auto below = [&](size_t end) { return random() % end; };
   const int count = std::getenv("ISOSHADE_FULL") != nullptr ? 5000 : 200;
@@ -56,14 +56,20 @@ TEST(DamagedImages, AreReadOrRefused) {
         default: bytes.erase(at, 1 + below(8)); break;
       }
     }
-    const scene::Decoded decoded = scene::decode_image(bytes);
-    ASSERT_NE(decoded.image.has_value(), !decoded.reason.empty()) << "file " << i;
-    if (!decoded.image) continue;
+    const auto header = scene::read_header(bytes);
+    ASSERT_NE(header.found.has_value(), !header.reason.empty()) << "file " << i;
+    const auto decoded = scene::decode_image(bytes);
+    ASSERT_NE(decoded.found.has_value(), !decoded.reason.empty()) << "file " << i;
+    if (!decoded.found) continue;
     ++read;
-    const scene::FloatImage& image = *decoded.image;
-    ASSERT_GE(std::min(image.width, image.height), 1) << "file " << i;
-    ASSERT_EQ(image.rgba.size(), size_t{4} * image.width * image.height) << "file " << i;
-    if (image.rgba.size() > 4'000'000) continue;
+    const scene::FileImage& image = *decoded.found;
+    ASSERT_TRUE(header.found) << "file " << i;
+    ASSERT_EQ(header.found->width, image.width) << "file " << i;
+    ASSERT_EQ(header.found->height, image.height) << "file " << i;
+    ASSERT_EQ(header.found->bytes, image.has_bytes()) << "file " << i;
+    const size_t pixels = size_t{1} * image.width * image.height;
+    ASSERT_EQ(4 * image.bytes.size() + image.rgba.size(), 4 * pixels) << "file " << i;
+    if (pixels > 1'000'000) continue;
     const scene::TextureLevel level = scene::linear_level(image, i % 2 == 0);
     for (const float value : level.texels) ASSERT_TRUE(std::isnormal(value) || value == 0) << "file " << i;
     for (const float value : scene::half_size(level).texels) ASSERT_TRUE(std::isnormal(value) || value == 0);

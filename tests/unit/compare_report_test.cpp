@@ -39,9 +39,10 @@ TEST(Report, HoldsBothImagesTheHeatMapAndTheWords) {
     EXPECT_TRUE(fs::exists(folder / name)) << name;
   const auto map = scene::read_image((folder / "difference.png").string(), diagnostics);
   ASSERT_TRUE(map);
+  const std::vector<float> rgba = scene::numbers_of(*map);
   const auto pixel = [&](size_t i) {
-    return std::vector<float>(map->rgba.begin() + static_cast<ptrdiff_t>(4 * i),
-                              map->rgba.begin() + static_cast<ptrdiff_t>(4 * i + 3));
+    return std::vector<float>(rgba.begin() + static_cast<ptrdiff_t>(4 * i),
+                              rgba.begin() + static_cast<ptrdiff_t>(4 * i + 3));
   };
   EXPECT_EQ(pixel(0)[0], pixel(0)[2]);                 // grey: identical
   EXPECT_EQ(pixel(1), (std::vector<float>{1, 1, 0}));  // yellow: 1 ULP

@@ -20,17 +20,26 @@ namespace {
 using nodes::AddressMode;
 using nodes::Filter;
 
-/// Two textures, of which the first is a decoy, and what sample() makes of the second.
+/// Two textures, of which the first is a decoy, and what sample() makes of the second: of floats, or of bytes.
 class Picture {
  public:
-  Picture(int width, int height) : width_(width), height_(height), texels_(size_t{4} * width * height + 4) {
+  static constexpr int floats = -1;
+
+  Picture(int width, int height, int table = floats) : width_(width), height_(height), table_(table) {
     std::mt19937 random(7);
-    for (float& value : texels_) value = std::ldexp(static_cast<float>(random() >> 8), -24);
-    records_ = {0, 1, 1, 0, 4, width, height, 0};
+    const size_t count = size_t{1} * width * height + 1;
+    const int words = table == floats ? static_cast<int>(4 * count) : 2 * lower::byte_table::size;
+    for (int i = 0; i < words; ++i) texels_.push_back(std::ldexp(static_cast<float>(random() >> 8), -24));
+    bytes_.resize(table == floats ? 1 : count);
+    for (uint32_t& word : bytes_) word = static_cast<uint32_t>(random());
+    records_ = {0, 1, 1, 0, table, table == floats ? 4 : 1, width, height, 0, table};
   }
 
   float texel(int x, int y, int channel) const {
-    return texels_[static_cast<size_t>(4 + 4 * (y * width_ + x) + channel)];
+    const auto place = static_cast<size_t>(1 + y * width_ + x);
+    if (table_ == floats) return texels_[4 * place + static_cast<size_t>(channel)];
+    const uint32_t byte = bytes_[place] >> 8 * channel & 255;
+    return texels_[(channel == 3 ? 0 : static_cast<size_t>(table_)) + byte];
   }
 
   std::vector<float> sample(const lower::Sampling& sampling, float u, float v) const {
@@ -47,6 +56,7 @@ class Picture {
     std::vector<uint32_t> texels, records(records_.begin(), records_.end());
     for (const float value : texels_) texels.push_back(std::bit_cast<uint32_t>(value));
     interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::texels), texels);
+    interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::texel_bytes), bytes_);
     interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::textures), records);
     const std::array arguments{uint32_t{1}, std::bit_cast<uint32_t>(u), std::bit_cast<uint32_t>(v)};
     std::array<uint32_t, 4> results{};
@@ -61,12 +71,21 @@ class Picture {
   int height() const { return height_; }
 
  private:
-  int width_, height_;
+  int width_, height_, table_;
   std::vector<float> texels_;
+  std::vector<uint32_t> bytes_;
   std::vector<int32_t> records_;
 };
 
 constexpr AddressMode modes[] = {AddressMode::periodic, AddressMode::clamp, AddressMode::mirror};
+constexpr auto tables = {Picture::floats, lower::byte_table::linear, lower::byte_table::srgb};
+
+std::vector<std::pair<AddressMode, int>> each_with(std::initializer_list<int> tables) {
+  std::vector<std::pair<AddressMode, int>> all;
+  for (const AddressMode mode : modes)
+    for (const int table : tables) all.emplace_back(mode, table);
+  return all;
+}
 
 /// The place in [0, 1] that a coordinate means.
 double place(AddressMode mode, float x) {
@@ -95,8 +114,8 @@ std::vector<float> coordinates() {
 
 TEST(Sampling, ClosestIsTheTexelWhereTheCoordinateLies) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
-    const Picture picture(width, height);
-    for (const AddressMode mode : modes) {
+    for (const auto& [mode, table] : each_with(tables)) {
+      const Picture picture(width, height, table);
       for (const float u : coordinates()) {
         const float v = 0.3f - u;
         const auto column = [](AddressMode m, float x, int size) {
@@ -114,8 +133,8 @@ TEST(Sampling, ClosestIsTheTexelWhereTheCoordinateLies) {
 
 TEST(Sampling, LinearIsInProportionBetweenTheNearestFour) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
-    const Picture picture(width, height);
-    for (const AddressMode mode : modes) {
+    for (const auto& [mode, table] : each_with({Picture::floats, lower::byte_table::srgb})) {
+      const Picture picture(width, height, table);
       for (const float u : coordinates()) {
         const float v = 0.3f - u;
         const double x = place(mode, u) * width - 0.5, y = place(mode, v) * height - 0.5;
@@ -139,12 +158,13 @@ TEST(Sampling, LinearIsInProportionBetweenTheNearestFour) {
 }
 
 TEST(Sampling, LinearGivesTexelsExactlyInTheirMiddle) {
-  const Picture picture(8, 4);
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 8; ++x)
-      for (const AddressMode mode : modes)
+  for (const auto& [mode, table] : each_with(tables)) {
+    const Picture picture(8, 4, table);
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 8; ++x)
         EXPECT_EQ(picture.sample({Filter::linear, mode, mode}, (x + 0.5f) / 8, (y + 0.5f) / 4)[2],
                   picture.texel(x, y, 2));
+  }
 }
 
 TEST(Sampling, AxesHaveModesOfTheirOwn) {

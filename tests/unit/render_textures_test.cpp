@@ -8,8 +8,10 @@
 #include "compiler/lower/frame_layout.h"
 #include "runtime/render/plan.h"
 #include "runtime/render/render.h"
+#include "runtime/render/textures.h"
 #include "runtime/scene/texture.h"
 #include "tests/unit/gltf_files.h"
+#include "tests/unit/image_files.h"
 #include "tests/unit/scene_documents.h"
 
 namespace isoshade {
@@ -74,6 +76,11 @@ class Textures : public ::testing::Test {
     return scene::linear_level(*image, false);
   }
 
+  /// The floats of the bytes that are nearest.
+  static std::vector<float> as_bytes(const scene::TextureLevel& level) {
+    return scene::linear_level(scene::byte_level(level, false), false).texels;
+  }
+
   testing::Folder folder_;
   check::Library library_;
   render::Options options_;
@@ -90,10 +97,11 @@ TEST_F(Textures, AreShownUprightFromTheUpperLeft) {
 TEST_F(Textures, TrilinearShowsTheMipLevelOfThePixelsSize) {
   const auto made = plan(square("small"), 2);
   ASSERT_TRUE(made) << diagnostics_.text();
-  EXPECT_EQ(draw(*made), scene::half_size(picture()).texels);
+  EXPECT_EQ(draw(*made), as_bytes(scene::half_size(picture())));
   const auto whole = plan(square("small"), 1);
   ASSERT_TRUE(whole) << diagnostics_.text();
-  EXPECT_EQ(draw(*whole), scene::half_size(scene::half_size(picture())).texels);
+  // Of the half that is not yet rounded to bytes.
+  EXPECT_EQ(draw(*whole), as_bytes(scene::half_size(scene::half_size(picture()))));
   const auto large = plan(square("small", R"("tiles": 0.25)"), 4);
   ASSERT_TRUE(large) << diagnostics_.text();
   // The last pixel is 3/8 of the way from the first texel to the next.
@@ -158,6 +166,7 @@ TEST_F(Textures, WithoutAFileThereIsTheDefault) {
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(draw(*made)[5], 0.25f);
   EXPECT_TRUE(made->frame.texels.empty());
+  EXPECT_TRUE(made->frame.texel_bytes.empty());
   EXPECT_TRUE(made->frame.textures.empty());
   EXPECT_EQ(made->stats.textures, 0);
   EXPECT_EQ(render::text(made->stats).find("textures:"), std::string::npos);
@@ -167,6 +176,7 @@ TEST_F(Textures, WhatNoPassReadsIsNotLoaded) {
   const auto made = plan(square("plain"));  // its default is missing
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_TRUE(made->frame.texels.empty());
+  EXPECT_TRUE(made->frame.texel_bytes.empty());
   EXPECT_NE(
       render::text(made->stats).find("skipped:  the images of map of the effect plain: no pass reads them"),
       std::string::npos);
@@ -178,8 +188,67 @@ TEST_F(Textures, AreStoredOnceWithMipsForAllWhereOneAsks) {
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(made->stats.textures, 1);
   EXPECT_EQ(made->stats.texels, 16 + 4 + 1);
+  EXPECT_EQ(made->frame.texel_bytes.size(), size_t{1 + 16 + 4 + 1});
+  EXPECT_EQ(made->frame.texels.size(), size_t{2} * lower::byte_table::size);
   EXPECT_EQ(made->frame.textures.size(), size_t{3} * word::stride);
   EXPECT_EQ(made->frame.textures[word::smaller], 2);
+}
+
+TEST_F(Textures, OfBytesAndOfFloatsAreShownAlike) {
+  scene::FileImage image = *scene::read_image(path("a.png"), diagnostics_);
+  image.rgba = scene::numbers_of(image);
+  image.depth.resize(16);
+  folder_.write("a.exr", scene::exr(image.view()));
+  for (const char* effect : {"shown", "linear"}) {
+    folder_.write("linear.json",
+                  Textures::effect("linear", R"("colorspace": "linear", "filtertype": "linear")"));
+    const auto bytes = plan(square(effect, R"("tiles": 1.7)"), 8);
+    ASSERT_TRUE(bytes) << diagnostics_.text();
+    const std::vector<float> shown = draw(*bytes);
+    const auto floats = plan(square(effect, R"("tiles": 1.7, "map": "a.exr")"), 8);
+    ASSERT_TRUE(floats) << diagnostics_.text();
+    EXPECT_EQ(floats->frame.texels.size(), size_t{4 * 16});
+    EXPECT_EQ(draw(*floats), shown);
+  }
+}
+
+TEST_F(Textures, AreRefusedBeforeTheyAreUnpackedWhereTheyDoNotFit) {
+  const auto refusal = [&](const std::string& name, int64_t room, bool mips) {
+    diagnostics_ = support::Diagnostics();
+    render::TextureStore store(room);
+    EXPECT_FALSE(store.find({path(name), nullptr, {}}, lower::Decoding::linear, mips, diagnostics_));
+    return diagnostics_.text();
+  };
+  const auto expect_limit = [&](const std::string& name, int64_t bytes, bool mips) {
+    // What follows the header is no image: with room enough it is unpacked, and that is seen.
+    EXPECT_NE(refusal(name, bytes, mips).find("error[bad-image]"), std::string::npos) << diagnostics_.text();
+    const std::string text = refusal(name, bytes - 1, mips);
+    EXPECT_NE(text.find("error[too-large]"), std::string::npos) << text;
+    EXPECT_NE(text.find(std::to_string(bytes) + " bytes; at most " + std::to_string(bytes - 1)),
+              std::string::npos)
+        << text;
+  };
+  folder_.write("bytes.png", testing::png_file(4096, 8192, 8, 6, {""}));
+  folder_.write("words.png", testing::png_file(4096, 8192, 16, 6, {""}));
+  folder_.write("floats.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8192 +X 4096\n");
+  expect_limit("bytes.png", int64_t{4} * 4096 * 8192, false);
+  // 4096 x 8192, 2048 x 4096, ... 1 x 2, and 1 x 1.
+  expect_limit("bytes.png", int64_t{4} * (2 * ((int64_t{1} << 26) - 1) / 3 + 1), true);
+  expect_limit("words.png", int64_t{16} * 4096 * 8192, false);
+  expect_limit("floats.hdr", int64_t{16} * 4096 * 8192, false);
+}
+
+TEST_F(Textures, AreRefusedWhereTheirMipsDoNotFit) {
+  for (const int64_t room : {4 * 16, 4 * 20, 4 * 21}) {
+    diagnostics_ = support::Diagnostics();
+    render::TextureStore store(room);
+    const render::ImageSource source{path("a.png"), nullptr, {}};
+    EXPECT_EQ(store.find(source, lower::Decoding::linear, false, diagnostics_), 0);
+    EXPECT_EQ(store.find(source, lower::Decoding::linear, true, diagnostics_).has_value(), room == 4 * 21);
+    EXPECT_EQ(diagnostics_.has_errors(), room != 4 * 21);
+    // Decoded in another way it is a texture of its own.
+    EXPECT_FALSE(store.find(source, lower::Decoding::srgb, false, diagnostics_));
+  }
 }
 
 TEST_F(Textures, GridsVaryThem) {

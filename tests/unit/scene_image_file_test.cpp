@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using scene::Encoding;
-using scene::FloatImage;
+using scene::FileImage;
 using support::Diagnostics;
 
 /// A folder of its own for each test.
@@ -42,7 +42,7 @@ std::string content(const std::string& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-FloatImage special_image(int width, int height) {
+FileImage special_image(int width, int height) {
   constexpr float specials[] = {0.0f,
                                 -0.0f,
                                 1.0f,
@@ -54,7 +54,7 @@ FloatImage special_image(int width, int height) {
                                 0.1f,
                                 65504.0f,
                                 1e-7f};
-  FloatImage image;
+  FileImage image;
   image.width = width;
   image.height = height;
   const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
@@ -70,7 +70,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 TEST_F(ImageFile, ExrKeepsEveryBitOfColourAndDepth) {
   const std::pair<int, int> sizes[] = {{1, 1}, {3, 2}, {15, 15}, {17, 33}, {64, 1}, {1, 100}, {200, 120}};
   for (const auto& [width, height] : sizes) {
-    const FloatImage image = special_image(width, height);
+    const FileImage image = special_image(width, height);
     Diagnostics diagnostics;
     ASSERT_TRUE(scene::write_image(path("a.exr"), image.view(), Encoding::srgb, 1, diagnostics));
     const auto read = scene::read_image(path("a.exr"), diagnostics);
@@ -84,14 +84,14 @@ TEST_F(ImageFile, ExrKeepsEveryBitOfColourAndDepth) {
 
 TEST_F(ImageFile, PngKeepsEveryByte) {
   for (const int width : {1, 5, 300}) {
-    FloatImage image = special_image(width, 2);
+    FileImage image = special_image(width, 2);
     for (size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<float>(i * 37 % 256) / 255.0f;
     Diagnostics diagnostics;
     ASSERT_TRUE(scene::write_image(path("a.png"), image.view(), Encoding::linear, 1, diagnostics));
     const auto read = scene::read_image(path("a.png"), diagnostics);
     ASSERT_TRUE(read) << diagnostics.text();
     EXPECT_EQ(read->width, width);
-    EXPECT_TRUE(same_bits(read->rgba, image.rgba));
+    EXPECT_TRUE(same_bits(scene::numbers_of(*read), image.rgba));
     EXPECT_TRUE(read->depth.empty());
   }
 }
@@ -107,7 +107,7 @@ TEST_F(ImageFile, RefusesNamesOfNoFormatBeforeAnythingIsRendered) {
 }
 
 TEST_F(ImageFile, RefusesDamagedFilesWithAReason) {
-  const FloatImage image = special_image(40, 30);
+  const FileImage image = special_image(40, 30);
   Diagnostics diagnostics;
   for (const std::string name : {"a.exr", "a.png"}) {
     ASSERT_TRUE(scene::write_image(path(name), image.view(), Encoding::srgb, 1, diagnostics));

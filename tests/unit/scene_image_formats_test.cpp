@@ -13,13 +13,17 @@ using namespace testing;
 using Floats = std::vector<float>;
 
 Floats rgba_of(const std::string& bytes, bool has_bytes) {
-  const scene::Decoded decoded = scene::decode_image(bytes);
-  if (!decoded.image) {
+  const auto header = scene::read_header(bytes);
+  const auto decoded = scene::decode_image(bytes);
+  if (!header.found || !decoded.found) {
     ADD_FAILURE() << decoded.reason;
     return {};
   }
-  EXPECT_EQ(decoded.image->bytes, has_bytes);
-  return decoded.image->rgba;
+  EXPECT_EQ(decoded.found->has_bytes(), has_bytes);
+  EXPECT_EQ(header.found->bytes, has_bytes);
+  EXPECT_EQ(header.found->width, decoded.found->width);
+  EXPECT_EQ(header.found->height, decoded.found->height);
+  return scene::numbers_of(*decoded.found);
 }
 
 TEST(ImageFormats, GreyIsThreeColoursAlike) {
@@ -63,7 +67,7 @@ TEST(ImageFormats, HdrHasNumbersBeyondOne) {
 }
 
 TEST(ImageFormats, ExrIsReadBitForBit) {
-  const scene::FloatImage image{2, 1, {0.1f, -2, 1e20f, 0.5f, 1, 2, 3, 4}, {0, 0}};
+  const scene::FileImage image{2, 1, {}, {0.1f, -2, 1e20f, 0.5f, 1, 2, 3, 4}, {0, 0}};
   EXPECT_EQ(rgba_of(scene::exr(image.view()), false), image.rgba);
 }
 
@@ -74,7 +78,7 @@ TEST(ImageFormats, SidesAreCheckedBeforeAnythingIsUnpacked) {
     EXPECT_EQ(scene::decode_image(png_file(1, side, 8, 0, {std::string(1, '\0')})).reason, reason) << side;
   }
   EXPECT_EQ(scene::decode_image(png_file(1, 1, 3, 0, {""})).reason, "its header is damaged");
-  EXPECT_FALSE(scene::decode_image("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n").image);
+  EXPECT_FALSE(scene::decode_image("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n").found);
 }
 
 TEST(ImageFormats, DataAreNotUnpackedBeyondTheRows) {
@@ -84,7 +88,7 @@ TEST(ImageFormats, DataAreNotUnpackedBeyondTheRows) {
 
 TEST(ImageFormats, WhatIsNoneOfThemIsRefused) {
   for (const char* bytes : {"", "BM", "GIF89a\1\0\1\0", "P6 1 1 255 abc", "\x89PNG", "{}", "\xff\xd8\xff"})
-    EXPECT_FALSE(scene::decode_image(bytes).image) << bytes;
+    EXPECT_FALSE(scene::decode_image(bytes).found) << bytes;
 }
 
 }  // namespace

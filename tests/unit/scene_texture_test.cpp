@@ -53,24 +53,71 @@ TEST(Mips, OneTexelStays) {
   EXPECT_EQ(scene::half_size(level).texels, level.texels);
 }
 
+/// All bytes, alphas too.
+scene::ByteLevel all_bytes() {
+  scene::ByteLevel level{256, 1, {}};
+  for (uint32_t i = 0; i < 256; ++i) level.texels.push_back(i * 0x01010101u);
+  return level;
+}
+
 TEST(Texture, DecodesBytesAndLeavesAlphaAlone) {
-  scene::FloatImage image{256, 1, {}, {}, true};
-  for (int i = 0; i < 256; ++i)
-    for (int c = 0; c < 4; ++c) image.rgba.push_back(static_cast<float>(i) / 255.0f);
-  const TextureLevel decoded = scene::linear_level(image, true);
-  const TextureLevel plain = scene::linear_level(image, false);
-  EXPECT_EQ(plain.texels, image.rgba);
+  const TextureLevel decoded = scene::linear_level(all_bytes(), true);
+  const TextureLevel plain = scene::linear_level(all_bytes(), false);
   for (size_t i = 0; i < 256; ++i) {
+    for (size_t c = 0; c < 4; ++c) EXPECT_EQ(plain.texels[4 * i + c], static_cast<float>(i) / 255.0f);
     const double encoded = double(i) / 255;
     const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
     EXPECT_NEAR(decoded.texels[4 * i], linear, 3e-7 * linear);
-    EXPECT_EQ(decoded.texels[4 * i + 3], image.rgba[4 * i + 3]);
+    EXPECT_EQ(decoded.texels[4 * i + 3], plain.texels[4 * i + 3]);
+  }
+}
+
+TEST(Texture, FloatsOfBytesAreThoseThatTheirNumbersGive) {
+  const scene::ByteLevel level = all_bytes();
+  const scene::FileImage bytes{256, 1, level.texels, {}, {}};
+  const scene::FileImage floats{256, 1, {}, scene::numbers_of(bytes), {}};
+  for (const bool srgb : {false, true})
+    EXPECT_EQ(scene::linear_level(bytes, srgb).texels, scene::linear_level(floats, srgb).texels);
+}
+
+TEST(Texture, BytesAreTheNearestAndBetweenTwoTheLower) {
+  for (const bool srgb : {false, true}) {
+    EXPECT_EQ(scene::byte_level(scene::linear_level(all_bytes(), srgb), srgb).texels, all_bytes().texels);
+    for (const bool alpha : {false, true}) {
+      const scene::ByteTable& table = scene::byte_table(srgb && !alpha);
+      const auto byte = [&](float value) {
+        const TextureLevel level{1, 1, std::vector<float>(4, value)};
+        const uint32_t word = scene::byte_level(level, srgb).texels[0];
+        return alpha ? word >> 24 : word & 255;
+      };
+      for (uint32_t i = 0; i + 1 < 256; ++i) {
+        ASSERT_LT(table[i], table[i + 1]);
+        const double middle = (double{table[i]} + double{table[i + 1]}) / 2;
+        const auto near = static_cast<float>(middle);
+        EXPECT_EQ(byte(near), near <= middle ? i : i + 1) << i;
+        EXPECT_EQ(byte(std::nextafter(near, 0.0f)), std::nextafter(near, 0.0f) <= middle ? i : i + 1) << i;
+        EXPECT_EQ(byte(std::nextafter(near, 1.0f)), std::nextafter(near, 1.0f) <= middle ? i : i + 1) << i;
+      }
+      EXPECT_EQ(byte(0.0f), 0u);
+      EXPECT_EQ(byte(std::nextafter(1.0f, 2.0f)), 255u);
+    }
+  }
+}
+
+TEST(Mips, OfBytesAreThoseOfTheirFloats) {
+  for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 9}, {13, 1}, {1, 1}}) {
+    scene::ByteLevel level{width, height, {}};
+    std::mt19937 random(5);
+    for (int i = 0; i < width * height; ++i) level.texels.push_back(static_cast<uint32_t>(random()));
+    for (const bool srgb : {false, true})
+      EXPECT_EQ(scene::half_size(level, srgb).texels,
+                scene::half_size(scene::linear_level(level, srgb)).texels);
   }
 }
 
 TEST(Texture, HoldsNothingThatIsNotFinite) {
   const float inf = std::numeric_limits<float>::infinity(), most = std::numeric_limits<float>::max();
-  const scene::FloatImage image{2, 1, {std::nanf(""), inf, -inf, 1e-40f, 1, 2, most, most}, {}};
+  const scene::FileImage image{2, 1, {}, {std::nanf(""), inf, -inf, 1e-40f, 1, 2, most, most}, {}};
   const TextureLevel level = scene::linear_level(image, false);
   EXPECT_EQ(level.texels, (std::vector<float>{0, most, -most, 0, 1, 2, most, most}));
   for (const float value : scene::half_size(level).texels) EXPECT_TRUE(std::isfinite(value));
