@@ -38,10 +38,9 @@ struct Draw {
   Cull cull = Cull::back;
 };
 
-/// What takes the most room in an array of a frame, for those who find the array too large.
+/// What takes the most room in an array of a frame, for messages; empty if there is nothing.
 struct Largest {
-  std::string what;  ///< "the image \"a.png\", 2048 x 2048 with mip levels"; empty if there is none
-  size_t bytes = 0;
+  std::string what;     ///< "the image \"a.png\", 2048 x 2048 with mip levels"
   support::Span where;  ///< what names it
 };
 
@@ -60,7 +59,7 @@ struct Frame {
   int light_count = 0;
   std::vector<Draw> draws;
   float background[4] = {0, 0, 0, 0};
-  Largest largest_texture, largest_mesh;
+  Largest largest_in_texels, largest_in_texel_bytes, largest_mesh;
 };
 
 /// A full-screen pass ready to be run: a program of Stage::post and its arrays of lower/frame_layout.h.

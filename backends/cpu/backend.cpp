@@ -7,6 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <utility>
 
+#include "backends/array_limit.h"
 #include "backends/cpu/shade.h"
 #include "backends/cpu/workers.h"
 #include "compiler/lower/frame_layout.h"
@@ -32,38 +33,43 @@ constexpr size_t triangle_chunk = 8192;
 /// The arrays of a call, of which generated code reads none beyond its end.
 class Buffers {
  public:
-  Buffers() { std::fill(std::begin(views_), std::end(views_), BufferView{&nothing, 1}); }
+  /// `frame`: that of the arrays, if they are of one.
+  Buffers(const Frame* frame, Diagnostics& diagnostics) : frame_(frame), diagnostics_(diagnostics) {
+    std::fill(std::begin(views_), std::end(views_), BufferView{&nothing, 1});
+  }
 
-  /// False if the array is too long to be indexed.
+  /// Reports an array that is too long to be indexed.
   template <class T>
   bool bind(FrameBuffer buffer, std::span<const T> words) {
-    if (words.size() > INT_MAX) return false;
+    if (words.size() > INT_MAX) {
+      const backends::ArrayLimit limit{"the cpu backend", size_t{4} * INT_MAX, true};
+      backends::report_too_large(buffer, words.size_bytes(), limit, frame_, diagnostics_);
+      return false;
+    }
     if (!words.empty()) views_[static_cast<size_t>(buffer)] = {words.data(), static_cast<int>(words.size())};
     return true;
   }
-  bool bind_frame(const Frame& frame, std::span<const float> vertices) {
-    return bind(FrameBuffer::vertices, vertices) && bind<float>(FrameBuffer::objects, frame.objects) &&
-           bind<float>(FrameBuffer::lights, frame.lights) && bind<float>(FrameBuffer::frame, frame.frame) &&
-           bind<float>(FrameBuffer::texels, frame.texels) &&
-           bind<uint32_t>(FrameBuffer::texel_bytes, frame.texel_bytes) &&
-           bind<int32_t>(FrameBuffer::textures, frame.textures);
+  bool bind_frame(std::span<const float> vertices) {
+    return bind(FrameBuffer::vertices, vertices) && bind<float>(FrameBuffer::objects, frame_->objects) &&
+           bind<float>(FrameBuffer::lights, frame_->lights) &&
+           bind<float>(FrameBuffer::frame, frame_->frame) &&
+           bind<float>(FrameBuffer::texels, frame_->texels) &&
+           bind<uint32_t>(FrameBuffer::texel_bytes, frame_->texel_bytes) &&
+           bind<int32_t>(FrameBuffer::textures, frame_->textures);
   }
   const BufferView* views() const { return views_; }
 
  private:
   static constexpr int32_t nothing = 0;
   BufferView views_[std::size(lower::frame_buffers)];
+  const Frame* frame_;
+  Diagnostics& diagnostics_;
 };
 
 size_t words(const std::vector<driver::Field>& fields) {
   return std::accumulate(fields.begin(), fields.end(), size_t{0}, [](size_t sum, const driver::Field& field) {
     return sum + static_cast<size_t>(field.words);
   });
-}
-
-bool report_too_long(Diagnostics& diagnostics) {
-  diagnostics.report(Id::device_limit, "an array has more than 2^31 - 1 elements");
-  return false;
 }
 
 class CpuBackend final : public backends::Backend {
@@ -117,8 +123,8 @@ bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& 
   for (const Draw& draw : frame.draws) asked[draw.vertex_program] = true;
   const auto kernels = kernels_of(frame, asked, diagnostics);
   if (!kernels) return false;
-  Buffers buffers;
-  if (!buffers.bind_frame(frame, frame.vertices)) return report_too_long(diagnostics);
+  Buffers buffers(&frame, diagnostics);
+  if (!buffers.bind_frame(frame.vertices)) return false;
 
   struct Task {
     size_t draw;
@@ -144,9 +150,8 @@ bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& 
 
 bool CpuBackend::draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
                       Image& image, Diagnostics& diagnostics) {
-  Buffers buffers;
-  if (!buffers.bind_frame(frame, vertices) || !buffers.bind(FrameBuffer::triangles, triangles))
-    return report_too_long(diagnostics);
+  Buffers buffers(&frame, diagnostics);
+  if (!buffers.bind_frame(vertices) || !buffers.bind(FrameBuffer::triangles, triangles)) return false;
   const size_t count = triangles.size() / lower::triangle_word::stride;
 
   DrawJob job{frame, triangles, buffers.views(), {}, {}, image};
@@ -190,12 +195,12 @@ bool CpuBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba
   const Program* const programs[] = {pass.program};
   const auto kernels = kernels_.kernels(programs, diagnostics);
   if (!kernels) return false;
-  Buffers buffers;
+  Buffers buffers(nullptr, diagnostics);
   const bool fits = buffers.bind(FrameBuffer::frame, pass.frame) &&
                     buffers.bind(FrameBuffer::objects, pass.record) &&
                     buffers.bind(FrameBuffer::layers, pass.images) &&
                     buffers.bind(FrameBuffer::layer_records, pass.image_records);
-  if (!fits) return report_too_long(diagnostics);
+  if (!fits) return false;
   const auto width = static_cast<size_t>(pass.width), height = static_cast<size_t>(pass.height);
   rgba.resize(4 * width * height);
   // Rows that follow each other read almost the same pixels.
@@ -213,8 +218,15 @@ bool CpuBackend::evaluate(const Program& program, std::span<const int32_t> input
   const Program* const programs[] = {&program};
   const auto kernels = kernels_.kernels(programs, diagnostics);
   if (!kernels) return false;
-  Buffers buffers;
-  if (rows > INT_MAX || !buffers.bind(FrameBuffer::inputs, inputs)) return report_too_long(diagnostics);
+  if (rows > INT_MAX) {
+    diagnostics
+        .report(Id::device_limit, "the table has " + std::to_string(rows) +
+                                      " rows; the cpu backend takes at most " + std::to_string(INT_MAX))
+        .suggest("evaluate fewer rows at a time");
+    return false;
+  }
+  Buffers buffers(nullptr, diagnostics);
+  if (!buffers.bind(FrameBuffer::inputs, inputs)) return false;
   const size_t width = words(program.results);
   outputs.resize(rows * width);
   const size_t chunks = (rows + row_chunk - 1) / row_chunk;

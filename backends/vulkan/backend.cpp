@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 
+#include "backends/array_limit.h"
 #include "backends/vulkan/device.h"
 #include "backends/vulkan/limits.h"
 #include "backends/vulkan/shaders.h"
@@ -31,15 +32,13 @@ size_t words(const std::vector<driver::Field>& fields) {
   return sum;
 }
 
-/// Uploads an array, or reports that it is larger than the device allows.
+/// Uploads an array, of `frame` if it is of one, or reports that it is larger than the device allows.
 template <class T>
-bool upload(Device& device, FrameBuffer buffer, std::span<const T> data, Diagnostics& diagnostics) {
+bool upload(Device& device, FrameBuffer buffer, std::span<const T> data, const Frame* frame,
+            Diagnostics& diagnostics) {
   if (data.size_bytes() > device.max_buffer_bytes()) {
-    const std::string name(lower::frame_buffers[static_cast<size_t>(buffer)].name);
-    diagnostics.report(support::Id::device_limit, "the " + name + " of the scene take " +
-                                                      std::to_string(data.size_bytes()) + " bytes; " +
-                                                      device.info().name + " allows " +
-                                                      std::to_string(device.max_buffer_bytes()));
+    const backends::ArrayLimit limit{device.info().name, device.max_buffer_bytes()};
+    backends::report_too_large(buffer, data.size_bytes(), limit, frame, diagnostics);
     return false;
   }
   device.upload(buffer, data.data(), data.size_bytes());
@@ -150,16 +149,16 @@ bool VulkanBackend::guarded(Diagnostics& diagnostics, Work work) {
 
 bool VulkanBackend::upload_frame(const Frame& frame, std::span<const float> vertices,
                                  Diagnostics& diagnostics) {
-  return upload(*device_, FrameBuffer::vertices, vertices, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::objects, frame.objects, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::lights, frame.lights, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::frame, frame.frame, diagnostics);
+  return upload(*device_, FrameBuffer::vertices, vertices, &frame, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::objects, frame.objects, &frame, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::lights, frame.lights, &frame, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::frame, frame.frame, &frame, diagnostics);
 }
 
 bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics) {
-  return upload<float>(*device_, FrameBuffer::texels, frame.texels, diagnostics) &&
-         upload<uint32_t>(*device_, FrameBuffer::texel_bytes, frame.texel_bytes, diagnostics) &&
-         upload<int32_t>(*device_, FrameBuffer::textures, frame.textures, diagnostics);
+  return upload<float>(*device_, FrameBuffer::texels, frame.texels, &frame, diagnostics) &&
+         upload<uint32_t>(*device_, FrameBuffer::texel_bytes, frame.texel_bytes, &frame, diagnostics) &&
+         upload<int32_t>(*device_, FrameBuffer::textures, frame.textures, &frame, diagnostics);
 }
 
 bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
@@ -208,9 +207,11 @@ bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>
 /// Reports images that are larger than the device can make.
 bool VulkanBackend::check_size(int width, int height, Diagnostics& diagnostics) const {
   if (std::max(width, height) <= device_->max_frame_side()) return true;
-  diagnostics.report(support::Id::device_limit, "a frame on " + device().name + " has at most " +
-                                                    std::to_string(device_->max_frame_side()) +
-                                                    " pixels a side");
+  diagnostics
+      .report(support::Id::device_limit,
+              "the image has " + std::to_string(width) + "x" + std::to_string(height) + " pixels; " +
+                  device().name + " makes at most " + std::to_string(device_->max_frame_side()) + " a side")
+      .suggest("make a smaller image with --size; or draw it with --backend cpu");
   return false;
 }
 
@@ -218,10 +219,10 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
                          Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
     if (!check_size(pass.width, pass.height, diagnostics) ||
-        !upload(*device_, FrameBuffer::frame, pass.frame, diagnostics) ||
-        !upload(*device_, FrameBuffer::objects, pass.record, diagnostics) ||
-        !upload(*device_, FrameBuffer::layers, pass.images, diagnostics) ||
-        !upload(*device_, FrameBuffer::layer_records, pass.image_records, diagnostics))
+        !upload(*device_, FrameBuffer::frame, pass.frame, nullptr, diagnostics) ||
+        !upload(*device_, FrameBuffer::objects, pass.record, nullptr, diagnostics) ||
+        !upload(*device_, FrameBuffer::layers, pass.images, nullptr, diagnostics) ||
+        !upload(*device_, FrameBuffer::layer_records, pass.image_records, nullptr, diagnostics))
       return false;
     const auto pipeline = device_->pipeline(
         {Target::color, 1, full_screen_vertex(), options_.glsl(*pass.program, division_)}, diagnostics);
@@ -240,7 +241,7 @@ bool VulkanBackend::draw(const Frame& frame, std::span<const float> vertices,
     std::vector<Call> visibility, color;
     if (!triangles.empty()) {
       if (!upload_frame(frame, vertices, diagnostics) || !upload_textures(frame, diagnostics) ||
-          !upload(*device_, FrameBuffer::triangles, triangles, diagnostics))
+          !upload(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics))
         return false;
       const auto pipeline = device_->pipeline(
           {Target::visibility, 1, triangle_vertex(), options_.glsl(driver::depth_program(), division_)},
@@ -275,9 +276,11 @@ bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> in
   support::check(inputs.size() == rows * input_words, "an eval table of a wrong size");
   const bool in_vertex = options_.eval_stage == EvalStage::vertex;
   if (result_words > max_result_words && !in_vertex) {
-    diagnostics.report(support::Id::device_limit,
-                       "function " + support::quote(program.name) + " gives " + std::to_string(result_words) +
-                           " words; on vulkan eval takes at most " + std::to_string(max_result_words));
+    diagnostics
+        .report(support::Id::device_limit,
+                "function " + support::quote(program.name) + " gives " + std::to_string(result_words) +
+                    " words; on vulkan eval takes at most " + std::to_string(max_result_words))
+        .suggest("evaluate it with --backend cpu");
     return false;
   }
   outputs.resize(rows * result_words);

@@ -75,6 +75,7 @@ class Planner {
   bool may_read(const std::string& path, const support::Span& where);
   bool make_objects();
   std::optional<size_t> find_mesh(const Object& object);
+  void note_largest_mesh(const Object& object, const StoredMesh& mesh);
   bool resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
                      const FindTexture& find_texture);
   void place_object(size_t o);
@@ -98,6 +99,7 @@ class Planner {
   std::map<std::string, uint32_t> program_by_text_;
   std::vector<std::vector<ObjectParameters>> parameters_;  ///< of each object, for each part of its mesh
   MeshStore meshes_;
+  uint32_t most_vertices_ = 0;  ///< of a mesh
   std::vector<size_t> mesh_of_object_;
   TextureStore textures_;
   std::vector<const driver::Post*> posts_;  ///< of each post of the scene
@@ -178,6 +180,15 @@ std::optional<size_t> Planner::find_mesh(const Object& object) {
   return meshes_.find(object, plan_.meshes, plan_.frame.vertices, diagnostics_);
 }
 
+void Planner::note_largest_mesh(const Object& object, const StoredMesh& mesh) {
+  uint32_t count = 0;
+  for (const MeshPart& part : mesh.parts) count += part.vertex_count;
+  if (count <= most_vertices_) return;
+  most_vertices_ = count;
+  plan_.frame.largest_mesh = {
+      "the mesh of " + quote(object.name) + ": " + std::to_string(count) + " vertices", object.mesh_where};
+}
+
 /// What the next object and the materials of its mesh give to the effect.
 bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
                             const FindTexture& find_texture) {
@@ -224,6 +235,7 @@ bool Planner::make_objects() {
     }
     const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
     mesh_of_object_.push_back(*number);
+    note_largest_mesh(object, mesh);
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
       vertices.total += draws * mesh.parts[part].vertex_count;
       triangles.total += draws * static_cast<int64_t>(mesh.parts[part].indices.size() / 3);

@@ -51,8 +51,9 @@ int64_t TextureStore::Texture::bytes() const { return bytes_of(header, mips); }
 
 backends::Largest TextureStore::Texture::described() const {
   return {"the image " + support::quote(source.path) + ", " + std::to_string(header.width) + " x " +
-              std::to_string(header.height) + (mips ? " with mip levels" : ""),
-          static_cast<size_t>(bytes()), source.where};
+              std::to_string(header.height) + (mips ? " with mip levels: " : ": ") + std::to_string(bytes()) +
+              " bytes",
+          source.where};
 }
 
 int64_t TextureStore::texel_count() const {
@@ -176,8 +177,13 @@ void TextureStore::store(backends::Frame& frame) {
       if (smaller > 0) next = scene::half_size(next);
     }
   }
-  const auto largest = std::ranges::max_element(textures_, {}, &Texture::bytes);
-  if (largest != textures_.end()) frame.largest_texture = largest->described();
+  const Texture* largest[] = {nullptr, nullptr};
+  for (const Texture& texture : textures_) {
+    const Texture*& known = largest[texture.header.bytes ? 1 : 0];
+    if (known == nullptr || texture.bytes() > known->bytes()) known = &texture;
+  }
+  if (largest[0] != nullptr) frame.largest_in_texels = largest[0]->described();
+  if (largest[1] != nullptr) frame.largest_in_texel_bytes = largest[1]->described();
 }
 
 }  // namespace isoshade::render

@@ -34,7 +34,7 @@ constexpr Elsewhere elsewhere[] = {
     {support::Id::device_failed, nullptr},
     {support::Id::broken_function, "tests/unit/check_library_test.cpp"},
     {support::Id::unproven_device, "tests/unit/vulkan_probe_test.cpp"},
-    {support::Id::device_limit, "tests/unit/vulkan_backend_test.cpp"},
+    {support::Id::device_limit, "tests/unit/backend_array_limit_test.cpp"},
     {support::Id::bad_shader, "tests/unit/emit_spirv_test.cpp"},
     {support::Id::validation, "tests/unit/vulkan_backend_test.cpp"},
     {support::Id::unwritable_cache, "tests/unit/cpu_cache_test.cpp"},

@@ -5,6 +5,8 @@ isoshade_test(raster_test
     unit/raster_tile_test.cpp
   LINKS isoshade_raster)
 
+isoshade_test(backend_test SOURCES unit/backend_array_limit_test.cpp LINKS isoshade_backend)
+
 isoshade_test(cpu_test
   SOURCES
     unit/cpu_backend_test.cpp

@@ -208,6 +208,8 @@ TEST_F(VulkanDraw, RefusesFramesBeyondTheGuardBand) {
   EXPECT_FALSE(hand.backend->draw(scene.frame, {}, {}, image, hand.diagnostics));
   ASSERT_EQ(hand.diagnostics.all().size(), 1u);
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::device_limit);
+  EXPECT_NE(hand.diagnostics.text().find("8193x1 pixels"), std::string::npos) << hand.diagnostics.text();
+  EXPECT_NE(hand.diagnostics.text().find("at most 8192"), std::string::npos) << hand.diagnostics.text();
 }
 
 TEST_F(VulkanDraw, ReportsAShaderThatDoesNotCompileAndGoesOn) {
