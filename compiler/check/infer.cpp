@@ -118,7 +118,10 @@ void NodeInference::read_integer(size_t i) {
   if (given(i).port != nullptr) {
     const Literal& written = *literal(i);
     if (!graph::fits(Type::integer, written)) {
-      report(Id::wrong_type, i, of_node(i) + " is a whole number, not " + described(written));
+      const bool is_number = written.kind == Literal::Kind::number;
+      report(Id::wrong_type, i,
+             of_node(i) + " is a whole number that stands in the document, not " +
+                 (is_number ? "one with a fraction or beyond 32 bits" : described(written)));
       return;
     }
     index = written.integer;

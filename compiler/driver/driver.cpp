@@ -27,7 +27,8 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
   if (!graph) return nullptr;
   if (options.dump) options.dump("graph", [&] { return dump_graph(*graph); });
   if (wanted && graph->kind != *wanted) {
-    diagnostics.report(support::Id::wrong_kind, document->span(document->root),
+    diagnostics.report(support::Id::wrong_kind,
+                       document->span(*document->root.find(graph::kind_name(graph->kind))),
                        "this is a document of kind \"" + std::string(graph::kind_name(graph->kind)) +
                            "\"; a \"" + std::string(graph::kind_name(*wanted)) + "\" is needed here");
     return nullptr;

@@ -98,6 +98,8 @@ bool check_fit(const Found& found, const Literal& literal, const support::Span& 
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
   if (type == Type::filename) expected += ", a path in quotes";
+  if (type == Type::boolean) expected += ", true or false";
+  if (type == Type::integer) expected += ", a whole number without fraction";
   if (floats == 1) expected += ", a number";
   if (!values.empty()) expected += ", or one of " + listed(values);
   if (floats > 1) expected += ", an array of " + std::to_string(floats) + " numbers";

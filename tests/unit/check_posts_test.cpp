@@ -67,6 +67,9 @@ TEST(CheckPosts, TapsAreCountedOnlyUnderTheirSum) {
   EXPECT_EQ(messages_of(sum(R"("last": 63)")), "");
   EXPECT_EQ(messages_of(sum(R"("first": 5, "last": 5)")), "");
   EXPECT_TRUE(says(sum(R"("last": 64)"), "error[out-of-range]: \"sum_taps\" has 65 taps, more than 64"));
+  EXPECT_TRUE(
+      says(sum(R"("last": 0.5)"), "a whole number that stands in the document, not one with a fraction"));
+  EXPECT_TRUE(says(sum(R"("last": "c")"), "a whole number that stands in the document, not a string"));
   EXPECT_TRUE(says(sum(R"("first": 1, "last": 0)"), "error[out-of-range]: \"last\" of \"sum_taps\" is less"));
   EXPECT_TRUE(says(sum(R"("first": -2147483648, "last": 2147483647)"), "error[out-of-range]"));
   EXPECT_TRUE(says(sum(R"("first": 1)"), "error[missing-port]"));

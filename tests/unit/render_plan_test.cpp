@@ -187,7 +187,8 @@ TEST_F(PlanTest, ValuesGoByTheirNamesOrNumbers) {
   EXPECT_TRUE(planning_fails_with(object("\"zzzzzz\""), "it is 0 (plain), 1 (odd) or 2 (wide)"));
   EXPECT_TRUE(planning_fails_with(object("3"), "error[out-of-range]: the parameter \"mode\" has no value 3"));
   EXPECT_NE(diagnostics_.text().find("it is 0 (plain), 1 (odd) or 2 (wide)"), std::string::npos);
-  EXPECT_TRUE(planning_fails_with(object("0.5"), "of type integer, or one of plain, odd, wide"));
+  EXPECT_TRUE(planning_fails_with(
+      object("0.5"), "of type integer, a whole number without fraction, or one of plain, odd, wide"));
 }
 
 TEST_F(PlanTest, ReportsWhoNeedsAnEffectThatDoesNotCompile) {
