@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures of bytes and of floats: the same bits on every backend, and as each other where they hold the same numbers.
+#include <random>
+
+#include "backends/cpu/lane_count.h"
+#include "runtime/scene/image_file.h"
+#include "tests/equivalence/scenes.h"
+#include "tests/unit/gltf_files.h"
+
+namespace isoshade::equivalence {
+namespace {
+
+/// A tilted square that shows one noisy picture by two files: p.png has bytes, p.exr their floats.
+class TextureFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    constexpr int width = 37, height = 23;
+    std::vector<uint8_t> bytes(4 * width * height);
+    std::mt19937 random(9);
+    for (uint8_t& byte : bytes) byte = static_cast<uint8_t>(random());
+    const std::string png = scene::png(width, height, bytes);
+    scene::FileImage picture = scene::decode_image(png).found.value_or(scene::FileImage());
+    ASSERT_TRUE(picture.has_bytes());
+    picture.rgba = scene::numbers_of(picture);
+    picture.depth.resize(picture.bytes.size());
+    folder_.write("p.png", png);
+    folder_.write("p.exr", scene::exr(picture.view()));
+  }
+
+  /// An image node over the file.
+  static std::string image(const std::string& file, const std::string& ports) {
+    return R"({"type": "image", "texcoord": "uv", "file": ")" + file + "\", " + ports + "}";
+  }
+  /// Texels as they are stored, decoded from sRGB, and between four.
+  static std::string texels(const std::string& file) {
+    return R"("plain": )" + image(file, R"("filtertype": "closest", "colorspace": "linear")") +
+           R"(, "srgb": )" + image(file, R"("filtertype": "linear", "colorspace": "srgb")") +
+           R"(, "alpha": )" + image(file, R"("to": "color4")") +
+           R"(, "color": {"type": "combine3", "in1": "plain.r", "in2": "srgb.g", "in3": "alpha.a", "to": "color3"})";
+  }
+  static std::string mips(const std::string& file) {
+    return R"("color": )" + image(file, R"("filtertype": "trilinear", "colorspace": "srgb")");
+  }
+
+  /// What these nodes show.
+  render::Plan plan_of(const std::string& nodes) const {
+    folder_.write("shown.json", R"({"isoshade": 1, "effect": "shown", "nodes": {
+      "at": {"type": "texcoord"}, "uv": {"type": "multiply", "in1": "at", "in2": 3}, )" +
+                                    nodes + R"(}, "passes": [{"name": "base", "color": "color"}]})");
+    return plan(folder_.write("scene.json", R"({"isoshade": 1, "scene": "s",
+      "camera": {"position": [0, 1, 2], "target": [0, 0, 0]},
+      "objects": {"square": {"mesh": "plane", "effect": "shown.json"}}})"),
+                97, 61);
+  }
+
+  /// Draws on every backend, and expects one image.
+  static backends::Image draw_everywhere(const render::Plan& plan, const std::string& what) {
+    const backends::Image image = draw(plan, *interpreter::create());
+    for (const char* lanes : {"1", "4", "8", "16", "8x2", "16x2"})
+      if (cpu::lane_count(lanes)->available())
+        expect_identical(image, draw(plan, *cpu_backend(lanes)), what + " lanes " + lanes);
+#ifdef ISOSHADE_VULKAN
+    expect_identical(image, draw(plan, *vulkan_backend()), what + " vulkan");
+#endif
+    return image;
+  }
+
+  testing::Folder folder_;
+};
+
+TEST_F(TextureFiles, OfBytesGiveTheTexelsThatTheirFloatsGive) {
+  const render::Plan bytes = plan_of(texels("p.png"));
+  EXPECT_GT(bytes.frame.texel_bytes.size(), size_t{37 * 23});
+  const backends::Image shown = draw_everywhere(bytes, "bytes");
+  const render::Plan floats = plan_of(texels("p.exr"));
+  EXPECT_EQ(floats.frame.texel_bytes.size(), 1u);
+  expect_identical(shown, draw_everywhere(floats, "floats"), "bytes and floats");
+}
+
+TEST_F(TextureFiles, HaveTheSameMipLevelsEverywhere) {
+  for (const char* file : {"p.png", "p.exr"}) draw_everywhere(plan_of(mips(file)), file);
+}
+
+}  // namespace
+}  // namespace isoshade::equivalence
