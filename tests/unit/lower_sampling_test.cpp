@@ -133,8 +133,9 @@ TEST(Sampling, ClosestIsTheTexelWhereTheCoordinateLies) {
 
 TEST(Sampling, LinearIsInProportionBetweenTheNearestFour) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
-    for (const auto& [mode, table] : each_with({Picture::floats, lower::byte_table::srgb})) {
-      const Picture picture(width, height, table);
+    for (const auto& way : each_with({Picture::floats, lower::byte_table::srgb})) {
+      const AddressMode mode = way.first;
+      const Picture picture(width, height, way.second);
       for (const float u : coordinates()) {
         const float v = 0.3f - u;
         const double x = place(mode, u) * width - 0.5, y = place(mode, v) * height - 0.5;
