@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -64,6 +65,9 @@ struct Parameter {
   Type type;
   std::string group;     ///< empty: a plain parameter
   bool uniform = false;  ///< the same for all lanes of a batch (material parameters, light data, counts)
+  std::optional<float> least = {},
+                       most =
+                           {};  ///< what each component is at least and at most; never NaN if both are there
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 

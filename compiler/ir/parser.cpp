@@ -2,6 +2,7 @@
 #include "compiler/ir/parser.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -325,6 +326,13 @@ class ModuleParser : Reader {
     return true;
   }
 
+  bool take_float(std::optional<float>& value) {
+    uint32_t bits = 0;
+    if (!take_number(bits, "bits")) return false;
+    value = std::bit_cast<float>(bits);
+    return true;
+  }
+
   bool parameters(Function& out) {
     if (!expect("(")) return false;
     std::unordered_map<std::string, bool> seen;
@@ -338,6 +346,8 @@ class ModuleParser : Reader {
         p.name.erase(0, dot + 1);
       }
       p.uniform = accept(Kind::word, "uniform");
+      if (accept(Kind::word, "least") && !take_float(p.least)) return false;
+      if (accept(Kind::word, "most") && !take_float(p.most)) return false;
     }
     return true;
   }

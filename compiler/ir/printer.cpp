@@ -56,6 +56,8 @@ class Printer {
       const Parameter& p = f_.parameters[i];
       if (i != 0) out_ += ", ";
       out_ += "%" + full_name(p) + ": " + std::string(name(p.type)) + (p.uniform ? " uniform" : "");
+      if (p.least) out_ += " least " + hex(std::bit_cast<uint32_t>(*p.least));
+      if (p.most) out_ += " most " + hex(std::bit_cast<uint32_t>(*p.most));
     }
     out_ += ") -> (";
     for (size_t i = 0; i < f_.results.size(); ++i)

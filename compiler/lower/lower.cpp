@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -48,6 +49,8 @@ class ModuleLowering {
     ir::Function& function;
     /// Adds one value's parameters; returns the index of the first.
     size_t add(const std::string& name, Type type, const std::string& group, bool uniform);
+    /// An effect's or post's own parameter, which is known to be within its range.
+    size_t add(const graph::Input& input);
   };
 
   /// Lowers the documents that the needed nodes call.
@@ -111,6 +114,22 @@ size_t ModuleLowering::Parameters::add(const std::string& name, Type type, const
   const size_t first = function.parameters.size();
   for (const std::string& column : column_names(name, type))
     function.parameters.push_back({column, nodes::ir_type(type), group, uniform});
+  return first;
+}
+
+size_t ModuleLowering::Parameters::add(const graph::Input& input) {
+  const size_t first = add(input.name, input.type, "parameters", true);
+  const bool is_integer = input.type == Type::integer;
+  constexpr float most_exact = 0x1p24f, largest = std::numeric_limits<float>::max();
+  float least = input.min.value_or(-largest), most = input.max.value_or(largest);
+  if (!input.names.empty()) least = 0;
+  if (!input.names.empty()) most = static_cast<float>(input.names.size() - 1);
+  // Floats tell large integers only nearly.
+  const bool tells = !is_integer || (least >= -most_exact && most <= most_exact);
+  for (size_t i = first; i < function.parameters.size() && tells && input.type != Type::boolean; ++i) {
+    function.parameters[i].least = least;
+    function.parameters[i].most = most;
+  }
   return first;
 }
 
@@ -190,7 +209,7 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
   std::vector<size_t> first(graph.graph.inputs.size());
   for (size_t i = 0; i < first.size(); ++i) {
     const graph::Input& input = graph.graph.inputs[i];
-    if (needs.inputs[i]) first[i] = parameters.add(input.name, input.type, "parameters", true);
+    if (needs.inputs[i]) first[i] = parameters.add(input);
   }
   const ImageSlots images = image_slots(graph);
   std::vector<bool> reads(images.slots.size());
@@ -240,7 +259,7 @@ ir::Module ModuleLowering::lower_post(const TypedGraph& graph) {
   std::vector<size_t> first(graph.graph.inputs.size());
   for (size_t i = 0; i < first.size(); ++i) {
     const graph::Input& input = graph.graph.inputs[i];
-    if (needs.inputs[i]) first[i] = parameters.add(input.name, input.type, "parameters", true);
+    if (needs.inputs[i]) first[i] = parameters.add(input);
   }
   add_tap_parameters(function, graph, needs.screen);
   module_.functions.push_back(std::move(function));

@@ -8,6 +8,7 @@
 #include "compiler/ir/validator.h"
 #include "compiler/passes/cse.h"
 #include "compiler/passes/dce.h"
+#include "compiler/passes/decide.h"
 #include "compiler/passes/derivatives.h"
 #include "compiler/passes/exact_division.h"
 #include "compiler/passes/fold.h"
@@ -27,6 +28,7 @@ void run_renumber(ir::Module& m, Entries&, Tier) { renumber(m); }
 void run_fold(ir::Module& m, Entries&, Tier tier) { fold(m, tier); }
 void run_cse(ir::Module& m, Entries&, Tier) { cse(m); }
 void run_expand(ir::Module& m, Entries&, Tier tier) { functions::expand(m, tier); }
+void run_decide(ir::Module& m, Entries&, Tier tier) { decide(m, tier); }
 void run_specialize(ir::Module& m, Entries&, Tier) { specialize(m); }
 void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries); }
 void run_hide(ir::Module& m, Entries& entries, Tier) { hide_foldables(m, entries); }
@@ -42,7 +44,8 @@ constexpr Pass optimisation_table[] = {
     {"renumber", run_renumber, "drops what fold and cse replaced, and the calls in it"},
     {"dce", run_dce, "no body is made for what nobody calls"},
     {"expand", run_expand, "all that reasons about functions has seen them"},
-    {"fold", run_fold, "bodies are templates: they have constants to fold"},
+    {"decide", run_decide, "the bodies tell what ranges the ranges of their arguments make"},
+    {"fold", run_fold, "bodies are templates: they have constants to fold, and what was decided is constant"},
     {"specialize", run_specialize, "only bodies can take constants in"},
     {"hide_foldables", run_hide, "after the last fold, which could bring the shapes back"},
     {"cse", run_cse, "bodies compute things twice, and hidden shapes share their bits"},

@@ -43,7 +43,7 @@ TEST(LowerEffect, TakesWhatItUsesAndNothingElse) {
 "uv": {"type": "texcoord"},
 "nx": {"type": "multiply", "in1": "n.x", "in2": "uv.y"},
 "color": {"type": "multiply", "in1": "tint", "in2": "nx"})"))),
-      R"(func @shade(%surface.normal: vec3, %surface.texcoord: vec2, %parameters.tint: vec3 uniform) -> (color: vec4) from "test.json" {
+      R"(func @shade(%surface.normal: vec3, %surface.texcoord: vec2, %parameters.tint: vec3 uniform least 0xff7fffff most 0x7f7fffff) -> (color: vec4) from "test.json" {
   %3 = extract %surface.normal, 0  ; nx:7
   %4 = extract %surface.texcoord, 1  ; nx:7
   %nx = fmul %3, %4  ; nx:7

@@ -11,6 +11,7 @@
 #include "compiler/ir/printer.h"
 #include "compiler/passes/cse.h"
 #include "compiler/passes/dce.h"
+#include "compiler/passes/decide.h"
 #include "compiler/passes/derivatives.h"
 #include "compiler/passes/fold.h"
 #include "compiler/passes/hide_foldables.h"
@@ -37,6 +38,7 @@ const std::map<std::string, void (*)(ir::Module&)> passes{
     {"dce", drop_unreached},
     {"derivatives", derivatives},
     {"cse", cse},
+    {"decide", [](ir::Module& module) { decide(module, functions::Tier::standard); }},
     {"fold", [](ir::Module& module) { fold(module); }},
     {"hide_foldables", [](ir::Module& module) { hide_foldables(module, {}); }},
     {"specialize",

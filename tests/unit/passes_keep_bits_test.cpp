@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The promise of every pass: no bit of any result changes, whatever the module and the inputs.
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "compiler/functions/library.h"
@@ -9,6 +12,7 @@
 #include "compiler/ir/validator.h"
 #include "compiler/passes/cse.h"
 #include "compiler/passes/dce.h"
+#include "compiler/passes/decide.h"
 #include "compiler/passes/fold.h"
 #include "compiler/passes/hide_foldables.h"
 #include "compiler/passes/pipeline.h"
@@ -24,6 +28,14 @@ using Words = std::vector<uint32_t>;
 
 constexpr int inputs_per_module = 24;
 
+// A number that a parameter may be.
+uint32_t within(const ir::Parameter& parameter, RandomModule& random) {
+  const float least = *parameter.least, most = *parameter.most;
+  const std::array some{least, most, -0.0f, 0.0f, least / 2 + most / 2, std::nextafter(least, most)};
+  const float value = some[random.below(some.size())];
+  return std::bit_cast<uint32_t>(value >= least && value <= most ? value : least);
+}
+
 // What the module's `main` gives on random inputs.
 std::vector<Words> outcomes(const Module& module, uint64_t seed) {
   RandomModule random(seed);
@@ -38,7 +50,11 @@ std::vector<Words> outcomes(const Module& module, uint64_t seed) {
   std::vector<Words> all;
   for (int i = 0; i < inputs_per_module; ++i) {
     all.emplace_back(size);
-    EXPECT_TRUE(interpreter.run(main, random.words(function.parameters), all.back()));
+    Words words = random.words(function.parameters);
+    for (size_t p = 0, word = 0; p < function.parameters.size(); word += function.parameters[p++].type.width)
+      for (uint32_t c = 0; c < function.parameters[p].type.width; ++c)
+        if (function.parameters[p].least) words[word + c] = within(function.parameters[p], random);
+    EXPECT_TRUE(interpreter.run(main, words, all.back()));
   }
   return all;
 }
@@ -80,6 +96,32 @@ TEST(PassesKeepEveryBit, Fold) {
 
 TEST(PassesKeepEveryBit, FoldOfLibraryCalls) {
   expect_same_bits(1000, true, [](Module& m, uint64_t seed) { fold(m, tier_of(seed)); });
+}
+
+TEST(PassesKeepEveryBit, Decide) {
+  constexpr std::array ends{-1e30f, -1.0f, -0.0f, 0.0f, 1e-3f, 0.5f, 1.0f, 2.0f, 1e30f};
+  int changed = 0;
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    RandomModule random(seed);
+    Module before = random.make({.library_calls = true});
+    ir::Function& main = before.functions[before.find("main")];
+    main.document = "test.json";
+    for (ir::Parameter& parameter : main.parameters) {
+      const float a = ends[random.below(ends.size())], b = ends[random.below(ends.size())];
+      if (!parameter.type.is_float() || random.below(5) == 0) continue;
+      parameter.least = std::min(a, b);
+      parameter.most = std::max(a, b);
+    }
+    before = with_bodies(before, seed);
+    Module after = before;
+    decide(after, tier_of(seed));
+    ASSERT_EQ(ir::validate(after), "") << ir::print(before);
+    changed += ir::print(before) != ir::print(after);
+    ASSERT_EQ(outcomes(before, seed), outcomes(after, seed)) << "seed " << seed << "\n"
+                                                             << ir::print(before) << "\nbecame\n\n"
+                                                             << ir::print(after);
+  }
+  EXPECT_GT(changed, 200);
 }
 
 TEST(PassesKeepEveryBit, HideFoldables) {

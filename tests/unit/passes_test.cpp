@@ -12,6 +12,7 @@
 #include "compiler/passes/pipeline.h"
 #include "compiler/passes/renumber.h"
 #include "compiler/passes/specialize.h"
+#include "tests/unit/front_end.h"
 #include "tests/unit/ir_text.h"
 #include "tests/unit/random_module.h"
 
@@ -97,6 +98,36 @@ void expect_nothing_foldable(const Function& f) {
       EXPECT_FALSE(zero && !exact) << name(i.op);
     }
   }
+}
+
+// What is left of an effect whose parameter guards a division and a strength, as text.
+std::string guarded_effect(const std::string& range) {
+  FrontEnd front_end;
+  Module module = front_end.lower(R"({"isoshade": 1, "effect": "e", "parameters": {
+      "width": {"type": "float", "value": 1)" +
+                                  range + R"(}}, "nodes": {
+      "p": {"type": "position"},
+      "above_0": {"type": "max", "in1": "width", "in2": 0.0009765625},
+      "scaled": {"type": "divide", "in1": "p", "in2": "above_0"},
+      "part": {"type": "clamp", "in": "width", "low": 0, "high": 1},
+      "size": {"type": "absval", "in": "part"},
+      "choice": {"type": "ifgreater", "value1": "size", "value2": 0, "in1": "scaled", "in2": "p"},
+      "color": {"type": "convert", "in": "choice", "to": "color3"}},
+      "passes": [{"name": "base", "color": "color"}]})");
+  Entries entries{module.find("shade")};
+  run(optimisations(), module, entries, functions::Tier::standard, {}, true);
+  return print(module);
+}
+
+TEST(Decide, LeavesOutTheGuardsThatRangesOfParametersMakeNeedless) {
+  const auto has_guards = [](const std::string& text) {
+    return text.find("select") != std::string::npos || text.find("branch") != std::string::npos ||
+           text.find(" call ") != std::string::npos;
+  };
+  EXPECT_TRUE(has_guards(guarded_effect("")));
+  EXPECT_TRUE(has_guards(guarded_effect(R"(, "min": 0, "max": 1)"))) << "it may be 0";
+  const std::string positive = guarded_effect(R"(, "min": 0.125, "max": 1)");
+  EXPECT_FALSE(has_guards(positive)) << positive;
 }
 
 TEST(HideFoldables, LeavesDriversNothingToFold) {

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/known_ranges.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "compiler/functions/library.h"
+
+namespace isoshade::passes {
+
+using ir::Opcode;
+using ir::Scalar;
+
+namespace {
+
+KnownRange any_of(Scalar scalar) {
+  if (scalar == Scalar::floating) return {};
+  return scalar == Scalar::boolean ? KnownRange{0, 1} : KnownRange{-0x1p31, 0x1p31 - 1};
+}
+
+KnownRange either(const KnownRange& a, const KnownRange& b) {
+  if (!a || !b) return {};
+  return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+}
+
+KnownRange constant(Scalar scalar, uint32_t bits) {
+  const bool is_float = scalar == Scalar::floating;
+  const auto value = is_float ? static_cast<double>(std::bit_cast<float>(bits)) : static_cast<int32_t>(bits);
+  return std::isfinite(value) ? KnownRange{value, value} : KnownRange{};
+}
+
+KnownRange finite(double lo, double hi) {
+  return std::isfinite(lo) && std::isfinite(hi) ? KnownRange{lo, hi} : KnownRange{};
+}
+
+/// What an operation that is monotone in both operands gives between their ends: rounding is monotone, too.
+template <class Operation>
+KnownRange corners(const KnownRange& a, const KnownRange& b, Operation operation) {
+  const auto al = static_cast<float>(a.lo), ah = static_cast<float>(a.hi);
+  const auto bl = static_cast<float>(b.lo), bh = static_cast<float>(b.hi);
+  const auto [lo, hi] =
+      std::minmax({operation(al, bl), operation(al, bh), operation(ah, bl), operation(ah, bh)});
+  return finite(static_cast<double>(lo), static_cast<double>(hi));
+}
+
+KnownRange magnitude(const KnownRange& a) {
+  const double l = std::abs(a.lo), h = std::abs(a.hi);
+  return {a.lo <= 0 && a.hi >= 0 ? 0 : std::min(l, h), std::max(l, h)};
+}
+
+/// Of floats; integers that are computed may be any.
+KnownRange arithmetic(Opcode op, KnownRange a, KnownRange b, bool same) {
+  switch (op) {
+    case Opcode::fadd: return corners(a, b, [](float x, float y) { return x + y; });
+    case Opcode::fsub: return corners(a, b, [](float x, float y) { return x - y; });
+    case Opcode::fmul:
+      if (same) a = b = magnitude(a);
+      return corners(a, b, [](float x, float y) { return x * y; });
+    case Opcode::fdiv:
+      if (b.lo <= 0 && b.hi >= 0) return {};
+      return corners(a, b, [](float x, float y) { return x / y; });
+    case Opcode::fsqrt: {
+      if (a.lo < 0) return {};
+      const float lo = std::sqrt(static_cast<float>(a.lo)), hi = std::sqrt(static_cast<float>(a.hi));
+      return {static_cast<double>(lo), static_cast<double>(hi)};
+    }
+    case Opcode::fneg: return {-a.hi, -a.lo};
+    case Opcode::fabs: return magnitude(a);
+    case Opcode::floor: return {std::floor(a.lo), std::floor(a.hi)};
+    case Opcode::itof: return {analysis::rounded(a.lo), analysis::rounded(a.hi)};
+    default: return any_of(ir::info(op).rule == ir::Rule::to_float ? Scalar::floating : Scalar::integer);
+  }
+}
+
+KnownRange truth(Opcode op, const KnownRange& a, const KnownRange& b) {
+  using enum Opcode;
+  const auto decided = [](bool always, bool never) {
+    return KnownRange{always ? 1.0 : 0.0, never ? 0.0 : 1.0};
+  };
+  switch (op) {
+    case flt:
+    case ilt: return decided(a.hi < b.lo, a.lo >= b.hi);
+    case fle:
+    case ile: return decided(a.hi <= b.lo, a.lo > b.hi);
+    case fgt:
+    case igt: return decided(a.lo > b.hi, a.hi <= b.lo);
+    case fge:
+    case ige: return decided(a.lo >= b.hi, a.hi < b.lo);
+    case feq:
+    case ieq: return decided(a.is_point() && b.is_point() && a.lo == b.lo, a.hi < b.lo || a.lo > b.hi);
+    case fne:
+    case ine: return decided(a.hi < b.lo || a.lo > b.hi, a.is_point() && b.is_point() && a.lo == b.lo);
+    case bnot: return {1 - a.hi, 1 - a.lo};
+    case band: return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
+    case bor: return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
+    default: return {0, 1};
+  }
+}
+
+/// The variants of functions.def, by name.
+const functions::Variant& variant_of(const ir::Function& function) {
+  static const std::unordered_map<std::string_view, const functions::Variant*> by_name = [] {
+    std::unordered_map<std::string_view, const functions::Variant*> map;
+    for (const functions::Variant& variant : functions::variants()) map.emplace(variant.name, &variant);
+    return map;
+  }();
+  return *by_name.at(function.library);
+}
+
+}  // namespace
+
+RangeWalker::RangeWalker(const ir::Module& module, functions::Tier tier)
+    : module_(module),
+      tier_(tier),
+      arguments_(module.functions.size()),
+      met_decisions_(module.functions.size()),
+      library_(module.functions.size()) {}
+
+KnownRanges RangeWalker::any(ir::Type type) {
+  KnownRanges ranges;
+  ranges.fill(any_of(type.scalar));
+  return ranges;
+}
+
+const RangeWalker::Library& RangeWalker::library_of(uint32_t function) {
+  std::optional<Library>& library = library_[function];
+  if (library) return *library;
+  library.emplace();
+  const ir::Function& callee = module_.functions[function];
+  if (callee.library.empty()) return *library;
+  const functions::Variant& variant = variant_of(callee);
+  library->row = variant.row;
+  library->chooses =
+      variant.row == "min" || variant.row == "max" || variant.row == "clamp" || variant.row == "saturate";
+  library->rule = analysis::find_rule(variant.row);
+  library->is_opaque =
+      library->rule != nullptr && tier_ != functions::Tier::standard && variant.has_own_body(tier_);
+  return *library;
+}
+
+void RangeWalker::keep(uint32_t function, const std::vector<KnownRanges>& arguments) {
+  std::vector<KnownRanges>& all = arguments_[function];
+  if (all.empty()) {
+    all = arguments;
+    return;
+  }
+  for (size_t i = 0; i < all.size(); ++i)
+    for (size_t c = 0; c < 4; ++c) all[i][c] = either(all[i][c], arguments[i][c]);
+}
+
+std::vector<KnownRanges> RangeWalker::walk(uint32_t function, const std::vector<KnownRanges>& given) {
+  const ir::Function& callee = module_.functions[function];
+  std::vector<KnownRanges> results;
+  if (callee.is_declaration() || budget_ <= 0) {
+    for (const ir::Result& result : callee.results) results.push_back(any(result.type));
+    return results;
+  }
+  std::vector<KnownRanges> arguments = given;
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    const ir::Parameter& parameter = callee.parameters[i];
+    if (!parameter.least || !parameter.most) continue;
+    arguments[i].fill({static_cast<double>(*parameter.least), static_cast<double>(*parameter.most)});
+  }
+  if (!callee.document.empty()) keep(function, arguments);
+  RangeFrame frame{&callee, std::vector<KnownRanges>(callee.values.size())};
+  for (size_t i = 0; i < arguments.size(); ++i) frame.values[callee.blocks[0].parameters[i]] = arguments[i];
+  block(frame, 0, function);
+  for (size_t r = 0; r < callee.results.size(); ++r)
+    results.push_back(finished() ? frame.values[callee.blocks[0].yields[r]] : any(callee.results[r].type));
+  return results;
+}
+
+void RangeWalker::block(RangeFrame& frame, ir::BlockId id, uint32_t function) {
+  const bool counts = !frame.function->document.empty();
+  for (const ir::InstructionId i : frame.function->blocks[id].instructions) {
+    if (--budget_ <= 0) return;
+    const ir::Instruction& made = frame.function->instructions[i];
+    instruction(frame, made, [&](ir::BlockId inner) { block(frame, inner, function); });
+    if (counts && decides(frame, made)) met_decisions_[function] = true;
+  }
+}
+
+bool RangeWalker::decides(const RangeFrame& frame, const ir::Instruction& made) {
+  const auto is_known = [&](ir::ValueId value) { return bool(frame.values[value][0]); };
+  if (made.op == Opcode::call)
+    return library_of(made.imm).chooses && std::ranges::all_of(frame.function->operands_of(made), is_known);
+  if (made.op == Opcode::fabs) return is_known(made.first_result);
+  return ir::is_primitive(made.op) && frame.function->type(made.first_result) == ir::bool_type &&
+         frame.values[made.first_result][0].is_point();
+}
+
+void RangeWalker::instruction(RangeFrame& frame, const ir::Instruction& made,
+                              const std::function<void(ir::BlockId)>& walk_block) {
+  const ir::Function& f = *frame.function;
+  const auto in = f.operands_of(made);
+  const ir::Type type = f.type(made.first_result);
+  KnownRanges& out = frame.values[made.first_result];
+  switch (made.op) {
+    case Opcode::constant: out.fill(constant(type.scalar, made.imm)); return;
+    case Opcode::hidden_zero: out.fill({0, 0}); return;
+    case Opcode::construct:
+      for (size_t c = 0; c < in.size(); ++c) out[c] = frame.values[in[c]][0];
+      return;
+    case Opcode::extract: out.fill(frame.values[in[0]][made.imm]); return;
+    case Opcode::call: return call(frame, made);
+    case Opcode::loop: return loop(frame, made, walk_block);
+    case Opcode::branch:
+      for (const ir::BlockId side : made.blocks) walk_block(side);
+      for (uint32_t r = 0; r < made.result_count; ++r)
+        for (size_t c = 0; c < 4; ++c)
+          frame.values[made.first_result + r][c] =
+              either(frame.values[f.blocks[made.blocks[0]].yields[r]][c],
+                     frame.values[f.blocks[made.blocks[1]].yields[r]][c]);
+      return;
+    default: out = ir::is_primitive(made.op) ? primitive(frame, made) : any(type); return;
+  }
+}
+
+KnownRanges RangeWalker::primitive(const RangeFrame& frame, const ir::Instruction& made) const {
+  const ir::Type type = frame.function->type(made.first_result);
+  const auto in = frame.function->operands_of(made);
+  KnownRanges out = any(type);
+  const auto of = [&](size_t operand, uint32_t c) -> const KnownRange& {
+    return frame.values[in[operand]][frame.function->type(in[operand]).width == 1 ? 0 : c];
+  };
+  for (uint32_t c = 0; c < type.width; ++c) {
+    const KnownRange &a = of(0, c), &b = of(in.size() > 1 ? 1 : 0, c);
+    if (made.op == Opcode::select)
+      out[c] = a.is_point() ? of(a.lo != 0 ? 1 : 2, c) : either(of(1, c), of(2, c));
+    else if (a && b)
+      out[c] = type.scalar == Scalar::boolean ? truth(made.op, a, b)
+                                              : arithmetic(made.op, a, b, in.size() > 1 && in[0] == in[1]);
+  }
+  return out;
+}
+
+/// What the rows give that choose among their arguments, where not all of these are known.
+KnownRanges RangeWalker::chosen(const RangeFrame& frame, const ir::Instruction& made,
+                                std::string_view row) const {
+  const ir::Function& f = *frame.function;
+  const auto in = f.operands_of(made);
+  KnownRanges out;
+  const auto lesser = [](const KnownRange& a, const KnownRange& b) {
+    return a && b ? KnownRange{std::min(a.lo, b.lo), std::min(a.hi, b.hi)} : KnownRange{};
+  };
+  const auto greater = [](const KnownRange& a, const KnownRange& b) {
+    return a && b ? KnownRange{std::max(a.lo, b.lo), std::max(a.hi, b.hi)} : KnownRange{};
+  };
+  for (uint32_t c = 0; c < f.type(made.first_result).width; ++c) {
+    const auto of = [&](size_t operand) -> const KnownRange& {
+      return frame.values[in[operand]][f.type(in[operand]).width == 1 ? 0 : c];
+    };
+    if (row == "saturate")
+      out[c] = of(0) ? KnownRange{std::clamp(of(0).lo, 0.0, 1.0), std::clamp(of(0).hi, 0.0, 1.0)}
+                     : KnownRange{0, 1};
+    else if (row == "min")
+      out[c] = lesser(of(0), of(1));
+    else if (row == "max")
+      out[c] = greater(of(0), of(1));
+    else
+      out[c] = lesser(greater(of(0), of(1)), of(2));
+  }
+  return out;
+}
+
+KnownRanges RangeWalker::by_rule(const RangeFrame& frame, const ir::Instruction& made,
+                                 const Library& library) const {
+  const ir::Function& f = *frame.function;
+  const ir::Type type = f.type(made.first_result);
+  KnownRanges out = any(type);
+  const bool componentwise = analysis::is_componentwise(library.row);
+  for (uint32_t c = 0; c < type.width; ++c) {
+    std::vector<analysis::Bound> arguments;
+    bool known = true;
+    for (const ir::ValueId operand : f.operands_of(made)) {
+      const uint32_t width = f.type(operand).width;
+      for (uint32_t k = 0; k < width; ++k) {
+        if (componentwise && k != std::min(c, width - 1)) continue;
+        const KnownRange& range = frame.values[operand][k];
+        known = known && range;
+        if (known) arguments.push_back(analysis::between(range.lo, range.hi));
+      }
+    }
+    if (!known) continue;
+    const analysis::Outcome outcome = library.rule->bound(arguments, componentwise ? 0 : c);
+    if (outcome.breach == analysis::Breach::none) out[c] = {outcome.bound.lo, outcome.bound.hi};
+  }
+  return out;
+}
+
+void RangeWalker::call(RangeFrame& frame, const ir::Instruction& made) {
+  const ir::Function& f = *frame.function;
+  const ir::Function& callee = module_.functions[made.imm];
+  const auto in = f.operands_of(made);
+  const auto is_known = [&](ir::ValueId operand) {
+    const KnownRanges& ranges = frame.values[operand];
+    return std::any_of(ranges.begin(), ranges.begin() + f.type(operand).width,
+                       [](const KnownRange& r) { return bool(r); });
+  };
+  const Library& library = library_of(made.imm);
+  if (library.chooses) {
+    frame.values[made.first_result] = chosen(frame, made, library.row);
+    return;
+  }
+  // Of nothing comes nothing, at a price.
+  const bool is_lost = !callee.library.empty() && std::ranges::none_of(in, is_known);
+  if (is_lost || library.is_opaque) {
+    for (uint32_t r = 0; r < made.result_count; ++r)
+      frame.values[made.first_result + r] = any(f.type(made.first_result + r));
+    return;
+  }
+  if (library.rule != nullptr) {
+    frame.values[made.first_result] = by_rule(frame, made, library);
+    return;
+  }
+  std::vector<KnownRanges> arguments;
+  for (const ir::ValueId operand : in) arguments.push_back(frame.values[operand]);
+  const std::vector<KnownRanges> results = walk(made.imm, arguments);
+  std::ranges::copy(results, frame.values.begin() + made.first_result);
+}
+
+void RangeWalker::loop(RangeFrame& frame, const ir::Instruction& made,
+                       const std::function<void(ir::BlockId)>& walk_block) {
+  const ir::Function& f = *frame.function;
+  const ir::Block& body = f.blocks[made.blocks[0]];
+  const KnownRange& count = frame.values[f.operands_of(made)[0]][0];
+  frame.values[body.parameters[0]].fill({0, std::max(0.0, count.hi - 1)});
+  for (uint32_t r = 0; r < made.result_count; ++r)
+    frame.values[body.parameters[r + 1]] = any(f.type(body.parameters[r + 1]));
+  walk_block(made.blocks[0]);
+  for (uint32_t r = 0; r < made.result_count; ++r)
+    frame.values[made.first_result + r] = any(f.type(made.first_result + r));
+}
+
+}  // namespace isoshade::passes
