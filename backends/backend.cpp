@@ -11,4 +11,11 @@ void Image::resize(int w, int h) {
   depth.resize(pixels);
 }
 
+bool Backend::draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
+                   Image& image, support::Diagnostics& diagnostics) {
+  const std::unique_ptr<Drawing> drawing = begin(frame, vertices, diagnostics);
+  return drawing != nullptr &&
+         drawing->draw({0, 0, frame.width, frame.height}, triangles, image, diagnostics);
+}
+
 }  // namespace isoshade::backends

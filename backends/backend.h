@@ -44,6 +44,12 @@ struct Largest {
   support::Span where;  ///< what names it
 };
 
+/// A part of a frame, in its pixels.
+struct Window {
+  int x = 0, y = 0;
+  int width = 0, height = 0;
+};
+
 /// A frame ready to be drawn: programs and the arrays of lower/frame_layout.h.
 struct Frame {
   int width = 0;
@@ -73,6 +79,17 @@ struct ScreenPass {
   std::span<const int32_t> image_records;
 };
 
+/// A frame that is drawn part by part. What the parts share is made ready once.
+class Drawing {
+ public:
+  virtual ~Drawing() = default;
+  /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order, positions in the frame) over the
+  /// background and shades each pixel of the window that they cover once. `image` is of the window's size, and has the
+  /// bits that the same triangles give there in any other window.
+  virtual bool draw(const Window& window, std::span<const int32_t> triangles, Image& image,
+                    support::Diagnostics& diagnostics) = 0;
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -85,10 +102,13 @@ class Backend {
   /// Runs the vertex programs: clip[d] receives 4 floats for each vertex of draws[d], NaN canonical.
   virtual bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
                          support::Diagnostics& diagnostics) = 0;
-  /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order) over the background and shades
-  /// each visible pixel once. `vertices` are frame.vertices with those that clipping made appended.
-  virtual bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
-                    Image& image, support::Diagnostics& diagnostics) = 0;
+  /// `vertices` are frame.vertices with those that clipping made appended. As long as the drawing lives, frame and
+  /// vertices must, and nothing else may be asked of the backend. Null where that is reported.
+  virtual std::unique_ptr<Drawing> begin(const Frame& frame, std::span<const float> vertices,
+                                         support::Diagnostics& diagnostics) = 0;
+  /// All of a frame at once.
+  bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
+            Image& image, support::Diagnostics& diagnostics);
   /// Runs a full-screen pass: `rgba` receives 4 floats a pixel, rows top down, NaN canonical.
   virtual bool post(const ScreenPass& pass, std::vector<float>& rgba, support::Diagnostics& diagnostics) = 0;
   /// Runs an eval program over `rows` records of inputs; outputs are records of the program's result words.

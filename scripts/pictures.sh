@@ -8,5 +8,5 @@ for pattern in planks shingles stones; do
   "$isoshade" --quiet render "graphs/textures/${pattern}_tile.json" -o "graphs/textures/$pattern.png"
 done
 for scene in material_balls cartoon_village fog_valley; do
-  "$isoshade" --quiet render "graphs/scenes/$scene.json" -o "docs/$scene.png"
+  "$isoshade" --quiet render "graphs/scenes/$scene.json" --samples 16 -o "docs/$scene.png"
 done

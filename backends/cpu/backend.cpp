@@ -34,28 +34,30 @@ constexpr size_t triangle_chunk = 8192;
 class Buffers {
  public:
   /// `frame`: that of the arrays, if they are of one.
-  Buffers(const Frame* frame, Diagnostics& diagnostics) : frame_(frame), diagnostics_(diagnostics) {
+  explicit Buffers(const Frame* frame) : frame_(frame) {
     std::fill(std::begin(views_), std::end(views_), BufferView{&nothing, 1});
   }
 
   /// Reports an array that is too long to be indexed.
   template <class T>
-  bool bind(FrameBuffer buffer, std::span<const T> words) {
+  bool bind(FrameBuffer buffer, std::span<const T> words, Diagnostics& diagnostics) {
     if (words.size() > INT_MAX) {
       const backends::ArrayLimit limit{"the cpu backend", size_t{4} * INT_MAX, true};
-      backends::report_too_large(buffer, words.size_bytes(), limit, frame_, diagnostics_);
+      backends::report_too_large(buffer, words.size_bytes(), limit, frame_, diagnostics);
       return false;
     }
-    if (!words.empty()) views_[static_cast<size_t>(buffer)] = {words.data(), static_cast<int>(words.size())};
+    BufferView& view = views_[static_cast<size_t>(buffer)];
+    view = words.empty() ? BufferView{&nothing, 1} : BufferView{words.data(), static_cast<int>(words.size())};
     return true;
   }
-  bool bind_frame(std::span<const float> vertices) {
-    return bind(FrameBuffer::vertices, vertices) && bind<float>(FrameBuffer::objects, frame_->objects) &&
-           bind<float>(FrameBuffer::lights, frame_->lights) &&
-           bind<float>(FrameBuffer::frame, frame_->frame) &&
-           bind<float>(FrameBuffer::texels, frame_->texels) &&
-           bind<uint32_t>(FrameBuffer::texel_bytes, frame_->texel_bytes) &&
-           bind<int32_t>(FrameBuffer::textures, frame_->textures);
+  bool bind_frame(std::span<const float> vertices, Diagnostics& diagnostics) {
+    return bind(FrameBuffer::vertices, vertices, diagnostics) &&
+           bind<float>(FrameBuffer::objects, frame_->objects, diagnostics) &&
+           bind<float>(FrameBuffer::lights, frame_->lights, diagnostics) &&
+           bind<float>(FrameBuffer::frame, frame_->frame, diagnostics) &&
+           bind<float>(FrameBuffer::texels, frame_->texels, diagnostics) &&
+           bind<uint32_t>(FrameBuffer::texel_bytes, frame_->texel_bytes, diagnostics) &&
+           bind<int32_t>(FrameBuffer::textures, frame_->textures, diagnostics);
   }
   const BufferView* views() const { return views_; }
 
@@ -63,7 +65,6 @@ class Buffers {
   static constexpr int32_t nothing = 0;
   BufferView views_[std::size(lower::frame_buffers)];
   const Frame* frame_;
-  Diagnostics& diagnostics_;
 };
 
 size_t words(const std::vector<driver::Field>& fields) {
@@ -86,45 +87,70 @@ class CpuBackend final : public backends::Backend {
 
   bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
                  Diagnostics& diagnostics) override;
-  bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
-            Image& image, Diagnostics& diagnostics) override;
+  std::unique_ptr<backends::Drawing> begin(const Frame& frame, std::span<const float> vertices,
+                                           Diagnostics& diagnostics) override;
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override;
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override;
 
  private:
-  /// The kernels of those programs of the frame that are asked for, at their places; null elsewhere.
-  std::optional<std::vector<const Kernel*>> kernels_of(const Frame& frame, const std::vector<bool>& asked,
-                                                       Diagnostics& diagnostics);
+  friend class CpuDrawing;
+  using FrameKernels = std::vector<const Kernel*>;  ///< of each program of a frame; null where not asked for
+
+  /// Adds those kernels that are asked for and not there yet.
+  bool find_kernels(const Frame& frame, const std::vector<bool>& asked, FrameKernels& kernels,
+                    Diagnostics& diagnostics);
 
   KernelStore kernels_;
   Workers workers_;
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
 };
 
-std::optional<std::vector<const Kernel*>> CpuBackend::kernels_of(const Frame& frame,
-                                                                 const std::vector<bool>& asked,
-                                                                 Diagnostics& diagnostics) {
+class CpuDrawing final : public backends::Drawing {
+ public:
+  CpuDrawing(CpuBackend& backend, const Frame& frame) : backend_(backend), frame_(frame), buffers_(&frame) {
+    kernels_.resize(frame.programs.size());
+  }
+  bool bind(std::span<const float> vertices, Diagnostics& diagnostics) {
+    return buffers_.bind_frame(vertices, diagnostics);
+  }
+
+  bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
+            Diagnostics& diagnostics) override;
+
+ private:
+  std::vector<bool> programs_of(std::span<const int32_t> triangles) const;
+
+  CpuBackend& backend_;
+  const Frame& frame_;
+  Buffers buffers_;
+  CpuBackend::FrameKernels kernels_;
+};
+
+bool CpuBackend::find_kernels(const Frame& frame, const std::vector<bool>& asked, FrameKernels& kernels,
+                              Diagnostics& diagnostics) {
+  std::vector<size_t> missing;
   std::vector<const Program*> programs;
-  for (size_t i = 0; i < asked.size(); ++i)
-    if (asked[i]) programs.push_back(frame.programs[i]);
+  for (size_t i = 0; i < asked.size(); ++i) {
+    if (!asked[i] || kernels[i] != nullptr) continue;
+    missing.push_back(i);
+    programs.push_back(frame.programs[i]);
+  }
+  if (missing.empty()) return true;
   const auto found = kernels_.kernels(programs, diagnostics);
-  if (!found) return std::nullopt;
-  std::vector<const Kernel*> result(asked.size());
-  auto next = found->begin();
-  for (size_t i = 0; i < asked.size(); ++i)
-    if (asked[i]) result[i] = *next++;
-  return result;
+  if (!found) return false;
+  for (size_t i = 0; i < missing.size(); ++i) kernels[missing[i]] = (*found)[i];
+  return true;
 }
 
 bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
                            Diagnostics& diagnostics) {
   std::vector<bool> asked(frame.programs.size());
   for (const Draw& draw : frame.draws) asked[draw.vertex_program] = true;
-  const auto kernels = kernels_of(frame, asked, diagnostics);
-  if (!kernels) return false;
-  Buffers buffers(&frame, diagnostics);
-  if (!buffers.bind_frame(frame.vertices)) return false;
+  FrameKernels kernels(frame.programs.size());
+  if (!find_kernels(frame, asked, kernels, diagnostics)) return false;
+  Buffers buffers(&frame);
+  if (!buffers.bind_frame(frame.vertices, diagnostics)) return false;
 
   struct Task {
     size_t draw;
@@ -141,52 +167,57 @@ bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& 
     const auto [d, first] = tasks[i];
     const Draw& draw = frame.draws[d];
     const size_t count = std::min(vertex_chunk, draw.vertex_count - first);
-    (*kernels)[draw.vertex_program]->vertex(buffers.views(), draw.object,
-                                            static_cast<int>(draw.first_vertex + first),
-                                            static_cast<int>(count), clip[d].data() + 4 * first);
+    kernels[draw.vertex_program]->vertex(buffers.views(), draw.object,
+                                         static_cast<int>(draw.first_vertex + first), static_cast<int>(count),
+                                         clip[d].data() + 4 * first);
   });
   return true;
 }
 
-bool CpuBackend::draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
-                      Image& image, Diagnostics& diagnostics) {
-  Buffers buffers(&frame, diagnostics);
-  if (!buffers.bind_frame(vertices) || !buffers.bind(FrameBuffer::triangles, triangles)) return false;
+std::unique_ptr<backends::Drawing> CpuBackend::begin(const Frame& frame, std::span<const float> vertices,
+                                                     Diagnostics& diagnostics) {
+  auto drawing = std::make_unique<CpuDrawing>(*this, frame);
+  if (!drawing->bind(vertices, diagnostics)) return nullptr;
+  return drawing;
+}
+
+std::vector<bool> CpuDrawing::programs_of(std::span<const int32_t> triangles) const {
+  std::vector<bool> seen(frame_.programs.size());
   const size_t count = triangles.size() / lower::triangle_word::stride;
-
-  DrawJob job{frame, triangles, buffers.views(), {}, {}, image};
-  const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
-  job.bins.resize(parts);
-  workers_.for_each(parts, [&](size_t part) {
-    const size_t first = part * triangle_chunk;
-    job.bins[part] =
-        raster::Bins(triangles, static_cast<int>(first),
-                     static_cast<int>(std::min(triangle_chunk, count - first)), frame.width, frame.height);
-  });
-
-  std::vector<bool> asked(frame.programs.size());
   int last_object = -1;
   for (size_t i = 0; i < count; ++i) {
     const int object = raster::triangle_at(triangles.data(), static_cast<int>(i)).object();
     if (object == last_object) continue;
     last_object = object;
     const auto program =
-        static_cast<size_t>(frame.objects[static_cast<size_t>(object) + lower::object_word::program]);
-    support::check(program < asked.size(), "an object has a program that the frame lacks");
-    asked[program] = true;
+        static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
+    support::check(program < seen.size(), "an object has a program that the frame lacks");
+    seen[program] = true;
   }
-  auto kernels = kernels_of(frame, asked, diagnostics);
-  if (!kernels) return false;
-  job.kernels = std::move(*kernels);
+  return seen;
+}
 
-  image.resize(frame.width, frame.height);
-  const raster::TileGrid grid(frame.width, frame.height);
-  workers_.for_each(static_cast<size_t>(grid.count()), [&](size_t i) {
-    std::unique_ptr<TilePainter>& painter = painters_.local();
+bool CpuDrawing::draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
+                      Diagnostics& diagnostics) {
+  if (!buffers_.bind(FrameBuffer::triangles, triangles, diagnostics)) return false;
+  if (!backend_.find_kernels(frame_, programs_of(triangles), kernels_, diagnostics)) return false;
+  const size_t count = triangles.size() / lower::triangle_word::stride;
+  const raster::TileGrid grid(raster::box_at(window.x, window.y, window.width, window.height));
+
+  DrawJob job{frame_, grid, triangles, buffers_.views(), kernels_, {}, image};
+  const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
+  job.bins.resize(parts);
+  backend_.workers_.for_each(parts, [&](size_t part) {
+    const size_t first = part * triangle_chunk;
+    job.bins[part] = raster::Bins(triangles, static_cast<int>(first),
+                                  static_cast<int>(std::min(triangle_chunk, count - first)), grid);
+  });
+
+  image.resize(window.width, window.height);
+  backend_.workers_.for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
+    std::unique_ptr<TilePainter>& painter = backend_.painters_.local();
     if (!painter) painter = std::make_unique<TilePainter>();
-    const int tile = static_cast<int>(i);
-    painter->paint(job, tile, tile % grid.columns * raster::tile_size,
-                   tile / grid.columns * raster::tile_size);
+    painter->paint(job, static_cast<int>(tile));
   });
   return true;
 }
@@ -195,11 +226,11 @@ bool CpuBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba
   const Program* const programs[] = {pass.program};
   const auto kernels = kernels_.kernels(programs, diagnostics);
   if (!kernels) return false;
-  Buffers buffers(nullptr, diagnostics);
-  const bool fits = buffers.bind(FrameBuffer::frame, pass.frame) &&
-                    buffers.bind(FrameBuffer::objects, pass.record) &&
-                    buffers.bind(FrameBuffer::layers, pass.images) &&
-                    buffers.bind(FrameBuffer::layer_records, pass.image_records);
+  Buffers buffers(nullptr);
+  const bool fits = buffers.bind(FrameBuffer::frame, pass.frame, diagnostics) &&
+                    buffers.bind(FrameBuffer::objects, pass.record, diagnostics) &&
+                    buffers.bind(FrameBuffer::layers, pass.images, diagnostics) &&
+                    buffers.bind(FrameBuffer::layer_records, pass.image_records, diagnostics);
   if (!fits) return false;
   const auto width = static_cast<size_t>(pass.width), height = static_cast<size_t>(pass.height);
   rgba.resize(4 * width * height);
@@ -225,8 +256,8 @@ bool CpuBackend::evaluate(const Program& program, std::span<const int32_t> input
         .suggest("evaluate fewer rows at a time");
     return false;
   }
-  Buffers buffers(nullptr, diagnostics);
-  if (!buffers.bind(FrameBuffer::inputs, inputs)) return false;
+  Buffers buffers(nullptr);
+  if (!buffers.bind(FrameBuffer::inputs, inputs, diagnostics)) return false;
   const size_t width = words(program.results);
   outputs.resize(rows * width);
   const size_t chunks = (rows + row_chunk - 1) / row_chunk;

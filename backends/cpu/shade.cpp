@@ -16,26 +16,31 @@ using raster::tile_size;
 
 constexpr int nothing = -1;  ///< where a triangle is expected
 
-void fill_background(const backends::Frame& frame, backends::Image& image, int x, int y, int width,
-                     int height) {
+/// Where a pixel of the frame lies in the image of the part that is drawn.
+size_t place_in_image(const DrawJob& job, int x, int y) {
+  const raster::Box& area = job.grid.area;
+  return static_cast<size_t>(y - area.y0) * static_cast<size_t>(job.image.width) +
+         static_cast<size_t>(x - area.x0);
+}
+
+void fill_background(DrawJob& job, int x, int y, int width, int height) {
   for (int row = 0; row < height; ++row) {
-    const size_t first =
-        static_cast<size_t>(y + row) * static_cast<size_t>(image.width) + static_cast<size_t>(x);
-    float* color = image.rgba.data() + 4 * first;
-    for (int i = 0; i < width; ++i) std::copy_n(frame.background, 4, color + 4 * i);
-    std::fill_n(image.depth.data() + first, width, 0.0f);
+    const size_t first = place_in_image(job, x, y + row);
+    float* color = job.image.rgba.data() + 4 * first;
+    for (int i = 0; i < width; ++i) std::copy_n(job.frame.background, 4, color + 4 * i);
+    std::fill_n(job.image.depth.data() + first, width, 0.0f);
   }
 }
 
 }  // namespace
 
-void TilePainter::paint(DrawJob& job, int tile, int x, int y) {
-  x_ = x;
-  y_ = y;
-  const int width = std::min(tile_size, job.frame.width - x);
-  const int height = std::min(tile_size, job.frame.height - y);
+void TilePainter::paint(DrawJob& job, int tile) {
+  x_ = job.grid.x(tile);
+  y_ = job.grid.y(tile);
+  const int width = std::min(tile_size, job.grid.area.x1 + 1 - x_);
+  const int height = std::min(tile_size, job.grid.area.y1 + 1 - y_);
   collect(job, tile);
-  if (runs_.empty()) return fill_background(job.frame, job.image, x, y, width, height);
+  if (runs_.empty()) return fill_background(job, x_, y_, width, height);
   if (width < tile_size || height < tile_size)
     for (int i = 0; i < tile_pixels; ++i)
       if (raster::tile_x(i) >= width || raster::tile_y(i) >= height) tile_.triangles[i] = nothing;
@@ -117,8 +122,7 @@ void TilePainter::shade(const DrawJob& job) {
 
 void TilePainter::write(DrawJob& job, int width, int height) const {
   for (int y = 0; y < height; ++y) {
-    const size_t first =
-        static_cast<size_t>(y_ + y) * static_cast<size_t>(job.image.width) + static_cast<size_t>(x_);
+    const size_t first = place_in_image(job, x_, y_ + y);
     for (int x = 0; x < width; ++x) {
       const int i = raster::tile_index(x, y);
       const float* color = tile_.triangles[i] == nothing ? job.frame.background : color_ + 4 * place_[i];

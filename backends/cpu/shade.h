@@ -15,10 +15,11 @@ namespace isoshade::cpu {
 /// A frame while it is drawn.
 struct DrawJob {
   const backends::Frame& frame;
+  raster::TileGrid grid;  ///< over the part of the frame that is drawn
   std::span<const int32_t> triangles;
   const BufferView* buffers;
   /// Of each program of the frame; null for those that no object has.
-  std::vector<const Kernel*> kernels;
+  std::span<const Kernel* const> kernels;
   std::vector<raster::Bins> bins;  ///< of consecutive parts of the triangles
   backends::Image& image;
 };
@@ -26,8 +27,7 @@ struct DrawJob {
 /// What a thread needs to draw tiles; several hundred kilobytes.
 class TilePainter {
  public:
-  /// Draws the tile with its first pixel at (x, y), which is the tile-th.
-  void paint(DrawJob& job, int tile, int x, int y);
+  void paint(DrawJob& job, int tile);
 
  private:
   /// Triangles of one object that follow each other in a tile's list.
@@ -49,7 +49,7 @@ class TilePainter {
   void write(DrawJob& job, int width, int height) const;
   int run_of(int triangle) const;
 
-  int x_ = 0, y_ = 0;
+  int x_ = 0, y_ = 0;  ///< the tile's first pixel
   raster::Tile tile_;
   std::vector<Run> runs_;
   std::vector<Segment> segments_;

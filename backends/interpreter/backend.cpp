@@ -78,6 +78,48 @@ class Runner {
   uint32_t entry_;
 };
 
+class InterpreterDrawing final : public backends::Drawing {
+ public:
+  InterpreterDrawing(const MakeMachine& make, const Frame& frame, std::span<const float> vertices)
+      : make_(make), frame_(frame) {
+    buffers_.bind_frame(frame, vertices);
+  }
+
+  bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
+            Diagnostics&) override {
+    buffers_.bind(FrameBuffer::triangles, triangles);
+    image.resize(window.width, window.height);
+    std::vector<int32_t> visible(image.depth.size());
+    raster::rasterize_reference(triangles, raster::box_at(window.x, window.y, window.width, window.height),
+                                visible, image.depth);
+
+    std::map<size_t, Runner> pixels;
+    for (size_t i = 0; i < visible.size(); ++i) {
+      float* color = image.rgba.data() + 4 * i;
+      if (visible[i] < 0) {
+        std::ranges::copy(frame_.background, color);
+        continue;
+      }
+      const int object = triangles[static_cast<size_t>(visible[i]) * word::stride + word::object] >> 1;
+      const auto program =
+          static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
+      support::check(program < frame_.programs.size(), "an object has a program that the frame lacks");
+      Runner& pixel = pixels.try_emplace(program, make_, *frame_.programs[program], buffers_).first->second;
+      const int x = window.x + static_cast<int>(i) % window.width;
+      const int y = window.y + static_cast<int>(i) / window.width;
+      std::array<uint32_t, 4> result;
+      pixel.run({x, y, visible[i], object, frame_.light_count}, result);
+      std::ranges::transform(result, color, [](uint32_t bits) { return std::bit_cast<float>(bits); });
+    }
+    return true;
+  }
+
+ private:
+  const MakeMachine& make_;
+  const Frame& frame_;
+  Buffers buffers_;
+};
+
 class InterpreterBackend final : public backends::Backend {
  public:
   InterpreterBackend(std::string name, std::string description, MakeMachine make)
@@ -103,33 +145,9 @@ class InterpreterBackend final : public backends::Backend {
     return true;
   }
 
-  bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
-            Image& image, Diagnostics&) override {
-    Buffers buffers;
-    buffers.bind_frame(frame, vertices);
-    buffers.bind(FrameBuffer::triangles, triangles);
-    image.resize(frame.width, frame.height);
-    std::vector<int32_t> visible(image.depth.size());
-    raster::rasterize_reference(triangles, frame.width, frame.height, visible, image.depth);
-
-    std::map<size_t, Runner> pixels;
-    for (size_t i = 0; i < visible.size(); ++i) {
-      float* color = image.rgba.data() + 4 * i;
-      if (visible[i] < 0) {
-        std::ranges::copy(frame.background, color);
-        continue;
-      }
-      const int object = triangles[static_cast<size_t>(visible[i]) * word::stride + word::object] >> 1;
-      const auto program =
-          static_cast<size_t>(frame.objects[static_cast<size_t>(object) + lower::object_word::program]);
-      support::check(program < frame.programs.size(), "an object has a program that the frame lacks");
-      Runner& pixel = pixels.try_emplace(program, make_, *frame.programs[program], buffers).first->second;
-      const int at = static_cast<int>(i);
-      std::array<uint32_t, 4> result;
-      pixel.run({at % frame.width, at / frame.width, visible[i], object, frame.light_count}, result);
-      std::ranges::transform(result, color, [](uint32_t bits) { return std::bit_cast<float>(bits); });
-    }
-    return true;
+  std::unique_ptr<backends::Drawing> begin(const Frame& frame, std::span<const float> vertices,
+                                           Diagnostics&) override {
+    return std::make_unique<InterpreterDrawing>(make_, frame, vertices);
   }
 
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics&) override {

@@ -53,16 +53,16 @@ class ReferenceBackend final : public backends::Backend {
       const std::string most = std::to_string(max_size);
       diagnostics
           .report(support::Id::device_limit,
-                  "the reference draws at most " + most + "x" + most + " pixels, and this image has " +
+                  "the reference draws at most " + most + "x" + most + " samples, and this image has " +
                       std::to_string(frame.width) + "x" + std::to_string(frame.height))
-          .suggest("ask for less by --size 128x128");
+          .suggest("ask for less by --size 128x128, or by --samples 1 if the scene has several a pixel");
       return false;
     }
     return inner_->transform(frame, clip, diagnostics);
   }
-  bool draw(const backends::Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
-            backends::Image& image, Diagnostics& diagnostics) override {
-    return inner_->draw(frame, vertices, triangles, image, diagnostics);
+  std::unique_ptr<backends::Drawing> begin(const backends::Frame& frame, std::span<const float> vertices,
+                                           Diagnostics& diagnostics) override {
+    return inner_->begin(frame, vertices, diagnostics);
   }
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
     return inner_->post(pass, rgba, diagnostics);

@@ -16,7 +16,7 @@ inline constexpr int max_size = 256;
 
 /// Positions and visibility are those of every backend, in floats: the same triangle is shaded at each pixel. From the
 /// loads of the pixel's kernel on, its interpolation too, every number is a Real; the color is rounded at the end.
-/// Images larger than max_size are reported.
+/// Images of more samples a side than max_size are reported.
 std::unique_ptr<backends::Backend> create();
 
 /// As Backend::evaluate, but floats are not rounded. Ints and bools are numbers too.

@@ -20,7 +20,6 @@ namespace {
 
 using backends::Draw;
 using backends::Frame;
-using backends::Image;
 using driver::Program;
 using driver::Stage;
 using lower::FrameBuffer;
@@ -51,35 +50,6 @@ bool reads_textures(const Program& program) {
       return made.op == ir::Opcode::load && made.imm == static_cast<uint32_t>(FrameBuffer::textures);
     });
   });
-}
-
-/// The pixels that triangles of each program may cover, within the frame.
-std::vector<Rect> bounds_of_programs(const Frame& frame, std::span<const int32_t> triangles) {
-  struct Bounds {
-    int x0 = guard_band, y0 = guard_band, x1 = 0, y1 = 0;
-  };
-  std::vector<Bounds> bounds(frame.programs.size());
-  for (size_t at = 0; at < triangles.size(); at += lower::triangle_word::stride) {
-    const int32_t* triangle = triangles.data() + at;
-    const auto object = static_cast<size_t>(triangle[lower::triangle_word::object] >> 1);
-    const auto program = static_cast<size_t>(frame.objects[object + lower::object_word::program]);
-    support::check(program < bounds.size(), "an object has a program that the frame lacks");
-    Bounds& box = bounds[program];
-    for (int corner = 0; corner < 3; ++corner) {
-      const int32_t* position = triangle + lower::triangle_word::position + 2 * corner;
-      box.x0 = std::min(box.x0, position[0] >> 8);
-      box.y0 = std::min(box.y0, position[1] >> 8);
-      box.x1 = std::max(box.x1, (position[0] >> 8) + 1);
-      box.y1 = std::max(box.y1, (position[1] >> 8) + 1);
-    }
-  }
-  std::vector<Rect> rects;
-  for (const Bounds& box : bounds) {
-    const int x0 = std::max(box.x0, 0), y0 = std::max(box.y0, 0);
-    const int x1 = std::min(box.x1, frame.width), y1 = std::min(box.y1, frame.height);
-    rects.push_back({x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)});
-  }
-  return rects;
 }
 
 /// The vertices [first, first + count) of draw `draw`, and where their positions come to lie.
@@ -132,8 +102,7 @@ std::string VulkanBackend::description() const {
 double VulkanBackend::build_seconds() const { return device_->build_seconds(); }
 
 /// Runs `work`; what Vulkan threw or the validation layers said becomes a diagnostic.
-template <class Work>
-bool VulkanBackend::guarded(Diagnostics& diagnostics, Work work) {
+bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()>& work) {
   bool succeeded = false;
   try {
     succeeded = work();
@@ -159,6 +128,11 @@ bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics
   return upload<float>(*device_, FrameBuffer::texels, frame.texels, &frame, diagnostics) &&
          upload<uint32_t>(*device_, FrameBuffer::texel_bytes, frame.texel_bytes, &frame, diagnostics) &&
          upload<int32_t>(*device_, FrameBuffer::textures, frame.textures, &frame, diagnostics);
+}
+
+bool VulkanBackend::upload_triangles(const Frame& frame, std::span<const int32_t> triangles,
+                                     Diagnostics& diagnostics) {
+  return upload(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics);
 }
 
 bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
@@ -229,43 +203,6 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
     if (!pipeline) return false;
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
     device_->run_screen(*pipeline, pass.width, pass.height, rgba);
-    return true;
-  });
-}
-
-bool VulkanBackend::draw(const Frame& frame, std::span<const float> vertices,
-                         std::span<const int32_t> triangles, Image& image, Diagnostics& diagnostics) {
-  return guarded(diagnostics, [&] {
-    if (!check_size(frame.width, frame.height, diagnostics)) return false;
-    image.resize(frame.width, frame.height);
-    std::vector<Call> visibility, color;
-    if (!triangles.empty()) {
-      if (!upload_frame(frame, vertices, diagnostics) || !upload_textures(frame, diagnostics) ||
-          !upload(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics))
-        return false;
-      const auto pipeline = device_->pipeline(
-          {Target::visibility, 1, triangle_vertex(), options_.glsl(driver::depth_program(), division_)},
-          diagnostics);
-      if (!pipeline) return false;
-      const auto corners = static_cast<uint32_t>(3 * (triangles.size() / lower::triangle_word::stride));
-      visibility.push_back({.pipeline = *pipeline,
-                            .push = {.light_count = frame.light_count},
-                            .vertex_count = corners,
-                            .scissor = {0, 0, frame.width, frame.height}});
-    }
-
-    const std::vector<Rect> bounds = bounds_of_programs(frame, triangles);
-    for (size_t p = 0; p < bounds.size(); ++p) {
-      if (bounds[p].width == 0 || bounds[p].height == 0) continue;
-      const auto pipeline = device_->pipeline(
-          {Target::color, 1, full_screen_vertex(), options_.glsl(*frame.programs[p], division_)},
-          diagnostics);
-      if (!pipeline) return false;
-      color.push_back({.pipeline = *pipeline,
-                       .push = {.light_count = frame.light_count, .program = static_cast<int32_t>(p)},
-                       .scissor = bounds[p]});
-    }
-    device_->render(visibility, color, frame.background, image);
     return true;
   });
 }

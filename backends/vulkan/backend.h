@@ -49,8 +49,8 @@ class VulkanBackend : public backends::Backend {
 
   bool transform(const backends::Frame& frame, std::vector<std::vector<float>>& clip,
                  support::Diagnostics& diagnostics) override;
-  bool draw(const backends::Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
-            backends::Image& image, support::Diagnostics& diagnostics) override;
+  std::unique_ptr<backends::Drawing> begin(const backends::Frame& frame, std::span<const float> vertices,
+                                           support::Diagnostics& diagnostics) override;
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba,
             support::Diagnostics& diagnostics) override;
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
@@ -64,12 +64,15 @@ class VulkanBackend : public backends::Backend {
   friend std::unique_ptr<VulkanBackend> create(const Options& options, support::Diagnostics& diagnostics);
   VulkanBackend(Options options, std::unique_ptr<Device> device);
 
-  template <class Work>
-  bool guarded(support::Diagnostics& diagnostics, Work work);
+  friend class VulkanDrawing;
+
+  bool guarded(support::Diagnostics& diagnostics, const std::function<bool()>& work);
   bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
   bool upload_frame(const backends::Frame& frame, std::span<const float> vertices,
                     support::Diagnostics& diagnostics);
+  bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
+                        support::Diagnostics& diagnostics);
 
   Options options_;
   std::unique_ptr<Device> device_;

@@ -34,6 +34,9 @@ struct Push {
   int32_t first = 0;
   int32_t count = 0;
   int32_t width = 0;
+  /// The pixel of the frame at the first one of the target; set by what renders.
+  int32_t origin_x = 0;
+  int32_t origin_y = 0;
 };
 
 /// What a pipeline writes; all its fixed state follows from this.
@@ -55,7 +58,7 @@ struct PipelineSource {
 
 using PipelineIndex = uint32_t;
 
-/// One draw call of triangles (points where the target is a buffer) inside a rectangle of the target.
+/// One draw call of triangles (points where the target is a buffer) inside a rectangle of the frame.
 struct Call {
   PipelineIndex pipeline = 0;
   Push push{};
@@ -92,9 +95,9 @@ class Device {
   void run_vertices(std::span<const Call> calls, std::span<int32_t> output);
 
   /// Runs `visibility` on ids and depth cleared to 0, then `color` over the background with the ids bound.
-  /// Fills the image, whose size is the frame's.
+  /// Fills the image with a part of the frame, which is of its size; scissors lie inside.
   void render(std::span<const Call> visibility, std::span<const Call> color, const float (&background)[4],
-              backends::Image& image);
+              const Rect& part, backends::Image& image);
 
   /// Runs a full-screen pipeline of Target::color over an image: `rgba` has 4 floats a pixel, rows top down.
   void run_screen(PipelineIndex pipeline, int width, int height, std::span<float> rgba);

@@ -13,6 +13,11 @@ namespace isoshade::vulkan {
 /// twice this and centred on pixel 0, so that the map from clip space to 1/256 pixel is an exact power of two.
 inline constexpr int guard_band = 8192;
 
+/// Pixels of the frame before a part of it that its target has too, unless both begin at the same pixel. lavapipe keeps
+/// edge functions to 39 bits where all of a triangle that is right of and below the target's beginning lies in one tile
+/// of this size, which is too few for one that begins far before it; only those that end in the first tiles do.
+inline constexpr int margin_of_parts = 64;
+
 /// Set 0: the buffers of frame_layout.h, then what vertex kernels write, then the ids of the visible triangles,
 /// then a word that is 0.
 inline constexpr uint32_t frame_bindings = std::size(lower::frame_buffers);

@@ -21,15 +21,18 @@ vk::Rect2D area(const Rect& rect) {
   return {.offset = {rect.x, rect.y}, .extent = area(rect.width, rect.height).extent};
 }
 
-/// Rows [first, first + count) of an image to a place in a buffer.
-void copy_rows(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format,
-               int first, int count, int width, const Buffer& to, size_t offset) {
+/// From pixels of a frame to those of a target whose first pixel is (x, y) there.
+Rect moved(const Rect& rect, int x, int y) { return {rect.x - x, rect.y - y, rect.width, rect.height}; }
+
+/// A rectangle of an image to a place in a buffer.
+void copy(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format,
+          const Rect& from, const Buffer& to, size_t offset) {
   const vk::ImageSubresourceRange range = whole(format);
   const vk::BufferImageCopy copy{
       .bufferOffset = offset,
       .imageSubresource = {.aspectMask = range.aspectMask, .layerCount = 1},
-      .imageOffset = {0, first, 0},
-      .imageExtent = {static_cast<uint32_t>(width), static_cast<uint32_t>(count), 1}};
+      .imageOffset = {from.x, from.y, 0},
+      .imageExtent = {static_cast<uint32_t>(from.width), static_cast<uint32_t>(from.height), 1}};
   commands.copyImageToBuffer(*image, vk::ImageLayout::eTransferSrcOptimal, *to.buffer, copy);
 }
 
@@ -61,7 +64,16 @@ void Device::Impl::record(const vk::raii::CommandBuffer& to, const Call& call) c
   to.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, *set, {});
   to.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                          call.push);
-  to.setScissor(0, area(call.scissor));
+  // The natural viewport of a frame does not map clip space exactly to 1/256 pixel; a power of two does.
+  constexpr float edge = guard_band;
+  const auto x = static_cast<float>(call.push.origin_x), y = static_cast<float>(call.push.origin_y);
+  to.setViewport(0, vk::Viewport{.x = -edge - x,
+                                 .y = -edge - y,
+                                 .width = 2 * edge,
+                                 .height = 2 * edge,
+                                 .minDepth = 0,
+                                 .maxDepth = 1});
+  to.setScissor(0, area(moved(call.scissor, call.push.origin_x, call.push.origin_y)));
   to.draw(call.vertex_count, 1, call.first_vertex, 0);
 }
 
@@ -97,10 +109,17 @@ void Device::Impl::prepare_frame(int width, int height) {
 }
 
 void Device::render(std::span<const Call> visibility, std::span<const Call> color,
-                    const float (&background)[4], backends::Image& image) {
-  const int width = image.width, height = image.height;
-  impl_->prepare_frame(width, height);
+                    const float (&background)[4], const Rect& part, backends::Image& image) {
+  const int width = part.width, height = part.height;
+  const int margin = part.x > 0 || part.y > 0 ? margin_of_parts : 0;
+  const int origin_x = part.x - margin, origin_y = part.y - margin;
+  impl_->prepare_frame(width + margin, height + margin);
   const FrameTarget& frame = impl_->frame;
+  const auto record = [&](const vk::raii::CommandBuffer& commands, Call call) {
+    call.push.origin_x = origin_x;
+    call.push.origin_y = origin_y;
+    impl_->record(commands, call);
+  };
 
   const size_t row_bytes = static_cast<size_t>(width) * (pixel_bytes + depth_bytes);
   const int band =
@@ -118,15 +137,16 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
             vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
         {
           const Pass pass(commands, impl_->render_pass(Target::visibility, 1), frame.visibility,
-                          area(width, height), nothing);
-          for (const Call& call : visibility) impl_->record(commands, call);
+                          area(frame.width, frame.height), nothing);
+          for (const Call& call : visibility) record(commands, call);
         }
-        const Pass pass(commands, impl_->render_pass(Target::color, 1), frame.shading, area(width, height),
-                        {&backdrop, 1});
-        for (const Call& call : color) impl_->record(commands, call);
+        const Pass pass(commands, impl_->render_pass(Target::color, 1), frame.shading,
+                        area(frame.width, frame.height), {&backdrop, 1});
+        for (const Call& call : color) record(commands, call);
       }
-      copy_rows(commands, frame.color.image, color_format, first, rows, width, impl_->readback, 0);
-      copy_rows(commands, frame.depth.image, depth_format, first, rows, width, impl_->readback, depth_at);
+      const Rect lines{margin, margin + first, width, rows};
+      copy(commands, frame.color.image, color_format, lines, impl_->readback, 0);
+      copy(commands, frame.depth.image, depth_format, lines, impl_->readback, depth_at);
     });
     const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
     const size_t pixels = static_cast<size_t>(rows) * static_cast<size_t>(width);
@@ -154,7 +174,7 @@ void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span
                         {&nothing, 1});
         impl_->record(commands, call);
       }
-      copy_rows(commands, frame.color.image, color_format, first, rows, width, impl_->readback, 0);
+      copy(commands, frame.color.image, color_format, {0, first, width, rows}, impl_->readback, 0);
     });
     std::memcpy(rgba.data() + static_cast<size_t>(first) * static_cast<size_t>(width) * 4,
                 impl_->readback.data, static_cast<size_t>(rows) * row_bytes);
@@ -201,8 +221,8 @@ void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows
       impl_->record(commands, call);
     }
     for (uint32_t i = 0; i < attachments; ++i)
-      copy_rows(commands, table.attachments[i].image, words_format, 0, height, table_width, impl_->readback,
-                i * attachment_bytes);
+      copy(commands, table.attachments[i].image, words_format, {0, 0, table_width, height}, impl_->readback,
+           i * attachment_bytes);
   });
 
   const char* data = static_cast<const char*>(impl_->readback.data);

@@ -107,12 +107,7 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
   const vk::PipelineVertexInputStateCreateInfo vertex_input{};
   const vk::PipelineInputAssemblyStateCreateInfo assembly{
       .topology = rasterises ? vk::PrimitiveTopology::eTriangleList : vk::PrimitiveTopology::ePointList};
-  // The natural viewport of a frame does not map clip space exactly to 1/256 pixel; a power of two does.
-  constexpr float edge = guard_band;
-  const vk::Viewport viewport{
-      .x = -edge, .y = -edge, .width = 2 * edge, .height = 2 * edge, .minDepth = 0, .maxDepth = 1};
-  const vk::PipelineViewportStateCreateInfo view{
-      .viewportCount = 1, .pViewports = &viewport, .scissorCount = 1};
+  const vk::PipelineViewportStateCreateInfo view{.viewportCount = 1, .scissorCount = 1};
   const vk::PipelineRasterizationStateCreateInfo raster{.rasterizerDiscardEnable = !rasterises,
                                                         .polygonMode = vk::PolygonMode::eFill,
                                                         .cullMode = vk::CullModeFlagBits::eNone,
@@ -127,8 +122,9 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
       {.colorWriteMask = Component::eR | Component::eG | Component::eB | Component::eA});
   const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = static_cast<uint32_t>(written.size()),
                                                     .pAttachments = written.data()};
-  const vk::DynamicState scissor = vk::DynamicState::eScissor;
-  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = 1, .pDynamicStates = &scissor};
+  constexpr std::array by_call{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = static_cast<uint32_t>(by_call.size()),
+                                                   .pDynamicStates = by_call.data()};
 
   return {device, nullptr,
           vk::GraphicsPipelineCreateInfo{.stageCount = static_cast<uint32_t>(stages.size()),

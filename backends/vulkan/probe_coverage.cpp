@@ -17,7 +17,6 @@ namespace {
 
 using namespace lower;
 
-constexpr int cell_size = 16;
 constexpr int cell_rows = 2;
 constexpr int subpixels = 256;
 constexpr int cell_extent = cell_size * subpixels;
@@ -206,11 +205,13 @@ std::string head() {
          "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(FrameBuffer::inputs)) +
          ") readonly buffer inputs_block { int inputs[]; };\n"
          "layout(push_constant) uniform Push {\n"
-         "  int object; int light_count; int program; int first; int count; int width;\n} push;\n" +
+         "  int object; int light_count; int program; int first; int count; int width;\n"
+         "  int origin_x; int origin_y;\n} push;\n" +
          R"(
 int pixel_here() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   bool centre = gl_FragCoord.x == float(at.x) + 0.5 && gl_FragCoord.y == float(at.y) + 0.5;
+  at += ivec2(push.origin_x, push.origin_y);
   return centre ? at.x + at.y * push.width : 0x7ffff;
 }
 )";

@@ -18,6 +18,8 @@ struct Cell {
   uint32_t count = 0;
 };
 
+inline constexpr int cell_size = 16;  ///< pixels each way
+
 struct CoverageScene {
   int width = 0;
   int height = 0;

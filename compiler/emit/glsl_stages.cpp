@@ -21,6 +21,7 @@ namespace {
 constexpr std::string_view push_constants =
     "layout(push_constant) uniform Push {\n"
     "  int object;\n  int light_count;\n  int program;\n  int first;\n  int count;\n  int width;\n"
+    "  int origin_x;\n  int origin_y;\n"
     "} push;\n";
 
 // A uniform will not do: lavapipe compiles a shader again for the values of some.
@@ -69,7 +70,8 @@ std::string vertex_main() {
 
 std::string depth_main() {
   return "void main() {\n"
-         "  precise float z = depth(int(gl_FragCoord.x), int(gl_FragCoord.y), triangle);\n"
+         "  ivec2 at = ivec2(gl_FragCoord.xy) + ivec2(push.origin_x, push.origin_y);\n"
+         "  precise float z = depth(at.x, at.y, triangle);\n"
          "  gl_FragDepth = z;\n"
          "  id = triangle + 1;\n"
          "}\n";
@@ -80,8 +82,8 @@ std::string pixel_main() {
   const std::string stride = std::to_string(triangle_word::stride);
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
-         "  ivec2 at = ivec2(gl_FragCoord.xy);\n"
-         "  int triangle = texelFetch(ids, at, 0).x - 1;\n"
+         "  ivec2 target = ivec2(gl_FragCoord.xy);\n"
+         "  int triangle = texelFetch(ids, target, 0).x - 1;\n"
          "  if (triangle < 0) discard;\n"
          "  int object = triangles[triangle * " +
          stride + " + " + std::to_string(triangle_word::object) +
@@ -89,6 +91,7 @@ std::string pixel_main() {
          "  if (int(objects[object + " +
          std::to_string(object_word::program) +
          "]) != push.program) discard;\n"
+         "  ivec2 at = target + ivec2(push.origin_x, push.origin_y);\n"
          "  precise vec4 shaded = pixel(at.x, at.y, triangle, object, push.light_count);\n"
          "  color = intBitsToFloat(canonical(shaded));\n"
          "}\n";
@@ -167,7 +170,8 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
       body = vertex_main();
       break;
     case lower::Stage::depth:
-      interface = "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
+      interface = std::string(push_constants) +
+                  "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
       body = depth_main();
       break;
     case lower::Stage::pixel:

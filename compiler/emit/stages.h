@@ -3,15 +3,14 @@
 //
 // GLSL. Set 0: bindings 0 to n - 1 are the buffers of lower/frame_layout.h (only those used are declared), n `clip`
 // (uvec4, written by vertex), n + 1 `ids` (isampler2D, read by pixel), n + 2 a word that is 0.0 (see ir::Opcode). Push
-// constants, six ints:
-//   object, light_count, program, first, count, width
-//   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as
-//   bits at
+// constants, eight ints:
+//   object, light_count, program, first, count, width, origin_x, origin_y
+//   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as bits at
 //           clip[gl_VertexIndex - first + count].
-//   depth   a fragment shader: `flat in int triangle` at location 0; gl_FragDepth; out int at 0: triangle
-//   + 1. pixel   a fragment shader: the id at its pixel, 0 for none; discards pixels of other programs; out
-//   vec4 at 0. eval    a fragment shader: row = first + x + y * width; discards rows >= count; results as
-//   bits, four to an
+//   depth   a fragment shader: `flat in int triangle` at location 0; gl_FragDepth; out int at 0: triangle + 1. The
+//           target's first pixel is (origin_x, origin_y) of the frame, as it is of pixel.
+//   pixel   a fragment shader: the id at its pixel, 0 for none; discards pixels of other programs; out vec4 at 0.
+//   eval    a fragment shader: row = first + x + y * width; discards rows >= count; results as bits, four to an
 //           `out ivec4` at locations 0, 1, ...
 //   post    a fragment shader: out vec4 at 0
 //

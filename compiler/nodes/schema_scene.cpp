@@ -128,6 +128,7 @@ SchemaJson scene_schema(SchemaJson& definitions) {
   std::vector<SchemaKey> keys = document_keys("scene");
   const std::vector<SchemaKey> rest{
       {"size", described(array_schema(integer_schema(1, 8192), 2, 2), "width and height in pixels")},
+      {"samples", described({{"enum", {1, 4, 16}}}, "of each pixel, averaged")},
       {"time", described(number_schema(-1e9, 1e9), "what the node `time` gives, in seconds")},
       {"background", described(numbers_schema(4), "linear RGBA")},
       {"camera", reference("camera"), true},

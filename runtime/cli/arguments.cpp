@@ -118,6 +118,9 @@ void add_changes(CLI::App& app, SceneChanges& changes) {
                  "A glTF file (.gltf, .glb) in place of the scene's one, or of its only object's mesh");
   app.add_option("--time", changes.time, "Seconds for the node `time` instead of the scene's")
       ->check(time_text);
+  app.add_option("--samples", changes.samples,
+                 "Samples of each pixel, averaged, instead of the scene's: 1, 4 or 16")
+      ->check(CLI::IsMember({"1", "4", "16"}));
 }
 
 std::string subcommand_names(const CLI::App& app) {

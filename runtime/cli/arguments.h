@@ -37,6 +37,7 @@ struct SceneChanges {
   std::vector<std::string> settings;  ///< name.parameter=value
   std::string mesh;                   ///< a glTF file in place of the scene's; empty: none
   std::optional<float> time;          ///< in seconds
+  std::optional<int> samples;         ///< of each pixel
 };
 
 struct CompileArguments {

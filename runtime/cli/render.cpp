@@ -48,6 +48,10 @@ std::optional<scene::Scene> load_scene(const std::string& path, const SceneChang
   if (!scene) return std::nullopt;
   if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
   if (changes.time) scene->time = *changes.time;
+  if (changes.samples) {
+    scene->samples = *changes.samples;
+    scene->samples_where = {};
+  }
   return scene;
 }
 

@@ -109,8 +109,9 @@ class Verifier {
     if (!plan) return failure;
     const std::string_view tier = functions::tier_name(arguments_.precision);
     const bool usual = arguments_.precision == functions::Tier::standard;
-    std::printf("%s %dx%d%s%s\n", path.c_str(), size.width, size.height, usual ? "" : " precision ",
-                usual ? "" : tier.data());
+    const std::string samples = scene.samples > 1 ? ", " + std::to_string(scene.samples) + " samples" : "";
+    std::printf("%s %dx%d%s%s%s\n", path.c_str(), size.width, size.height, samples.c_str(),
+                usual ? "" : " precision ", usual ? "" : tier.data());
     std::vector<backends::Image> images(backends_.size());
     for (size_t i = 0; i < backends_.size(); ++i) {
       progress(common_, "  rendering on " + backends_[i].name);

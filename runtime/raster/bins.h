@@ -6,14 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "runtime/raster/triangle.h"
+
 namespace isoshade::raster {
 
-/// The tiles of an image, row by row; those at its right and bottom ends may reach beyond it.
+/// The tiles of a part of an image, row by row; those at its right and bottom ends may reach beyond it.
 struct TileGrid {
+  Box area;  ///< in pixels of the image; not empty
   int columns, rows;
 
-  TileGrid(int width, int height);
+  explicit TileGrid(const Box& area);
   int count() const { return columns * rows; }
+  /// The first pixel of a tile.
+  int x(int tile) const;
+  int y(int tile) const;
 };
 
 /// Of a part of the triangles. Different parts can be sorted at the same time; a tile then takes the bins of
@@ -22,7 +28,7 @@ class Bins {
  public:
   Bins() = default;
   /// Sorts `count` records of lower/frame_layout.h from the index `first` on.
-  Bins(std::span<const int32_t> triangles, int first, int count, int width, int height);
+  Bins(std::span<const int32_t> triangles, int first, int count, const TileGrid& grid);
 
   /// The indices of those triangles that may cover a pixel of the tile, in their order.
   std::span<const int32_t> of(int tile) const {

@@ -17,7 +17,8 @@ constexpr uint32_t not_yet_stored = ~0u;
 constexpr float units = 256.0f;         // a pixel
 constexpr float farthest = 2097152.0f;  // 2^21: what a record holds, in units
 // The guard band in pixels. Before the first pixel it is narrower: lavapipe keeps edge functions of triangles
-// that end in the first 64 x 64 pixels to 39 bits, which some that begin beyond -2832 exceed.
+// that end in the first 64 x 64 pixels to 39 bits, which some that begin beyond -2832 exceed. (Parts of a frame that
+// begin elsewhere have a margin for that, see backends/vulkan/limits.h.)
 constexpr float guard_before = max_before_image;
 constexpr float guard = 8190.0f;
 

@@ -27,8 +27,7 @@ bool inside(Position from, Position to, Position centre) {
   return edge > 0 || (edge == 0 && (left || top));
 }
 
-void draw(const int32_t* record, int id, int width, int height, std::span<int32_t> ids,
-          std::span<float> depth) {
+void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids, std::span<float> depth) {
   Position corner[3];
   float z[3];
   for (int i = 0; i < 3; ++i) {
@@ -39,8 +38,9 @@ void draw(const int32_t* record, int id, int width, int height, std::span<int32_
 
   const auto [left, right] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
   const auto [top, bottom] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
-  const int first_x = std::max(0, left >> 8), last_x = std::min(width - 1, right >> 8);
-  const int first_y = std::max(0, top >> 8), last_y = std::min(height - 1, bottom >> 8);
+  const int first_x = std::max(area.x0, left >> 8), last_x = std::min(area.x1, right >> 8);
+  const int first_y = std::max(area.y0, top >> 8), last_y = std::min(area.y1, bottom >> 8);
+  const auto width = static_cast<size_t>(area.x1 - area.x0 + 1);
   for (int y = first_y; y <= last_y; ++y)
     for (int x = first_x; x <= last_x; ++x) {
       const Position centre{256 * x + 128, 256 * y + 128};
@@ -50,7 +50,7 @@ void draw(const int32_t* record, int id, int width, int height, std::span<int32_
       const auto edges = functions::edge_functions<float>(corner[0].x, corner[0].y, corner[1].x, corner[1].y,
                                                           corner[2].x, corner[2].y, wide, centre.x, centre.y);
       const float nearness = functions::interpolate_depth<float>(edges, z[0], z[1], z[2]);
-      const size_t pixel = static_cast<size_t>(y) * width + x;
+      const size_t pixel = static_cast<size_t>(y - area.y0) * width + static_cast<size_t>(x - area.x0);
       if (!(nearness > depth[pixel])) continue;
       depth[pixel] = nearness;
       ids[pixel] = id;
@@ -59,14 +59,14 @@ void draw(const int32_t* record, int id, int width, int height, std::span<int32_
 
 }  // namespace
 
-void rasterize_reference(std::span<const int32_t> triangles, int width, int height, std::span<int32_t> ids,
+void rasterize_reference(std::span<const int32_t> triangles, const Box& area, std::span<int32_t> ids,
                          std::span<float> depth) {
   const lanes::FpGuard guard_floats;
   std::fill(ids.begin(), ids.end(), -1);
   std::fill(depth.begin(), depth.end(), 0.0f);
   const int count = static_cast<int>(triangles.size() / word::stride);
   for (int i = 0; i < count; ++i)
-    draw(triangles.data() + static_cast<size_t>(i) * word::stride, i, width, height, ids, depth);
+    draw(triangles.data() + static_cast<size_t>(i) * word::stride, i, area, ids, depth);
 }
 
 }  // namespace isoshade::raster

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime/raster/triangle.h"
+
 namespace isoshade::raster {
 
-/// Draws the triangles (records of lower/frame_layout.h) in their order. For each pixel, rows top down: the
-/// index of the triangle with the greatest depth above 0, of equal ones the first, or -1; and that depth, or
-/// 0.
-void rasterize_reference(std::span<const int32_t> triangles, int width, int height, std::span<int32_t> ids,
+/// Draws the triangles (records of lower/frame_layout.h) in their order. For each pixel of the area, rows top
+/// down: the index of the triangle with the greatest depth above 0, of equal ones the first, or -1; and that
+/// depth, or 0.
+void rasterize_reference(std::span<const int32_t> triangles, const Box& area, std::span<int32_t> ids,
                          std::span<float> depth);
 
 }  // namespace isoshade::raster

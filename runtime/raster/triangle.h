@@ -46,6 +46,11 @@ struct Box {
   }
 };
 
+/// The pixels of a part of an image.
+ISOSHADE_INLINE Box box_at(int x, int y, int width, int height) {
+  return {x, y, x + width - 1, y + height - 1};
+}
+
 /// Positions are in 1/256 pixel; pixel i has its centre at 256 * i + 128.
 ISOSHADE_INLINE Box centres_between(int left, int top, int right, int bottom) {
   return {(left + 127) >> 8, (top + 127) >> 8, (right - 128) >> 8, (bottom - 128) >> 8};
@@ -73,5 +78,22 @@ ISOSHADE_INLINE Edge edge_between(Triangle t, int from, int to) {
       static_cast<int64_t>(dx) * (128 - t.y(from)) - static_cast<int64_t>(dy) * (128 - t.x(from));
   return {(exact - (top_or_left ? 0 : 1)) >> 8, -dy, dx};
 }
+
+/// The three edges of a triangle, to find out which parts of an image it misses.
+struct Edges {
+  Edge all[3];
+
+  ISOSHADE_INLINE explicit Edges(Triangle t)
+      : all{edge_between(t, 0, 1), edge_between(t, 1, 2), edge_between(t, 2, 0)} {}
+
+  /// False if all pixels of the box are on the outer side of one edge.
+  ISOSHADE_INLINE bool reach(const Box& box) const {
+    for (const Edge& edge : all) {
+      const int64_t x = edge.step_x > 0 ? box.x1 : box.x0, y = edge.step_y > 0 ? box.y1 : box.y0;
+      if (edge.at_origin + edge.step_x * x + edge.step_y * y < 0) return false;
+    }
+    return true;
+  }
+};
 
 }  // namespace isoshade::raster

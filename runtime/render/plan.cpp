@@ -12,6 +12,7 @@
 #include "runtime/render/meshes.h"
 #include "runtime/render/parameters.h"
 #include "runtime/render/records.h"
+#include "runtime/render/samples.h"
 #include "runtime/render/skips.h"
 #include "runtime/render/textures.h"
 #include "runtime/render/visibility.h"
@@ -320,6 +321,9 @@ void Planner::place_object(size_t o) {
 
 std::optional<Plan> Planner::plan() {
   Clock clock;
+  const int width = options_.width > 0 ? options_.width : scene_.width;
+  const int height = options_.height > 0 ? options_.height : scene_.height;
+  if (!check_samples(scene_, width, height, diagnostics_)) return std::nullopt;
   const bool effects = compile_effects();
   if (!compile_posts() || !effects) return std::nullopt;
   plan_.stats.compile_seconds = clock.lap();
@@ -328,20 +332,21 @@ std::optional<Plan> Planner::plan() {
   plan_.stats.skips = unread_images(plan_.effects);
 
   backends::Frame& frame = plan_.frame;
-  frame.width = options_.width > 0 ? options_.width : scene_.width;
-  frame.height = options_.height > 0 ? options_.height : scene_.height;
+  plan_.samples = scene_.samples;
+  frame.width = width * samples_each_way(scene_.samples);
+  frame.height = height * samples_each_way(scene_.samples);
   {
     const lanes::FpGuard guard;
-    view_ = scene::make_view(scene_.camera, frame.width, frame.height);
-    frame.frame = frame_words(scene_, view_, frame.width, frame.height);
+    // The camera and the size of a pixel are those of the image.
+    view_ = scene::make_view(scene_.camera, width, height);
+    frame.frame = frame_words(scene_, view_, width, height);
     for (const scene::Light& light : scene_.lights) {
       const auto record = scene::light_record(light);
       frame.lights.insert(frame.lights.end(), record.begin(), record.end());
     }
     for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
     for (size_t i = 0; i < 4; ++i) frame.background[i] = scene::canonical(scene_.background[i]);
-    auto posts =
-        plan_posts(scene_, posts_, frame.width, frame.height, options_.skip, plan_.stats.skips, diagnostics_);
+    auto posts = plan_posts(scene_, posts_, width, height, options_.skip, plan_.stats.skips, diagnostics_);
     if (!posts) return std::nullopt;
     plan_.posts = *std::move(posts);
   }

@@ -21,7 +21,7 @@ inline constexpr int64_t max_drawn_triangles = 8'000'000;  ///< 64 bytes each, o
 inline constexpr int64_t max_object_words = 16'000'000;    ///< of all records
 
 struct Options {
-  int width = 0;  ///< 0: the scene's own size
+  int width = 0;  ///< of the image; 0: the scene's own size
   int height = 0;
   bool skip = true;          ///< leave out what cannot be seen; off, the image has the same bits
   driver::Options compiler;  ///< `lights` is set by the scene
@@ -33,7 +33,8 @@ struct Plan {
   std::vector<driver::Effect> effects;
   std::vector<StoredMesh> meshes;
   std::vector<driver::Post> post_documents;
-  backends::Frame frame;
+  int samples = 1;        ///< of each pixel of the image: 1, 4 or 16
+  backends::Frame frame;  ///< of as many samples as the image has, see render/samples.h
   PostChain posts;
   PlanStats stats;
 

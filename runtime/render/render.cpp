@@ -7,6 +7,7 @@
 #include "compiler/support/check.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
+#include "runtime/render/samples.h"
 
 namespace isoshade::render {
 namespace {
@@ -52,7 +53,8 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
       static_cast<int64_t>(vertices.size() - frame.vertices.size()) / lower::vertex_word::stride;
   stats.clip_seconds = lap();
 
-  if (!backend.draw(frame, vertices, triangles, image, diagnostics)) return false;
+  stats.samples = plan.samples;
+  if (!draw(frame, plan.samples, vertices, triangles, backend, image, stats, diagnostics)) return false;
   stats.draw_seconds = lap();
   if (!run_posts(plan.posts, frame.frame, backend, image, stats, diagnostics)) return false;
   stats.post_seconds = lap();

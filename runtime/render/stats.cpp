@@ -32,6 +32,9 @@ std::string text(const DrawStats& stats) {
       "draw:     {:.1f} ms\n",
       1e3 * stats.build_seconds, 1e3 * stats.transform_seconds, 1e3 * stats.clip_seconds, stats.triangles,
       stats.made_vertices, 1e3 * stats.draw_seconds);
+  if (stats.samples > 1)
+    text += fmt::format("samples:  {} a pixel, in {} parts, {} of them without triangles and not drawn\n",
+                        stats.samples, stats.parts, stats.empty_parts);
   if (stats.kept_images > 0)
     text += fmt::format("posts:    {:.1f} ms; at most {} images at a time\n", 1e3 * stats.post_seconds,
                         stats.kept_images);

@@ -31,6 +31,9 @@ struct PlanStats {
 struct DrawStats {
   int64_t triangles = 0;      ///< left by clipping and culling
   int64_t made_vertices = 0;  ///< by clipping
+  int samples = 1;            ///< a pixel
+  int64_t parts = 0;          ///< that the frame is drawn in, where it has several samples a pixel
+  int64_t empty_parts = 0;    ///< of them: no triangle, so not drawn
   int64_t kept_images = 0;    ///< by the post chain: the most at a time, with the one that is made
   double build_seconds = 0;   ///< of the backend, for code of the machine; part of none of the following
   double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0, post_seconds = 0;

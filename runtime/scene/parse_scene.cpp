@@ -75,6 +75,19 @@ void parse_size(const Document& document, ObjectReader& reader, Scene& scene, Di
   scene.height = side(size->items[1]);
 }
 
+void parse_samples(const Document& document, ObjectReader& reader, Scene& scene, Diagnostics& diagnostics) {
+  const Json* json = document.root.find("samples");
+  const int64_t samples = reader.integer("samples", coordinates, 1);
+  if (json == nullptr) return;
+  scene.samples_where = document.span(*json);
+  scene.samples = static_cast<int>(samples);
+  if (samples == 1 || samples == 4 || samples == 16) return;
+  diagnostics
+      .report(Id::out_of_range, scene.samples_where,
+              "a pixel has 1, 4 or 16 samples, not " + std::to_string(samples))
+      .note("they lie in one row, two or four");
+}
+
 Output parse_output(const Document& document, const Json& json, Diagnostics& diagnostics) {
   Output output;
   ObjectReader reader(document, json, "the output", diagnostics);
@@ -152,6 +165,7 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   scene.name = reader.string("scene");
   Names names(document, diagnostics);
   parse_size(document, reader, scene, diagnostics);
+  parse_samples(document, reader, scene, diagnostics);
   scene.time = reader.number("time", coordinates, 0.0f);
   if (const Json* camera = reader.object("camera"))
     scene.camera = parse_camera(document, *camera, diagnostics);

@@ -128,7 +128,9 @@ struct Scene {
   support::Source source;
   int width = 640;
   int height = 360;
-  float time = 0;  ///< what the node `time` gives, in seconds
+  int samples = 1;              ///< of each pixel: 1, 4 or 16
+  support::Span samples_where;  ///< nowhere if it is not the document that says so
+  float time = 0;               ///< what the node `time` gives, in seconds
   Camera camera;
   std::vector<Light> lights;
   std::array<float, 4> background{0, 0, 0, 1};  ///< linear RGBA
@@ -140,7 +142,7 @@ struct Scene {
 /// Reports everything wrong with a scene document:
 ///
 ///     {"isoshade": 1, "scene": "name", "doc": "...", "size": [640, 360], "background": [r, g, b, a],
-///      "time": 0,
+///      "samples": 1, 4 or 16, "time": 0,
 ///      "camera": {"type": "perspective", "position": [..], "target": [..], "up": [0, 1, 0], "fov": 45,
 ///                 "near": 0.1},
 ///                {"type": "orthographic", ..., "height": 4, "near": 0.1, "far": 1000}

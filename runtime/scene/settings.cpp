@@ -222,12 +222,13 @@ bool Editor::set_named(Setting& setting) {
 }
 
 bool Editor::set_bare(Setting& setting) {
-  if (setting.key == "background" || setting.key == "size") {
+  constexpr std::string_view scene_keys[] = {"background", "size", "samples"};
+  if (std::ranges::count(scene_keys, setting.key) != 0) {
     set_member(document_.root, setting);
     return true;
   }
   std::vector<std::pair<std::string_view, Json*>> having;
-  std::vector<std::string_view> all_parameters = {"background", "size"};
+  std::vector<std::string_view> all_parameters(std::begin(scene_keys), std::end(scene_keys));
   for (const auto& owner : owners()) {
     const std::vector<std::string_view> parameters = parameters_of(*owner.second);
     all_parameters.insert(all_parameters.end(), parameters.begin(), parameters.end());

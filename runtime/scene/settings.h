@@ -16,7 +16,7 @@ namespace isoshade::scene {
 ///     parameter=value          the same, where only one object or post has a parameter of that name
 ///     light.key=value          "sun.intensity=2"
 ///     camera.key=value         "camera.fov=30", and so output.key
-///     key=value                background or size of the scene
+///     key=value                background, size or samples of the scene
 ///
 /// A path for a parameter of type filename counts from the working directory, and may lie anywhere.
 ///

@@ -49,6 +49,14 @@ isoshade_test(textures_test
   DEVICES)
 target_compile_definitions(textures_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
+isoshade_test(samples_test
+  SOURCES equivalence/samples_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
+  LABEL equivalence
+  TIMEOUT 300
+  DEVICES)
+target_compile_definitions(samples_test PRIVATE ${equivalence_definitions} $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
 isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
 target_compile_definitions(text_test PRIVATE ${equivalence_definitions})
 

@@ -45,11 +45,11 @@ Picture picture(const render::Plan& made) {
   return picture;
 }
 
-/// A scene of one object with the outline effect; `camera` and `object` are members of these.
+/// A scene of one object with the outline effect; `camera` and `object` are members of these, `more` of the scene.
 render::Plan scene_of(const std::string& camera, const std::string& mesh, const std::string& object,
-                      const std::string& parameters) {
-  const std::string text = R"({"isoshade": 1, "scene": "s", "size": [320, 240], "camera": {)" + camera +
-                           R"(}, "objects": {"o": {"mesh": )" + mesh +
+                      const std::string& parameters, const std::string& more = R"("time": 0)") {
+  const std::string text = R"({"isoshade": 1, "scene": "s", "size": [320, 240], )" + more +
+                           R"(, "camera": {)" + camera + R"(}, "objects": {"o": {"mesh": )" + mesh +
                            R"(, "effect": "../effects/outline.json", )" + object +
                            R"("parameters": {"outline_color": [0.035, 0.02, 0.025], )" + parameters + "}}}}";
   return plan(load(std::make_shared<support::SourceFile>(scene_path("of_a_test"), text)));
@@ -146,6 +146,20 @@ TEST(Outline, IsSoManyPixelsWideAtAnyDistanceIfTheWidthIsOfTheScreen) {
   const Picture seen = picture(scene_of(beside_the_axis, mesh, "", parameters));
   EXPECT_EQ(gaps(seen), 0);
   EXPECT_EQ(parts(seen, Seen::outline), 1);
+}
+
+TEST(Outline, IsAsWideWithSeveralSamplesAPixel) {
+  const std::string mesh = R"({"type": "icosphere", "radius": 1, "subdivisions": 6})";
+  const std::string camera = R"("position": [0, 0, 4], "target": [0, 0, 0], "fov": 60)";
+  for (const int samples : {4, 16}) {
+    const Picture seen = picture(scene_of(camera, mesh, "", R"("outline": 6, "outline_width_mode": "screen")",
+                                          R"("samples": )" + std::to_string(samples)));
+    for (const bool across : {true, false}) {
+      // Both times 6 pixels, of which the first and the last may be mixed with what lies beside.
+      const auto [before, after] = widths(seen, across);
+      EXPECT_NEAR(before + after, 10, 2) << samples;
+    }
+  }
 }
 
 TEST(Outline, NarrowsWithTheDistanceIfTheWidthIsOfTheWorld) {

@@ -169,14 +169,27 @@ TEST_F(Cli, MeasuresEveryFormPrecisionAndBackend) {
   EXPECT_EQ(run("bench --only no_such_effect").exit, 2);
 }
 
+std::string hash_of(const std::string& changes) {
+  const Outcome outcome = run("verify " + graphs + "/scenes/surface_attributes.json --size 64x36 " +
+                              "--backends cpu,interpreter " + changes);
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  const size_t at = outcome.text.find("sha256 ");
+  return outcome.text.substr(at, at == std::string::npos ? at : 71);
+}
+
+TEST_F(Cli, DrawsSeveralSamplesAPixel) {
+  EXPECT_EQ(hash_of("--samples 4"), hash_of("--set samples=4"));
+  EXPECT_EQ(hash_of("--samples 1 --set samples=4"), hash_of(""));
+  EXPECT_NE(hash_of("--samples 4"), hash_of("--samples 16"));
+  const std::string render = "render " + scene + " -o " + file("a.png");
+  EXPECT_EQ(run(render + " --samples 5").exit, 2);
+  const Outcome large = run(render + " --size 2049x1 --samples 16");
+  EXPECT_EQ(large.exit, 2);
+  EXPECT_NE(large.text.find("error[too-large]: an image of 16 samples a pixel"), std::string::npos)
+      << large.text;
+}
+
 TEST_F(Cli, ShowsAnotherTime) {
-  const auto hash_of = [](const std::string& time) {
-    const Outcome outcome = run("verify " + graphs + "/scenes/surface_attributes.json --size 64x36 " +
-                                "--backends cpu,interpreter " + time);
-    EXPECT_EQ(outcome.exit, 0) << outcome.text;
-    const size_t at = outcome.text.find("sha256 ");
-    return outcome.text.substr(at, at == std::string::npos ? at : 71);
-  };
   EXPECT_EQ(hash_of(""), hash_of("--time 2.125")) << "the scene's own";
   EXPECT_NE(hash_of(""), hash_of("--time 2.5"));
   EXPECT_EQ(run("render " + scene + " -o " + file("a.png") + " --time soon").exit, 2);

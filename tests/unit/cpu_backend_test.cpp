@@ -104,7 +104,7 @@ TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
 
     std::vector<int32_t> ids(static_cast<size_t>(width) * height);
     std::vector<float> depth(ids.size());
-    raster::rasterize_reference(triangles, width, height, ids, depth);
+    raster::rasterize_reference(triangles, raster::box_at(0, 0, width, height), ids, depth);
     EXPECT_TRUE(same_bits(image.depth, depth));
     int visible = 0;
     for (size_t i = 0; i < ids.size(); ++i) {

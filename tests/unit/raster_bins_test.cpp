@@ -22,17 +22,17 @@ std::vector<int32_t> mixture(int width, int height) {
   return triangles;
 }
 
-TEST(Bins, ListEveryTriangleWhereItCoversAPixel) {
-  const int width = 300, height = 170;
-  const std::vector<int32_t> triangles = mixture(width, height);
-  const TileGrid grid(width, height);
-  const Bins bins(triangles, 0, shapes::count(triangles), width, height);
+void expect_every_triangle_that_covers_a_pixel(const Box& area) {
+  const std::vector<int32_t> triangles = mixture(300, 170);
+  const TileGrid grid(area);
+  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  const int width = area.x1 - area.x0 + 1, height = area.y1 - area.y0 + 1;
   std::vector<int32_t> ids(static_cast<size_t>(width) * height);
   std::vector<float> depth(ids.size());
   for (int i = 0; i < shapes::count(triangles); ++i) {
     const std::span one = std::span(triangles).subspan(static_cast<size_t>(i) * lower::triangle_word::stride,
                                                        lower::triangle_word::stride);
-    rasterize_reference(one, width, height, ids, depth);
+    rasterize_reference(one, area, ids, depth);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         if (ids[static_cast<size_t>(y) * width + x] < 0) continue;
@@ -42,10 +42,20 @@ TEST(Bins, ListEveryTriangleWhereItCoversAPixel) {
   }
 }
 
+TEST(Bins, ListEveryTriangleWhereItCoversAPixel) {
+  expect_every_triangle_that_covers_a_pixel(box_at(0, 0, 300, 170));
+}
+
+TEST(Bins, ListEveryTriangleWhereItCoversAPixelOfAPart) {
+  expect_every_triangle_that_covers_a_pixel(box_at(70, 9, 150, 151));
+  expect_every_triangle_that_covers_a_pixel(box_at(299, 169, 1, 1));
+}
+
 TEST(Bins, KeepTheOrderOfTriangles) {
   const std::vector<int32_t> triangles = mixture(300, 170);
-  const Bins bins(triangles, 0, shapes::count(triangles), 300, 170);
-  for (int tile = 0; tile < TileGrid(300, 170).count(); ++tile) {
+  const TileGrid grid(box_at(0, 0, 300, 170));
+  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  for (int tile = 0; tile < grid.count(); ++tile) {
     const auto listed = bins.of(tile);
     EXPECT_TRUE(std::is_sorted(listed.begin(), listed.end()));
     EXPECT_EQ(std::adjacent_find(listed.begin(), listed.end()), listed.end());
@@ -55,9 +65,10 @@ TEST(Bins, KeepTheOrderOfTriangles) {
 TEST(Bins, OfPartsMakeUpTheWhole) {
   const std::vector<int32_t> triangles = mixture(300, 170);
   const int count = shapes::count(triangles);
-  const Bins whole(triangles, 0, count, 300, 170);
-  const Bins first(triangles, 0, 100, 300, 170), second(triangles, 100, count - 100, 300, 170);
-  for (int tile = 0; tile < TileGrid(300, 170).count(); ++tile) {
+  const TileGrid grid(box_at(0, 0, 300, 170));
+  const Bins whole(triangles, 0, count, grid);
+  const Bins first(triangles, 0, 100, grid), second(triangles, 100, count - 100, grid);
+  for (int tile = 0; tile < grid.count(); ++tile) {
     std::vector<int32_t> parts(first.of(tile).begin(), first.of(tile).end());
     parts.insert(parts.end(), second.of(tile).begin(), second.of(tile).end());
     EXPECT_TRUE(std::ranges::equal(parts, whole.of(tile)));
@@ -69,10 +80,10 @@ TEST(Bins, LeaveOutTilesThatALongEdgeMisses) {
   const int end = 16 * tile_size * 256;
   shapes::append(triangles, {shapes::Position{0, 0}, {end, end}, {end - 512, end}}, {0.5f, 0.5f, 0.5f});
   const int size = 16 * tile_size;
-  const Bins bins(triangles, 0, 1, size, size);
+  const TileGrid grid(box_at(0, 0, size, size));
+  const Bins bins(triangles, 0, 1, grid);
   int listed = 0;
-  for (int tile = 0; tile < TileGrid(size, size).count(); ++tile)
-    listed += static_cast<int>(bins.of(tile).size());
+  for (int tile = 0; tile < grid.count(); ++tile) listed += static_cast<int>(bins.of(tile).size());
   EXPECT_GE(listed, 16);
   EXPECT_LE(listed, 3 * 16);  // of 256
 }

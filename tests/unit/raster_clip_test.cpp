@@ -57,7 +57,7 @@ std::vector<int> times_covered(const Clipped& clipped, int width, int height) {
     std::vector<int32_t> one(clipped.triangles.begin() + i * word::stride,
                              clipped.triangles.begin() + (i + 1) * word::stride);
     for (int k = 0; k < 3; ++k) one[static_cast<size_t>(word::depth + k)] = std::bit_cast<int32_t>(1.0f);
-    rasterize_reference(one, width, height, ids, depth);
+    rasterize_reference(one, box_at(0, 0, width, height), ids, depth);
     for (size_t p = 0; p < ids.size(); ++p) times[p] += ids[p] == 0;
   }
   return times;
@@ -215,7 +215,7 @@ TEST(ClipAndSnap, ReachesTheLastPixelOfTheLargestImage) {
       }
       int32_t id = -1;
       float depth = 0;
-      rasterize_reference(moved, 1, 1, {&id, 1}, {&depth, 1});
+      rasterize_reference(moved, box_at(0, 0, 1, 1), {&id, 1}, {&depth, 1});
       covered += id == 0;
     }
     EXPECT_EQ(covered, 1) << x << " " << y;

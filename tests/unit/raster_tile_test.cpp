@@ -27,8 +27,8 @@ struct Visible {
 
 Visible by_tiles(Rasterize rasterize, const std::vector<int32_t>& triangles, int width, int height) {
   Visible result(width, height);
-  const TileGrid grid(width, height);
-  const Bins bins(triangles, 0, shapes::count(triangles), width, height);
+  const TileGrid grid(box_at(0, 0, width, height));
+  const Bins bins(triangles, 0, shapes::count(triangles), grid);
   const lanes::FpGuard guard_floats;
   for (int i = 0; i < grid.count(); ++i) {
     const int left = i % grid.columns * tile_size, top = i / grid.columns * tile_size;
@@ -47,7 +47,7 @@ Visible by_tiles(Rasterize rasterize, const std::vector<int32_t>& triangles, int
 
 Visible plainly(const std::vector<int32_t>& triangles, int width, int height) {
   Visible result(width, height);
-  rasterize_reference(triangles, width, height, result.ids, result.depth);
+  rasterize_reference(triangles, box_at(0, 0, width, height), result.ids, result.depth);
   return result;
 }
 

@@ -104,6 +104,25 @@ TEST(ReferenceBackend, ShadesTheMaterialBallsAsTheOthersDoAtEveryPixel) {
     ASSERT_LE(std::abs(exact.rgba[i] - rounded.rgba[i]), 0x1p-10f * std::max(1.0f, exact.rgba[i])) << i / 4;
 }
 
+TEST(ReferenceBackend, DrawsSeveralSamplesAPixel) {
+  scene::Scene scene = equivalence::load(equivalence::scene_path("material_balls"));
+  scene.samples = 16;
+  const backends::Image image = equivalence::draw(equivalence::plan(scene, 12, 7), *interpreter::create());
+  render::Options options;
+  options.width = 12;
+  options.height = 7;
+  check::Library library(ISOSHADE_GRAPHS "/library");
+  options.compiler.library = &library;
+  options.compiler.reference = true;
+  support::Diagnostics diagnostics;
+  const auto exact_plan = render::plan_frame(scene, options, diagnostics);
+  ASSERT_TRUE(exact_plan) << diagnostics.text();
+  const backends::Image exact = equivalence::draw(*exact_plan, *create());
+  ASSERT_EQ(exact.rgba.size(), 12u * 7 * 4);
+  for (size_t i = 0; i < exact.rgba.size(); ++i)
+    ASSERT_LE(std::abs(exact.rgba[i] - image.rgba[i]), 0x1p-10f * std::max(1.0f, exact.rgba[i])) << i / 4;
+}
+
 TEST(ReferenceBackend, RefusesLargeImages) {
   render::Plan plan = small_plan(equivalence::scene_path("borders"), true);
   plan.frame.width = max_size + 1;

@@ -24,6 +24,7 @@ isoshade_test(render_test
     unit/render_parts_test.cpp
     unit/render_plan_test.cpp
     unit/render_posts_test.cpp
+    unit/render_samples_test.cpp
     unit/render_textures_test.cpp
     unit/render_visibility_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter PkgConfig::stb)

@@ -219,6 +219,22 @@ TEST(ParseScene, RefusesNumbersBeyondItsLimits) {
                   .fails_with("out-of-range"));
 }
 
+TEST(ParseScene, KnowsThreeNumbersOfSamples) {
+  EXPECT_EQ(parse_members("").scene->samples, 1);
+  for (const int samples : {1, 4, 16}) {
+    const ParsedScene parsed = parse_members("\"samples\": " + std::to_string(samples));
+    ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+    EXPECT_EQ(parsed.scene->samples, samples);
+  }
+  for (const char* samples : {"0", "2", "9", "64", "-4"}) {
+    const ParsedScene parsed = parse_members("\"samples\": " + std::string(samples));
+    EXPECT_TRUE(parsed.fails_with("out-of-range: a pixel has 1, 4 or 16 samples")) << samples;
+    EXPECT_EQ(parsed.diagnostics.error_count(), 1u);
+  }
+  EXPECT_TRUE(parse_members("\"samples\": 4.5").fails_with("wrong-type"));
+  EXPECT_TRUE(parse_members("\"samples\": \"4\"").fails_with("wrong-type"));
+}
+
 TEST(ParseScene, BoundsTheCopiesOfAScene) {
   const auto grid = [](const std::string& count) {
     const std::string axis = R"({"count": )" + count + R"(, "step": [1, 0, 0]})";

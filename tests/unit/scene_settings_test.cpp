@@ -41,6 +41,12 @@ TEST(Settings, EndAVariationAlongAGrid) {
   EXPECT_EQ(find(balls, "tint")->value.number, 0.75f);
 }
 
+TEST(Settings, ReplaceTheNumberOfSamples) {
+  const ParsedScene parsed = parse_members(members, {"samples=4"});
+  ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
+  EXPECT_EQ(parsed.scene->samples, 4);
+}
+
 TEST(Settings, ApplyOneAfterAnother) {
   const ParsedScene parsed = parse_members(members, {"gloss=0.1", "gloss=0.2", "balls.gloss=0.3"});
   ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/samples.h"
+
+#include <algorithm>
+#include <array>
+
+#include "compiler/functions/resolve.h"
+#include "compiler/lower/frame_layout.h"
+#include "runtime/raster/clip.h"
+#include "runtime/raster/triangle.h"
+
+namespace isoshade::render {
+namespace {
+
+using backends::Image;
+using backends::Window;
+
+/// Those triangles that may cover a sample of the window.
+void select_triangles(std::span<const int32_t> triangles, const Window& window,
+                      std::vector<int32_t>& selected) {
+  constexpr int stride = lower::triangle_word::stride;
+  const raster::Box area = raster::box_at(window.x, window.y, window.width, window.height);
+  const int count = static_cast<int>(triangles.size() / stride);
+  selected.clear();
+  for (int i = 0; i < count; ++i) {
+    const raster::Triangle triangle = raster::triangle_at(triangles.data(), i);
+    if (raster::bounds(triangle).within(area).empty() || !raster::Edges(triangle).reach(area)) continue;
+    selected.insert(selected.end(), triangle.words, triangle.words + stride);
+  }
+}
+
+/// A part in which nothing is drawn, resolved.
+void fill_with_background(const backends::Frame& frame, int side, const Window& part, Image& resolved) {
+  resolved.resize(side, side);
+  for (size_t i = 0; i < resolved.depth.size(); ++i)
+    std::ranges::copy(frame.background, resolved.rgba.begin() + static_cast<ptrdiff_t>(4 * i));
+  while (resolved.width > 1) halve(resolved);
+  const std::array color{resolved.rgba[0], resolved.rgba[1], resolved.rgba[2], resolved.rgba[3]};
+  resolved.resize(part.width, part.height);
+  for (size_t i = 0; i < resolved.depth.size(); ++i)
+    std::ranges::copy(color, resolved.rgba.begin() + static_cast<ptrdiff_t>(4 * i));
+  std::ranges::fill(resolved.depth, 0.0f);
+}
+
+/// Into the image, from (x, y) on.
+void copy_part(const Image& part, int x, int y, Image& image) {
+  const auto width = static_cast<ptrdiff_t>(part.width);
+  for (int row = 0; row < part.height; ++row) {
+    const ptrdiff_t from = row * width;
+    const ptrdiff_t to = static_cast<ptrdiff_t>(y + row) * image.width + x;
+    std::copy_n(part.rgba.begin() + 4 * from, 4 * width, image.rgba.begin() + 4 * to);
+    std::copy_n(part.depth.begin() + from, width, image.depth.begin() + to);
+  }
+}
+
+}  // namespace
+
+bool check_samples(const scene::Scene& scene, int width, int height, support::Diagnostics& diagnostics) {
+  const int largest = raster::max_image_size / samples_each_way(scene.samples);
+  if (std::max(width, height) <= largest) return true;
+  diagnostics
+      .report(support::Id::too_large, scene.samples_where,
+              "an image of " + std::to_string(scene.samples) + " samples a pixel has at most " +
+                  std::to_string(largest) + " pixels each way, and this one has " + std::to_string(width) +
+                  "x" + std::to_string(height))
+      .suggest("ask for fewer samples, or a smaller size");
+  return false;
+}
+
+void halve(Image& image) {
+  const lanes::FpGuard guard;
+  using Color = lanes::Float<4, 1>;
+  const auto wide = static_cast<size_t>(image.width);
+  const size_t width = wide / 2, height = static_cast<size_t>(image.height) / 2;
+  // In place: a pixel is written where all samples have been read.
+  for (size_t y = 0; y < height; ++y) {
+    for (size_t x = 0; x < width; ++x) {
+      const size_t upper = 2 * y * wide + 2 * x, lower = upper + wide;
+      const auto color = [&](size_t at) { return lanes::load_lanes<Color>(image.rgba.data() + 4 * at); };
+      const auto depth = [&](size_t at) { return image.depth[at]; };
+      const auto mean = [&](const auto& of) {
+        return functions::mean_of_four(of(upper), of(upper + 1), of(lower), of(lower + 1));
+      };
+      lanes::store_lanes(image.rgba.data() + 4 * (y * width + x), mean(color));
+      image.depth[y * width + x] = mean(depth);
+    }
+  }
+  image.resize(static_cast<int>(width), static_cast<int>(height));
+}
+
+bool draw(const backends::Frame& frame, int samples, std::span<const float> vertices,
+          std::span<const int32_t> triangles, backends::Backend& backend, Image& image, DrawStats& stats,
+          support::Diagnostics& diagnostics) {
+  const auto drawing = backend.begin(frame, vertices, diagnostics);
+  if (drawing == nullptr) return false;
+  const int side = samples_each_way(samples);
+  if (side == 1) return drawing->draw({0, 0, frame.width, frame.height}, triangles, image, diagnostics);
+
+  const int size = max_part_size / side;  // of a part, in pixels
+  image.resize(frame.width / side, frame.height / side);
+  std::vector<int32_t> selected;
+  Image resolved;
+  for (int y = 0; y < image.height; y += size) {
+    for (int x = 0; x < image.width; x += size) {
+      const Window part{x, y, std::min(size, image.width - x), std::min(size, image.height - y)};
+      const Window window{side * part.x, side * part.y, side * part.width, side * part.height};
+      ++stats.parts;
+      select_triangles(triangles, window, selected);
+      if (selected.empty()) {
+        ++stats.empty_parts;
+        fill_with_background(frame, side, part, resolved);
+      } else {
+        if (!drawing->draw(window, selected, resolved, diagnostics)) return false;
+        while (resolved.width > part.width) halve(resolved);
+      }
+      copy_part(resolved, x, y, image);
+    }
+  }
+  return true;
+}
+
+}  // namespace isoshade::render
