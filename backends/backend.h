@@ -36,6 +36,8 @@ struct Draw {
   uint32_t vertex_count = 0;
   std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
   Cull cull = Cull::back;
+  bool over =
+      false;  ///< drawn over what is nearer, too; else the nearest is seen, of equal ones the first drawn
 };
 
 /// What takes the most room in an array of a frame, for messages; empty if there is nothing.

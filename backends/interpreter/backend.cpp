@@ -11,6 +11,7 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/check.h"
 #include "runtime/raster/reference.h"
+#include "runtime/raster/triangle.h"
 
 namespace isoshade::interpreter {
 namespace {
@@ -100,7 +101,7 @@ class InterpreterDrawing final : public backends::Drawing {
         std::ranges::copy(frame_.background, color);
         continue;
       }
-      const int object = triangles[static_cast<size_t>(visible[i]) * word::stride + word::object] >> 1;
+      const int object = raster::triangle_at(triangles.data(), visible[i]).object();
       const auto program =
           static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
       support::check(program < frame_.programs.size(), "an object has a program that the frame lacks");

@@ -54,6 +54,7 @@ struct PipelineSource {
   uint32_t attachments = 1;
   std::string vertex_glsl;
   std::string fragment_glsl;
+  bool over = false;  ///< of Target::visibility: without the depth test
 };
 
 using PipelineIndex = uint32_t;

@@ -38,6 +38,23 @@ std::vector<Box> bounds_of_programs(const Frame& frame, const Window& window,
   return bounds;
 }
 
+/// Triangles that follow each other under the same depth test.
+struct Run {
+  uint32_t first, count;
+  bool over;
+};
+
+std::vector<Run> runs_of(std::span<const int32_t> triangles) {
+  std::vector<Run> runs;
+  const auto count = static_cast<uint32_t>(triangles.size() / lower::triangle_word::stride);
+  for (uint32_t i = 0; i < count; ++i) {
+    const bool over = raster::triangle_at(triangles.data(), static_cast<int>(i)).over();
+    if (runs.empty() || runs.back().over != over) runs.push_back({i, 0, over});
+    ++runs.back().count;
+  }
+  return runs;
+}
+
 Rect rect(const Box& box) { return {box.x0, box.y0, box.x1 - box.x0 + 1, box.y1 - box.y0 + 1}; }
 
 }  // namespace
@@ -54,11 +71,13 @@ class VulkanDrawing final : public backends::Drawing {
       if (!triangles.empty() && !upload(triangles, diagnostics)) return false;
       const Rect area{window.x, window.y, window.width, window.height};
       std::vector<Call> visibility, color;
-      if (!triangles.empty()) {
-        const auto corners = static_cast<uint32_t>(3 * (triangles.size() / lower::triangle_word::stride));
-        visibility.push_back({.pipeline = *visibility_,
+      for (const Run& run : runs_of(triangles)) {
+        const auto pipeline = visibility_pipeline(run.over, diagnostics);
+        if (!pipeline) return false;
+        visibility.push_back({.pipeline = *pipeline,
                               .push = {.light_count = frame_.light_count},
-                              .vertex_count = corners,
+                              .first_vertex = 3 * run.first,
+                              .vertex_count = 3 * run.count,
                               .scissor = area});
       }
       const std::vector<Box> bounds = bounds_of_programs(frame_, window, triangles);
@@ -79,16 +98,20 @@ class VulkanDrawing final : public backends::Drawing {
  private:
   /// The triangles; before the first ones all else that is read.
   bool upload(std::span<const int32_t> triangles, Diagnostics& diagnostics) {
-    if (!visibility_) {
-      if (!backend_.upload_frame(frame_, vertices_, diagnostics) ||
-          !backend_.upload_textures(frame_, diagnostics))
-        return false;
-      visibility_ =
-          backend_.device_->pipeline({Target::visibility, 1, triangle_vertex(),
-                                      backend_.options_.glsl(driver::depth_program(), backend_.division_)},
-                                     diagnostics);
+    uploaded_ = uploaded_ || (backend_.upload_frame(frame_, vertices_, diagnostics) &&
+                              backend_.upload_textures(frame_, diagnostics));
+    return uploaded_ && backend_.upload_triangles(frame_, triangles, diagnostics);
+  }
+
+  std::optional<PipelineIndex> visibility_pipeline(bool over, Diagnostics& diagnostics) {
+    std::optional<PipelineIndex>& pipeline = visibility_[over ? 1 : 0];
+    if (!pipeline) {
+      pipeline = backend_.device_->pipeline(
+          {Target::visibility, 1, triangle_vertex(),
+           backend_.options_.glsl(driver::depth_program(), backend_.division_), over},
+          diagnostics);
     }
-    return visibility_ && backend_.upload_triangles(frame_, triangles, diagnostics);
+    return pipeline;
   }
 
   std::optional<PipelineIndex> pixel_pipeline(const driver::Program& program, Diagnostics& diagnostics) {
@@ -100,7 +123,8 @@ class VulkanDrawing final : public backends::Drawing {
   VulkanBackend& backend_;
   const Frame& frame_;
   std::span<const float> vertices_;
-  std::optional<PipelineIndex> visibility_;
+  bool uploaded_ = false;
+  std::optional<PipelineIndex> visibility_[2];         ///< with the depth test, and without
   std::vector<std::optional<PipelineIndex>> shading_;  ///< of each program of the frame, once one is needed
 };
 

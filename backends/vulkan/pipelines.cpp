@@ -65,7 +65,7 @@ vk::raii::ShaderModule make_module(const vk::raii::Device& device, std::span<con
 /// Texts hold no NUL, so parts cannot run into each other.
 std::string key(const PipelineSource& source) {
   std::string text{static_cast<char>('0' + static_cast<int>(source.target)),
-                   static_cast<char>('0' + source.attachments)};
+                   static_cast<char>('0' + source.attachments), source.over ? '1' : '0'};
   return text + source.vertex_glsl + '\0' + source.fragment_glsl;
 }
 
@@ -115,7 +115,9 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
   const vk::PipelineMultisampleStateCreateInfo samples{.rasterizationSamples = vk::SampleCountFlagBits::e1};
   const vk::Bool32 depth = source.target == Target::visibility;
   const vk::PipelineDepthStencilStateCreateInfo depth_test{
-      .depthTestEnable = depth, .depthWriteEnable = depth, .depthCompareOp = vk::CompareOp::eGreater};
+      .depthTestEnable = depth,
+      .depthWriteEnable = depth,
+      .depthCompareOp = source.over ? vk::CompareOp::eAlways : vk::CompareOp::eGreater};
   using Component = vk::ColorComponentFlagBits;
   const std::vector<vk::PipelineColorBlendAttachmentState> written(
       rasterises ? source.attachments : 0,

@@ -20,10 +20,6 @@ void check_supported(Work& work) {
                 std::string(is_function ? "an input" : "a parameter") + " of type " +
                     std::string(graph::type_name(input.type)) + " cannot be compiled yet");
   }
-  for (const graph::Pass& pass : graph.passes) {
-    if (pass.depth == graph::DepthTest::nearer) continue;
-    work.report(Id::unsupported, pass.place, "a pass with the depth test \"always\" cannot be drawn yet");
-  }
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ std::optional<Effect> compile_effect(const support::Source& source, const Option
   Effect effect{typed->graph.name, typed->document, parameters_of(*typed), images_of(*typed), {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    effect.passes.push_back({pass.name, pass.cull, pass.position.has_value(), pass.enabled,
+    effect.passes.push_back({pass.name, pass.cull, pass.depth, pass.position.has_value(), pass.enabled,
                              vertex_program(*typed, i, effect, options),
                              pixel_program(*typed, i, effect, options)});
   }

@@ -43,6 +43,7 @@ struct Image {
 struct Pass {
   std::string name;
   graph::Cull cull = graph::Cull::back;
+  graph::DepthTest depth = graph::DepthTest::nearer;
   bool moves_vertices = false;
   std::optional<size_t> enabled;  ///< in Effect::parameters: it is drawn where that is not 0
   Program vertex;

@@ -87,7 +87,9 @@ std::string pixel_main() {
          "  if (triangle < 0) discard;\n"
          "  int object = triangles[triangle * " +
          stride + " + " + std::to_string(triangle_word::object) +
-         "] >> 1;\n"
+         "] >> " +
+         std::to_string(triangle_flag::bits) +
+         ";\n"
          "  if (int(objects[object + " +
          std::to_string(object_word::program) +
          "]) != push.program) discard;\n"

@@ -59,13 +59,18 @@ inline constexpr int stride = 19;
 /// triangles: one record of 64 bytes. Wound so that the doubled area, y down, is positive.
 namespace triangle_word {
 inline constexpr int vertex = 0;  ///< three indices into vertices
-inline constexpr int object =
-    3;  ///< 2 * (first word of the object's record) + wide; wide: an edge spans 2^15 or more
+/// The first word of the object's record, and below it the bits of triangle_flag.
+inline constexpr int object = 3;
 inline constexpr int position = 4;    ///< x0 y0 x1 y1 x2 y2 in 1/256 pixel, y down, |.| <= 2^21
 inline constexpr int depth = 10;      ///< z0 z1 z2 as float bits, reversed: near 1, far 0
 inline constexpr int inverse_w = 13;  ///< 1/w of each vertex as float bits; 1 under orthographic projection
 inline constexpr int stride = 16;
 }  // namespace triangle_word
+namespace triangle_flag {
+inline constexpr int wide = 1;  ///< an edge spans 2^15 or more
+inline constexpr int over = 2;  ///< it is drawn over what is nearer, too
+inline constexpr int bits = 2;
+}  // namespace triangle_flag
 
 /// objects: one record an object; effect parameters follow in the order of the effect's reflection, each of
 /// as many words as it has components (matrices column by column), but file names, which have none; then one word

@@ -15,7 +15,7 @@ void add_edges(ir::Module& module) {
            {{"edges", ir::vector_type(3)}});
   const Int record = k.named("record", k.integer(2) * Int(triangle_word::stride));
   const auto word = [&](int at) { return k.load_int(FrameBuffer::triangles, record + Int(at)); };
-  const Bool wide = k.named("wide", (word(triangle_word::object) & Int(1)) != Int(0));
+  const Bool wide = k.named("wide", (word(triangle_word::object) & Int(triangle_flag::wide)) != Int(0));
   std::vector<Int> p;
   for (int i = 0; i < 6; ++i)
     p.push_back(

@@ -244,6 +244,7 @@ class Assembler {
     const bool wide = right - left >= 1 << 15 || bottom - top >= 1 << 15;
 
     namespace word = lower::triangle_word;
+    namespace flag = lower::triangle_flag;
     std::array<int32_t, word::stride> record;
     for (int i = 0; i < 3; ++i) {
       record[word::vertex + i] = static_cast<int32_t>(indices[i]);
@@ -252,7 +253,8 @@ class Assembler {
       record[word::depth + i] = corners[i].depth;
       record[word::inverse_w + i] = corners[i].inverse_w;
     }
-    record[word::object] = 2 * surface_.object + (wide ? 1 : 0);
+    record[word::object] =
+        (surface_.object << flag::bits) | (surface_.over ? flag::over : 0) | (wide ? flag::wide : 0);
     triangles_.insert(triangles_.end(), record.begin(), record.end());
   }
 

@@ -24,7 +24,8 @@ struct Surface {
   std::span<const uint32_t> indices;  ///< triples of vertices, each below clip.size() / 4
   uint32_t first_vertex = 0;          ///< where the records of its vertices begin in `vertices`
   Cull cull = Cull::back;
-  int object = 0;  ///< the first word of its record in the array of objects
+  int object = 0;     ///< the first word of its record in the array of objects
+  bool over = false;  ///< it is drawn over what is nearer, too
 };
 
 /// Appends the surface's triangles to `triangles` (records of lower/frame_layout.h), in the order of its

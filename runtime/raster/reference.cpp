@@ -34,7 +34,8 @@ void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids
     corner[i] = {record[word::position + 2 * i], record[word::position + 2 * i + 1]};
     z[i] = lanes::from_bits(record[word::depth + i]);
   }
-  const bool wide = record[word::object] & 1;
+  const bool wide = record[word::object] & lower::triangle_flag::wide;
+  const bool over = record[word::object] & lower::triangle_flag::over;
 
   const auto [left, right] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
   const auto [top, bottom] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
@@ -51,7 +52,7 @@ void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids
                                                           corner[2].x, corner[2].y, wide, centre.x, centre.y);
       const float nearness = functions::interpolate_depth<float>(edges, z[0], z[1], z[2]);
       const size_t pixel = static_cast<size_t>(y - area.y0) * width + static_cast<size_t>(x - area.x0);
-      if (!(nearness > depth[pixel])) continue;
+      if (!over && !(nearness > depth[pixel])) continue;
       depth[pixel] = nearness;
       ids[pixel] = id;
     }

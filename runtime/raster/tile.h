@@ -30,7 +30,7 @@ constexpr int tile_index(int x, int y) {
 
 /// Draws those of the triangles (records of lower/frame_layout.h) that `which` names, in this order, into the
 /// tile whose first pixel is (x, y). A pixel keeps the triangle with the greatest depth above 0, of equal
-/// ones the first drawn. Needs an FpGuard on the thread.
+/// ones the first drawn; but a triangle that is drawn over others (triangle_flag::over) takes every pixel it covers. Needs an FpGuard on the thread.
 void rasterize_tile(const int32_t* triangles, std::span<const int32_t> which, int x, int y, Tile& tile);
 
 /// How many lanes `rasterize_tile` uses on this machine: 4, 8 or 16.

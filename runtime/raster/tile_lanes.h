@@ -38,6 +38,7 @@ class TileRasterizer {
     triangle_ = triangle;
     id_ = Int(id);
     wide_ = triangle.wide();
+    over_ = triangle.over();
     for (int k = 0; k < 3; ++k) {
       edges_[k] = edge_between(triangle, k, k == 2 ? 0 : k + 1);
       lane_steps_[k] = Int(edges_[k].step_x) * column_ + Int(edges_[k].step_y) * row_;
@@ -91,11 +92,11 @@ class TileRasterizer {
         functions::interpolate_depth<Float>(weights, Float(t.depth(0)), Float(t.depth(1)), Float(t.depth(2)));
 
     const Float former = lanes::load_lanes<Float>(tile_.depth + storage);
-    const Bool nearer = covered & (depth > former);
-    if (!any(nearer)) return;
-    lanes::store_lanes(tile_.depth + storage, select(nearer, depth, former));
+    const Bool seen = covered & (over_ | (depth > former));
+    if (!any(seen)) return;
+    lanes::store_lanes(tile_.depth + storage, select(seen, depth, former));
     const Int former_id = lanes::load_lanes<Int>(tile_.triangles + storage);
-    lanes::store_lanes(tile_.triangles + storage, select(nearer, id_, former_id));
+    lanes::store_lanes(tile_.triangles + storage, select(seen, id_, former_id));
   }
 
   int x_, y_;
@@ -105,6 +106,7 @@ class TileRasterizer {
   Triangle triangle_;
   Int id_;
   Bool wide_;
+  Bool over_;
   Edge edges_[3];
   Int lane_steps_[3];
 };

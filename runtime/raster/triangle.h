@@ -18,9 +18,16 @@ struct Triangle {
   ISOSHADE_INLINE float depth(int vertex) const {
     return lanes::from_bits_normal(words[lower::triangle_word::depth + vertex]);
   }
-  ISOSHADE_INLINE bool wide() const { return words[lower::triangle_word::object] & 1; }
+  ISOSHADE_INLINE bool wide() const {
+    return words[lower::triangle_word::object] & lower::triangle_flag::wide;
+  }
+  ISOSHADE_INLINE bool over() const {
+    return words[lower::triangle_word::object] & lower::triangle_flag::over;
+  }
   /// The first word of its object's record.
-  ISOSHADE_INLINE int object() const { return words[lower::triangle_word::object] >> 1; }
+  ISOSHADE_INLINE int object() const {
+    return words[lower::triangle_word::object] >> lower::triangle_flag::bits;
+  }
 };
 
 ISOSHADE_INLINE Triangle triangle_at(const int32_t* triangles, int index) {

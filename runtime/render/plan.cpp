@@ -87,8 +87,9 @@ class Planner {
     bool outside;  ///< of the view: passes that leave vertices in their place draw nothing
   };
   void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
-  void place_draw(const Place& place, const PassPrograms& programs, backends::Cull cull, const MeshPart& part,
-                  const std::vector<float>& parameters);
+  /// The draw is the frame's until the next one is placed.
+  backends::Draw& place_draw(const Place& place, const PassPrograms& programs, const MeshPart& part,
+                             const std::vector<float>& parameters);
 
   const Scene& scene_;
   const Options& options_;
@@ -277,16 +278,18 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
       } else if (unseen) {
         left_out = true;
       } else {
-        place_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p], cull_of(pass.cull, mirrored),
-                   mesh.parts[part], parameters[part]);
+        backends::Draw& draw = place_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p],
+                                          mesh.parts[part], parameters[part]);
+        draw.cull = cull_of(pass.cull, mirrored);
+        draw.over = pass.depth == graph::DepthTest::always;
       }
     }
     if (left_out) ++skipped[p].unseen;
   }
 }
 
-void Planner::place_draw(const Place& place, const PassPrograms& programs, backends::Cull cull,
-                         const MeshPart& part, const std::vector<float>& parameters) {
+backends::Draw& Planner::place_draw(const Place& place, const PassPrograms& programs, const MeshPart& part,
+                                    const std::vector<float>& parameters) {
   const size_t first = plan_.frame.objects.size();
   append_object(place, programs.pixel, parameters, plan_.frame.objects);
   backends::Draw draw;
@@ -296,10 +299,9 @@ void Planner::place_draw(const Place& place, const PassPrograms& programs, backe
   draw.first_vertex = part.first_vertex;
   draw.vertex_count = part.vertex_count;
   draw.indices = part.indices;
-  draw.cull = cull;
-  plan_.frame.draws.push_back(draw);
   plan_.stats.vertices += draw.vertex_count;
   plan_.stats.triangles += static_cast<int64_t>(part.indices.size() / 3);
+  return plan_.frame.draws.emplace_back(draw);
 }
 
 void Planner::place_object(size_t o) {

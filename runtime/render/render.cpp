@@ -44,7 +44,7 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
   for (size_t d = 0; d < frame.draws.size(); ++d) {
     const backends::Draw& draw = frame.draws[d];
     support::check(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
-    raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, to_raster(draw.cull), draw.object},
+    raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, to_raster(draw.cull), draw.object, draw.over},
                           frame.width, frame.height, vertices, triangles);
     clip[d] = {};  // not needed any more
   }

@@ -147,7 +147,7 @@ class WideTriangles {
       record[word::depth + i] = between(0x3f000000, 0x3f7fffff);
       record[word::inverse_w + i] = 0x3f800000;
     }
-    record[word::object] = 2 * object_ + 1;
+    record[word::object] = (object_ << lower::triangle_flag::bits) | lower::triangle_flag::wide;
     triangles.insert(triangles.end(), record.begin(), record.end());
   }
 

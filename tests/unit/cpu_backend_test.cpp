@@ -9,6 +9,7 @@
 #include "backends/cpu/workers.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/raster/reference.h"
+#include "runtime/raster/triangle.h"
 #include "tests/unit/backend_frame.h"
 #include "tests/unit/cpu_folders.h"
 #include "tests/unit/cpu_programs.h"
@@ -114,9 +115,7 @@ TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
         continue;
       }
       ++visible;
-      const int object = triangles[static_cast<size_t>(ids[i]) * lower::triangle_word::stride +
-                                   lower::triangle_word::object] >>
-                         1;
+      const int object = raster::triangle_at(triangles.data(), ids[i]).object();
       ASSERT_EQ(color[0], static_cast<float>(i % static_cast<size_t>(width)));
       if (i == 0)
         ASSERT_EQ(std::bit_cast<uint32_t>(color[1]), 0x7fc00000u);

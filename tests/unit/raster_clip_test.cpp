@@ -79,7 +79,7 @@ TEST(ClipAndSnap, PutsVerticesOnTheGrid) {
   EXPECT_EQ(result.number(0, word::depth + 2), 0.25f);
   EXPECT_EQ(result.number(0, word::inverse_w), 1.0f);
   EXPECT_EQ(result.number(0, word::inverse_w + 1), 0.5f);
-  EXPECT_EQ(result.at(0, word::object), 80);
+  EXPECT_EQ(result.at(0, word::object), 40 << lower::triangle_flag::bits);
 }
 
 TEST(ClipAndSnap, RoundsToTheEvenUnit) {
@@ -191,7 +191,7 @@ TEST(ClipAndSnap, MarksTrianglesThatNeedLongProducts) {
     const float x = width / 512 - 1;  // of 1024 pixels
     const Clipped result =
         run({-1, 1, 0.5f, 1, x, 1, 0.5f, 1, x, 0.9f, 0.5f, 1}, one_triangle, Cull::none, 1024, 1024);
-    return result.at(0, word::object) & 1;
+    return result.at(0, word::object) & lower::triangle_flag::wide;
   };
   EXPECT_EQ(wide(127), 0);
   EXPECT_EQ(wide(128), 1);

@@ -118,7 +118,7 @@ inline bool append(std::vector<int32_t>& triangles, std::array<Position, 3> t, s
     record[static_cast<size_t>(word::depth + i)] = std::bit_cast<int32_t>(depth[static_cast<size_t>(i)]);
     record[static_cast<size_t>(word::inverse_w + i)] = std::bit_cast<int32_t>(1.0f);
   }
-  record[word::object] = wide ? 1 : 0;
+  record[word::object] = wide ? lower::triangle_flag::wide : 0;
   triangles.insert(triangles.end(), record.begin(), record.end());
   return true;
 }

@@ -13,6 +13,7 @@
 namespace isoshade::raster {
 namespace {
 
+namespace word = lower::triangle_word;
 using shapes::Position;
 using shapes::Shapes;
 
@@ -87,6 +88,9 @@ TEST_P(TileAtLanes, SeesWhatTheReferenceSees) {
         if (shapes.between(0, 15) == 0) depth = {0.0f, 1.0f, shapes.fraction()};
         shapes::append(triangles, t, depth);
         if (shapes.between(0, 7) == 0) shapes::append(triangles, t, depth);
+        // Some are drawn over what is nearer.
+        if (shapes.between(0, 9) == 0 && !triangles.empty())
+          triangles[triangles.size() - word::stride + word::object] |= lower::triangle_flag::over;
       }
       const Visible expected = plainly(triangles, width, height);
       const Visible actual = by_tiles(GetParam().rasterize, triangles, width, height);
@@ -128,6 +132,15 @@ TEST_P(TileAtLanes, TakesTheEarlierOfEqualDepths) {
   for (const int32_t id : seen.ids) EXPECT_EQ(id, 0);
 }
 
+TEST_P(TileAtLanes, DrawsOverWhatIsNearerWhereItIsTold) {
+  std::vector<int32_t> triangles;
+  for (const float depth : {0.5f, 0.25f, 0.375f}) shapes::append(triangles, everywhere, {depth, depth, depth});
+  triangles[word::stride + word::object] |= lower::triangle_flag::over;
+  const Visible seen = by_tiles(GetParam().rasterize, triangles, 8, 8);
+  for (const int32_t id : seen.ids) EXPECT_EQ(id, 2);  // nearer than the second, which lies over the first
+  for (const float depth : seen.depth) EXPECT_EQ(depth, 0.375f);
+}
+
 TEST_P(TileAtLanes, DrawsNothingInfinitelyFar) {
   std::vector<int32_t> triangles;
   shapes::append(triangles, everywhere, {0, 0, 0});
@@ -146,8 +159,8 @@ TEST_P(TileAtLanes, InterpolatesNarrowTrianglesLikeWideOnes) {
     }
   wide = narrow;
   for (size_t i = lower::triangle_word::object; i < wide.size(); i += lower::triangle_word::stride) {
-    ASSERT_EQ(narrow[i] & 1, 0);
-    wide[i] |= 1;
+    ASSERT_EQ(narrow[i] & lower::triangle_flag::wide, 0);
+    wide[i] |= lower::triangle_flag::wide;
   }
   const Visible a = by_tiles(GetParam().rasterize, narrow, 128, 128);
   const Visible b = by_tiles(GetParam().rasterize, wide, 128, 128);
