@@ -120,6 +120,7 @@ std::string_view words(Breach breach) {
     case Breach::arc: return "arc sine or cosine of a number beyond 1";
     case Breach::overflow: return "overflow to infinity";
     case Breach::conversion: return "conversion to an integer that does not exist";
+    case Breach::domain: return "argument for which the fast function promises nothing";
     case Breach::unknown: return "an operation that is not understood";
   }
   return "nothing";

@@ -53,6 +53,7 @@ enum class Breach : uint8_t {
   arc,        ///< asin or acos of more than 1
   overflow,
   conversion,  ///< to an integer that does not exist
+  domain,      ///< of a function of the fast tier
   unknown,     ///< the operation is not understood
 };
 std::string_view words(Breach breach);  ///< "division by zero"

@@ -23,7 +23,8 @@ struct Subject {
 
 /// Nothing, and a report, where a document is too large.
 std::optional<std::vector<Subject>> subjects_of(const check::TypedGraph& graph,
-                                                support::Diagnostics& diagnostics);
+                                                support::Diagnostics& diagnostics,
+                                                functions::Tier tier = functions::Tier::standard);
 
 /// Reports what is not proved, at the node where it happens.
 void report(const check::TypedGraph& graph, const Subject& subject, const Proof& proof,

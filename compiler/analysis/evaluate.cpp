@@ -219,7 +219,7 @@ Outcome Evaluator::outcome_of(const Operation& operation, uint32_t index) {
     case Kind::row: {
       std::vector<Bound> arguments;
       for (const uint32_t operand : in) arguments.push_back(bounds_[operand]);
-      return tape_.rows[operation.index].rule->bound(arguments, operation.component);
+      return bound_of(*tape_.rows[operation.index].rule, arguments, operation.component, tape_.tier);
     }
     case Kind::input:
     case Kind::narrow:

@@ -15,12 +15,12 @@ using ir::Scalar;
 constexpr double any_number = 1e6;
 
 /// Gives bodies to the declarations of functions.def, and only to those.
-void give_bodies(ir::Module& module) {
+void give_bodies(ir::Module& module, functions::Tier tier) {
   for (uint32_t i = 0; i < module.functions.size(); ++i) {
     if (!module.functions[i].is_declaration() || module.functions[i].library.empty()) continue;
     const functions::Variant& variant = functions::variant_of(module.functions[i]);
     ir::Builder builder(module, i);
-    variant.body(functions::Tier::standard)(builder);
+    variant.body(tier)(builder);
   }
 }
 
@@ -350,7 +350,7 @@ uint32_t Pool::find(const Operation& operation, std::span<const uint32_t> operan
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
              const std::function<std::vector<Given>(std::string_view)>& outside) {
   Tape& tape = pool.tape();
-  give_bodies(tape.module);
+  give_bodies(tape.module, tape.tier);
   Flattener flattener(pool, outside);
   const ir::Function& entry = tape.module.functions[function];
   support::check(given.size() == entry.parameters.size(), "not every parameter is given");
@@ -368,8 +368,10 @@ bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
 }
 
 std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                              const std::function<std::vector<Given>(std::string_view)>& outside) {
+                              const std::function<std::vector<Given>(std::string_view)>& outside,
+                              functions::Tier tier) {
   Tape tape;
+  tape.tier = tier;
   tape.module = module;
   Pool pool(tape);
   if (!flatten(pool, function, given, outside)) return std::nullopt;

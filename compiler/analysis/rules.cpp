@@ -2,9 +2,12 @@
 #include "compiler/analysis/rules.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_map>
+#include <vector>
 
 namespace isoshade::analysis {
 namespace {
@@ -33,7 +36,7 @@ struct Monotone {
   double (*slope)(double a, double b);
 };
 
-Outcome monotone(const Monotone& f, std::string_view row, const Bound& x) {
+Outcome monotone(const Monotone& f, const Bound& x, double error) {
   const bool inside = x.lo >= f.least && x.hi <= f.most;
   const double from = std::clamp(x.lo, f.least, f.most), to = std::clamp(x.hi, f.least, f.most);
   // Both arguments, the computed and the exact one, lie here.
@@ -47,7 +50,7 @@ Outcome monotone(const Monotone& f, std::string_view row, const Bound& x) {
     carried = std::min(carried, (most - least) * (1 + 1e-12) + 1e-14 * std::max(-least, most));
   const bool exact_is_inside = f.least <= 0 || x.exact_lo() >= f.least;
   if (x.absolute > 0 && !exact_is_inside) carried = infinity;
-  Outcome outcome = approximate(a, b, std::max(ulp_of(row), 1.0) * ulp * (1 + ulp), carried);
+  Outcome outcome = approximate(a, b, error, carried);
   if (exact_is_inside) {
     place_exact(outcome.bound, least, most);
     outcome.bound = settled(outcome.bound).bound;
@@ -64,7 +67,7 @@ Outcome bounded(double least, double most, Arguments in, double error) {
 }
 
 /// Of sine (phase 0) or cosine (phase pi / 2).
-Outcome wave(const Bound& x, double phase) {
+Outcome wave(const Bound& x, double phase, double error) {
   if (x.magnitude() > 8192) return bounded(-1.01, 1.01, Arguments(&x, 1), 2.02);
   const double from = x.lo + phase, to = x.hi + phase;
   const auto meets = [&](double extreme) {
@@ -74,24 +77,23 @@ Outcome wave(const Bound& x, double phase) {
   };
   const double lo = meets(-pi / 2) ? -1 : std::min(std::sin(from), std::sin(to));
   const double hi = meets(pi / 2) ? 1 : std::max(std::sin(from), std::sin(to));
-  return approximate(lo, hi, 1.75 * ulp * (1 + ulp), x.absolute);
+  return approximate(lo, hi, error, x.absolute);
 }
 
-Outcome rule_sin(Arguments in, uint32_t) { return wave(in[0], 0); }
-Outcome rule_cos(Arguments in, uint32_t) { return wave(in[0], pi / 2); }
+Outcome rule_sin(Arguments in, uint32_t, double error) { return wave(in[0], 0, error); }
+Outcome rule_cos(Arguments in, uint32_t, double error) { return wave(in[0], pi / 2, error); }
 
-Outcome rule_tan(Arguments in, uint32_t) {
+Outcome rule_tan(Arguments in, uint32_t, double error) {
   const Bound& x = in[0];
   const double pole = pi * (std::ceil((x.lo - 1e-9) / pi - 0.5) + 0.5);
   // No float of magnitude up to 8192 is nearer to a pole than 1e-9.
   if (x.magnitude() > 8192) return {anything(), Breach::unknown};
-  if (pole <= x.hi + 1e-9) return bounded(-1e9, 1e9, in, 3.5 * ulp * 1e9);
+  if (pole <= x.hi + 1e-9) return bounded(-1e9, 1e9, in, error * 1e9);
   const double steepest = 1 + std::pow(std::max(std::abs(std::tan(x.lo)), std::abs(std::tan(x.hi))), 2);
-  return approximate(std::tan(x.lo), std::tan(x.hi), 3.5 * ulp * (1 + ulp),
-                     slope_times(steepest, x.absolute));
+  return approximate(std::tan(x.lo), std::tan(x.hi), error, slope_times(steepest, x.absolute));
 }
 
-Outcome rule_fract(Arguments in, uint32_t) {
+Outcome rule_fract(Arguments in, uint32_t, double) {
   const Bound& x = in[0];
   const double below = std::floor(x.lo - x.absolute);
   const bool one_piece = below == std::floor(x.hi + x.absolute);
@@ -107,7 +109,7 @@ Outcome rule_fract(Arguments in, uint32_t) {
   return settled(r);
 }
 
-Outcome rule_mod(Arguments in, uint32_t) {
+Outcome rule_mod(Arguments in, uint32_t, double) {
   const Bound &x = in[0], &y = in[1];
   if (y.lo <= 0 && y.hi >= 0) return {anything(), Breach::division_by_zero};
   const double size = x.magnitude() + y.magnitude();
@@ -122,7 +124,7 @@ Outcome rule_mod(Arguments in, uint32_t) {
   return settled(r);
 }
 
-Outcome rule_pow(Arguments in, uint32_t) {
+Outcome rule_pow(Arguments in, uint32_t, double error) {
   Bound x = in[0];
   const Bound& y = in[1];
   Breach breach = Breach::none;
@@ -134,8 +136,6 @@ Outcome rule_pow(Arguments in, uint32_t) {
   // It is monotone in either argument.
   const auto [lo, hi] =
       std::minmax({std::pow(x.lo, y.lo), std::pow(x.lo, y.hi), std::pow(x.hi, y.lo), std::pow(x.hi, y.hi)});
-  const bool promised = x.lo >= 1e-6 && x.hi <= 1e6 && y.magnitude() <= 64;
-  const double error = promised ? 2 * ulp * (1 + ulp) : careless;
   const double x_least = x.lo - x.absolute, x_most = x.hi + x.absolute;
   double carried = 0;
   if (x.absolute > 0 || y.absolute > 0) {
@@ -159,7 +159,7 @@ Outcome rule_pow(Arguments in, uint32_t) {
   return outcome;
 }
 
-Outcome rule_atan2(Arguments in, uint32_t) {
+Outcome rule_atan2(Arguments in, uint32_t, double error) {
   const Bound &y = in[0], &x = in[1];
   const double lo = y.lo >= 0 ? 0 : x.lo > 0 ? -pi / 2 : -pi;
   const double hi = y.hi < 0 ? 0 : x.lo > 0 ? pi / 2 : pi;
@@ -169,7 +169,7 @@ Outcome rule_atan2(Arguments in, uint32_t) {
   const double near = std::hypot(far_x, far_y);
   const double moved = x.absolute + y.absolute;
   const double carried = moved == 0 ? 0 : jumps ? 2 * pi : std::min(2 * pi, moved / near);
-  return approximate(lo, hi, 2 * ulp * (1 + ulp), carried);
+  return approximate(lo, hi, error, carried);
 }
 
 double norm(Arguments v, double (Bound::*part)() const) {
@@ -183,7 +183,7 @@ double error_norm(Arguments v) {
   return std::sqrt(sum);
 }
 
-Outcome rule_normalize(Arguments in, uint32_t component) {
+Outcome rule_normalize(Arguments in, uint32_t component, double error) {
   const Bound& c = in[component];
   double others_least = 0, others_most = 0;
   for (uint32_t i = 0; i < in.size(); ++i) {
@@ -200,15 +200,14 @@ Outcome rule_normalize(Arguments in, uint32_t component) {
   const double moved = error_norm(in);
   const double least = norm(in, &Bound::least_magnitude) - moved;
   const double carried = moved == 0 ? 0 : least > 0 ? std::min(2.0, 2 * moved / least) : 2;
-  return approximate(lo, hi, 3 * ulp * (1 + ulp), carried);
+  return approximate(lo, hi, error, carried);
 }
 
-Outcome rule_length(Arguments in, uint32_t) {
-  return approximate(norm(in, &Bound::least_magnitude), norm(in, &Bound::magnitude), 2 * ulp * (1 + ulp),
-                     error_norm(in));
+Outcome rule_length(Arguments in, uint32_t, double error) {
+  return approximate(norm(in, &Bound::least_magnitude), norm(in, &Bound::magnitude), error, error_norm(in));
 }
 
-Outcome rule_rotate2d(Arguments in, uint32_t) {
+Outcome rule_rotate2d(Arguments in, uint32_t, double) {
   const double size = in[0].magnitude() + in[1].magnitude();
   const double reach = norm(in.first(2), &Bound::magnitude) + 2.5 * ulp * size;
   const double turned = std::min(2 * size, size * 0.01745330 * in[2].absolute);
@@ -217,14 +216,14 @@ Outcome rule_rotate2d(Arguments in, uint32_t) {
   return settled(r);
 }
 
-Outcome rule_rgb_to_hsv(Arguments in, uint32_t component) {
+Outcome rule_rgb_to_hsv(Arguments in, uint32_t component, double) {
   if (component == 2) return {greater(greater(in[0], in[1]), in[2])};
   const bool positive = in[0].lo >= 0 && in[1].lo >= 0 && in[2].lo >= 0;
   if (!positive && component == 1) return {anything(), Breach::unknown};
   return bounded(0, 1 + 3 * ulp, in, 3 * ulp);
 }
 
-Outcome fractal(Arguments in, uint32_t) {
+Outcome fractal(Arguments in) {
   const double growth = std::max(1.0, in[5].magnitude());
   double most = 0;
   for (int octave = 0; octave < 16; ++octave) most += 2 * std::pow(growth, octave);
@@ -233,20 +232,20 @@ Outcome fractal(Arguments in, uint32_t) {
   outcome.bound.absolute = 2 * most;
   return outcome;
 }
-Outcome rule_fractal3d(Arguments in, uint32_t component) { return fractal(in, component); }
-Outcome rule_fractal3d_vector3(Arguments in, uint32_t component) { return fractal(in, component); }
+Outcome rule_fractal3d(Arguments in, uint32_t, double) { return fractal(in); }
+Outcome rule_fractal3d_vector3(Arguments in, uint32_t, double) { return fractal(in); }
 
 Outcome worley(Arguments in) {
   if (in[2].lo < 0 || in[2].hi > 1) return {anything(), Breach::unknown};
   return bounded(0, 3, in, 2 * ulp);  // of nine cells none is farther than 2 sqrt(2)
 }
-Outcome rule_worleynoise2d(Arguments in, uint32_t) { return worley(in); }
-Outcome rule_worleynoise2d_vector3(Arguments in, uint32_t) { return worley(in); }
+Outcome rule_worleynoise2d(Arguments in, uint32_t, double) { return worley(in); }
+Outcome rule_worleynoise2d_vector3(Arguments in, uint32_t, double) { return worley(in); }
 
 constexpr bool rising = true, falling = false;
 
 #define MONOTONE(row, direction, least, most, breach, value_of_x, slope_in_ab)                       \
-  Outcome rule_##row(Arguments in, uint32_t) {                                                       \
+  Outcome rule_##row(Arguments in, uint32_t, double error) {                                         \
     static constexpr Monotone f{                                                                     \
         direction,                                                                                   \
         least,                                                                                       \
@@ -254,10 +253,10 @@ constexpr bool rising = true, falling = false;
         Breach::breach,                                                                              \
         [](double x) -> double { return value_of_x; },                                               \
         []([[maybe_unused]] double a, [[maybe_unused]] double b) -> double { return slope_in_ab; }}; \
-    return monotone(f, #row, in[0]);                                                                 \
+    return monotone(f, in[0], error);                                                                \
   }
 #define BOUNDED(row, least, most) \
-  Outcome rule_##row(Arguments in, uint32_t) { return bounded(least, most, in, 2 * ulp); }
+  Outcome rule_##row(Arguments in, uint32_t, double) { return bounded(least, most, in, 2 * ulp); }
 #include "compiler/functions/ranges.def"
 
 constexpr Rule rules[] = {
@@ -267,14 +266,55 @@ constexpr Rule rules[] = {
 #include "compiler/functions/ranges.def"
 };
 
+struct Domain {
+  double lo, hi;
+};
+/// What the tables of functions say of a row in a tier.
 struct RowFacts {
   std::string_view row, signature;
+  functions::Tier tier;
   double ulp;
+  std::vector<Domain> domain;  ///< of each argument
+  bool of_one;                 ///< the ulps are those of 1, not of the result
 };
-constexpr RowFacts row_facts[] = {
-#define FUNCTION(name, signature, ulp, domain, reference, unit) {#name, #signature, ulp},
+const std::vector<RowFacts>& row_facts() {
+#define D(...) \
+  { __VA_ARGS__ }
+  static const std::vector<RowFacts> all{
+#define FUNCTION(name, signature, ulp, domain, reference, unit) \
+  {#name, #signature, functions::Tier::standard, ulp, domain, false},
 #include "compiler/functions/functions.def"
-};
+#define TIER(tier, name, ulp, domain, unit) \
+  {#name, "", functions::Tier::tier, ulp, domain, std::string_view(#unit) == "ones(result)"},
+#include "compiler/functions/tiers.def"
+  };
+#undef D
+  return all;
+}
+
+/// Of the tier's body, which may be the default one.
+const RowFacts* facts_of(std::string_view row, functions::Tier tier) {
+  using ByTier = std::array<const RowFacts*, functions::tiers.size()>;
+  static const std::unordered_map<std::string_view, ByTier> by_row = [] {
+    std::unordered_map<std::string_view, ByTier> map;
+    for (const RowFacts& facts : row_facts()) {
+      ByTier& of_row = map[facts.row];
+      if (facts.tier == functions::Tier::standard) of_row.fill(&facts);
+      of_row[static_cast<size_t>(facts.tier)] = &facts;
+    }
+    return map;
+  }();
+  const auto found = by_row.find(row);
+  return found == by_row.end() ? nullptr : found->second[static_cast<size_t>(tier)];
+}
+
+bool is_within(const std::vector<Domain>& domain, Arguments arguments, bool componentwise) {
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    const Domain& d = domain[componentwise ? std::min(i, domain.size() - 1) : 0];
+    if (arguments[i].lo < d.lo || arguments[i].hi > d.hi) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -284,13 +324,28 @@ const Rule* find_rule(std::string_view row) {
 }
 
 bool is_componentwise(std::string_view row) {
-  const auto found = std::ranges::find(row_facts, row, &RowFacts::row);
-  return found != std::end(row_facts) && found->signature.starts_with('g');
+  const RowFacts* facts = facts_of(row, functions::Tier::standard);
+  return facts != nullptr && facts->signature.starts_with('g');
 }
 
-double ulp_of(std::string_view row) {
-  const auto found = std::ranges::find(row_facts, row, &RowFacts::row);
-  return found == std::end(row_facts) ? infinity : found->ulp;
+Outcome bound_of(const Rule& rule, std::span<const Bound> arguments, uint32_t component,
+                 functions::Tier tier) {
+  const RowFacts& facts = *facts_of(rule.row, tier);
+  const bool inside = is_within(facts.domain, arguments, is_componentwise(rule.row));
+  if (facts.tier == functions::Tier::fast && !inside) return {anything(), Breach::domain};
+  const bool promises = inside || rule.row != "pow";
+  const double ulps = facts.of_one ? facts_of(rule.row, functions::Tier::standard)->ulp : facts.ulp;
+  const bool is_default = facts.tier == functions::Tier::standard;
+  const double error = promises ? (is_default ? std::max(ulps, 1.0) : ulps) * ulp * (1 + ulp) : careless;
+  Outcome outcome = rule.bound(arguments, component, error);
+  if (!facts.of_one) return outcome;
+  Bound& b = outcome.bound;
+  b.lo -= facts.ulp * ulp;
+  b.hi += facts.ulp * ulp;
+  b.absolute += facts.ulp * ulp;
+  b.relative = b.slack = infinity;
+  b = settled(b).bound;
+  return outcome;
 }
 
 }  // namespace isoshade::analysis

@@ -6,23 +6,25 @@
 #include <string_view>
 
 #include "compiler/analysis/bound.h"
+#include "compiler/functions/tier.h"
 
 namespace isoshade::analysis {
 
 struct Rule {
   std::string_view row;
   /// The bound of one component of the result. Where the row works componentwise, `arguments` are those of the
-  /// component, else all words of all arguments.
-  Outcome (*bound)(std::span<const Bound> arguments, uint32_t component);
+  /// component, else all words of all arguments. `error`: what the row errs by, relative to its result.
+  Outcome (*bound)(std::span<const Bound> arguments, uint32_t component, double error);
 };
+
+/// The same, with what the tables say of the row's body in a tier. Where a fast body promises nothing, it is a breach.
+Outcome bound_of(const Rule& rule, std::span<const Bound> arguments, uint32_t component,
+                 functions::Tier tier);
 
 /// Null where the body tells all that there is to know.
 const Rule* find_rule(std::string_view row);
 
 /// Whether a row's vectors are worked on component by component.
 bool is_componentwise(std::string_view row);
-
-/// The error of a row that functions.def states, in units in the last place.
-double ulp_of(std::string_view row);
 
 }  // namespace isoshade::analysis

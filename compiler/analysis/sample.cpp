@@ -169,7 +169,8 @@ Breach Runner::breach_of(const Operation& operation, uint32_t index) const {
   std::vector<Bound> arguments;
   for (const uint32_t operand : in)
     arguments.push_back(exactly(static_cast<double>(as_float(words_[operand]))));
-  const Breach breach = tape_.rows[operation.index].rule->bound(arguments, operation.component).breach;
+  const Breach breach =
+      bound_of(*tape_.rows[operation.index].rule, arguments, operation.component, tape_.tier).breach;
   return breach == Breach::none ? Breach::overflow : breach;
 }
 

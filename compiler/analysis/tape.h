@@ -119,7 +119,8 @@ struct VectorShape {
 inline constexpr std::string_view taps_group = "taps";
 
 struct Tape {
-  ir::Module module;  ///< with bodies for all calls to functions.def
+  ir::Module module;                                 ///< with bodies for all calls to functions.def
+  functions::Tier tier = functions::Tier::standard;  ///< whose bodies they are
   std::vector<Operation> operations;
   std::vector<uint32_t> operands;  ///< operations
   std::vector<Input> inputs;
@@ -145,6 +146,7 @@ inline constexpr double unit_tolerance = 0x1p-21;
 /// The tape of a function. `given`: of its parameters, one each. `outside`: what a function that no document has returns, one a
 /// result, by its name; nothing of one whose body tells. Nothing if it would be too long.
 std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                              const std::function<std::vector<Given>(std::string_view)>& outside);
+                              const std::function<std::vector<Given>(std::string_view)>& outside,
+                              functions::Tier tier = functions::Tier::standard);
 
 }  // namespace isoshade::analysis

@@ -135,8 +135,6 @@ const RangeWalker::Library& RangeWalker::library_of(uint32_t function) {
   library->chooses =
       variant.row == "min" || variant.row == "max" || variant.row == "clamp" || variant.row == "saturate";
   library->rule = analysis::find_rule(variant.row);
-  library->is_opaque =
-      library->rule != nullptr && tier_ != functions::Tier::standard && variant.has_own_body(tier_);
   return *library;
 }
 
@@ -284,7 +282,8 @@ KnownRanges RangeWalker::by_rule(const RangeFrame& frame, const ir::Instruction&
       }
     }
     if (!known) continue;
-    const analysis::Outcome outcome = library.rule->bound(arguments, componentwise ? 0 : c);
+    const analysis::Outcome outcome =
+        analysis::bound_of(*library.rule, arguments, componentwise ? 0 : c, tier_);
     if (outcome.breach == analysis::Breach::none) out[c] = {outcome.bound.lo, outcome.bound.hi};
   }
   return out;
@@ -306,7 +305,7 @@ void RangeWalker::call(RangeFrame& frame, const ir::Instruction& made) {
   }
   // Of nothing comes nothing, at a price.
   const bool is_lost = !callee.library.empty() && std::ranges::none_of(in, is_known);
-  if (is_lost || library.is_opaque) {
+  if (is_lost) {
     for (uint32_t r = 0; r < made.result_count; ++r)
       frame.values[made.first_result + r] = any(f.type(made.first_result + r));
     return;

@@ -55,7 +55,6 @@ class RangeWalker {
   struct Library {
     std::string_view row;
     const analysis::Rule* rule = nullptr;  ///< null: its body tells
-    bool is_opaque = false;                ///< it has a rule, but that is of another tier's body
     bool chooses = false;                  ///< min, max, clamp or saturate
   };
   const Library& library_of(uint32_t function);

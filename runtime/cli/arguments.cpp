@@ -264,6 +264,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->add_option("--where", ranges,
                    "Only inputs that lie so; also for the scalar product that a node gives")
       ->check(range_text);
+  add_precision(*check_app, check.precision);
 
   FormatArguments format;
   CLI::App* format_app = app.add_subcommand("fmt", "Bring documents into canonical layout, in place");

@@ -91,6 +91,7 @@ struct NamedRange {
 struct CheckArguments {
   std::vector<std::string> documents;
   std::vector<NamedRange> where;
+  functions::Tier precision = functions::Tier::standard;
   std::string output;  ///< a table of counterexamples; empty: none is written
 };
 

@@ -101,7 +101,7 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   if (source == nullptr) return Result::error;
   const auto typed = driver::check_document(source, options, diagnostics);
   if (typed == nullptr) return Result::error;
-  const auto subjects = analysis::subjects_of(*typed, diagnostics);
+  const auto subjects = analysis::subjects_of(*typed, diagnostics, arguments.precision);
   if (!subjects) return Result::error;
   Result result = Result::proved;
   const auto where = restrictions(*subjects, arguments.where, diagnostics);

@@ -164,6 +164,29 @@ Proved proved(const std::string& document) {
   return proved;
 }
 
+TEST(Bound, HoldsInEveryTier) {
+  std::vector<double> errors;
+  for (const functions::Tier tier : functions::tiers) {
+    FrontEnd front_end(ISOSHADE_GRAPHS "/library");
+    const auto graph = front_end.check(R"=({"isoshade": 1, "function": "f", "inputs": {
+        "x": {"type": "float", "min": 0.01, "max": 10}, "v": {"type": "vector3", "min": -4, "max": 4}}, "nodes": {
+        "a": {"type": "expression", "code": "pow(x, 2.4) + exp(-x) * log2(x)", "x": "x"},
+        "b": {"type": "expression", "code": "sin(x * 7) * cos(x)", "x": "x"},
+        "c": {"type": "expression", "code": "length(v + vector3(5)) * normalize(v + vector3(5))", "v": "v"}},
+        "outputs": {"a": "a", "b": "b", "c": "c"}})=");
+    ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
+    const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics, tier);
+    const Proof proof = analysis::prove(subjects->front().tape);
+    ASSERT_TRUE(proof.unproved.empty()) << functions::tier_name(tier);
+    const Verdict verdict = Measurement(subjects->front().tape).run(proof.outputs, proof.followed);
+    EXPECT_EQ(verdict.wrong, "") << functions::tier_name(tier);
+    EXPECT_GT(verdict.nearest, 0.01) << functions::tier_name(tier);
+    errors.push_back(proof.outputs[0].absolute);
+  }
+  EXPECT_GT(errors[0], 10 * errors[1]);
+  EXPECT_GT(errors[1], 1.2 * errors[2]);
+}
+
 TEST(Bound, HoldsWhereInputsAreRestricted) {
   const std::vector<analysis::Restriction> where = {
       {"n_dot_l", {0.1, 1}}, {"n_dot_v", {0.1, 1}}, {"roughness", {0.1, 1}}, {"h2", {0.1, 4.1}}};

@@ -20,15 +20,19 @@ struct Domain {
 struct Row {
   std::string_view name;
   std::vector<Domain> domain;  ///< of each argument
+  functions::Tier tier = functions::Tier::standard;
 };
 
-/// The domains that functions.def states.
+/// The domains that functions.def and tiers.def state.
 const std::vector<Row>& rows() {
 #define D(...) \
   { __VA_ARGS__ }
   static const std::vector<Row> all{
 #define FUNCTION(name, signature, ulp, domain, reference, unit) {#name, domain},
 #include "compiler/functions/functions.def"
+#define TIER(tier, name, ulp, domain, unit) {#name, domain, functions::Tier::tier},
+#define FOLLOWS(tier, name, ulp, domain, unit) {#name, domain, functions::Tier::tier},
+#include "compiler/functions/tiers.def"
   };
 #undef D
   return all;
@@ -37,7 +41,7 @@ const std::vector<Row>& rows() {
 std::vector<Given> outside(std::string_view) { return {}; }
 
 /// A function that calls the variant; `box` has a domain for each word.
-Tape tape_of(const functions::Variant& variant, const std::vector<Domain>& domain) {
+Tape tape_of(const functions::Variant& variant, const std::vector<Domain>& domain, functions::Tier tier) {
   ir::Module module;
   ir::Function function;
   function.name = "calls";
@@ -58,7 +62,7 @@ Tape tape_of(const functions::Variant& variant, const std::vector<Domain>& domai
     const Domain& d = domain[std::min(of, domain.size() - 1)];
     given.push_back({"p" + std::to_string(i), d.lo, d.hi});
   }
-  auto tape = make_tape(module, 0, given, outside);
+  auto tape = make_tape(module, 0, given, outside, tier);
   EXPECT_TRUE(tape.has_value());
   return *tape;
 }
@@ -86,14 +90,25 @@ class Random {
   std::mt19937 engine_{3};
 };
 
-TEST(RuleOf, EveryFunctionHoldsWhatItComputes) {
+class RuleOf : public testing::TestWithParam<functions::Tier> {};
+std::string tier_of(const testing::TestParamInfo<functions::Tier>& info) {
+  return std::string(functions::tier_name(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Tier, RuleOf, testing::ValuesIn(functions::tiers), tier_of);
+
+TEST_P(RuleOf, EveryFunctionHoldsWhatItComputes) {
   constexpr int boxes = 150, points = 40;
   const lanes::FpGuard guard;
   Random random;
   for (const functions::Variant& variant : functions::variants()) {
-    const auto row = std::ranges::find(rows(), variant.row, &Row::name);
+    const auto in_tier = [&](functions::Tier tier) {
+      return std::ranges::find_if(rows(),
+                                  [&](const Row& r) { return r.name == variant.row && r.tier == tier; });
+    };
+    auto row = in_tier(GetParam());
+    if (row == rows().end()) row = in_tier(functions::Tier::standard);
     ASSERT_NE(row, rows().end());
-    const Tape tape = tape_of(variant, row->domain);
+    const Tape tape = tape_of(variant, row->domain, GetParam());
     Evaluator evaluator(tape);
     Runner runner(tape);
     const Box whole = evaluator.whole();
@@ -126,7 +141,7 @@ TEST(RuleOf, EveryFunctionHoldsWhatItComputes) {
   }
 }
 
-TEST(RuleOf, TheTangentOfNoFloatIsBeyondItsRange) {
+TEST(Rule, TheTangentOfNoFloatIsBeyondItsRange) {
   // Its poles, in long double, lie between two floats; up to 8192 there are few.
   for (int k = 1; k <= 2608; ++k) {
     const long double pole = (k - 0.5L) * 3.14159265358979323846264338328L;

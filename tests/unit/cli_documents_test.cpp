@@ -71,6 +71,9 @@ TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
   const Outcome restricted = run("check " + ggx + " --where n_dot_h=0:0.5");
   EXPECT_EQ(restricted.exit, 0) << restricted.text;
   EXPECT_NE(restricted.text, proved.text);
+  const std::string fog = graphs + "/library/fog/height_density.json";
+  EXPECT_EQ(run("check " + fog + " --precision fast").text, run("check " + fog).text)
+      << "it calls nothing that differs";
   const Outcome unknown = run("check " + ggx + " --where n_dot_x=0:1");
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_NE(unknown.text.find("did you mean \"n_dot_h\"?"), std::string::npos) << unknown.text;
