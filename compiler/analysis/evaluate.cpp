@@ -25,6 +25,19 @@ bool is_comparison(Opcode op) {
   return (op >= Opcode::flt && op <= Opcode::fne) || (op >= Opcode::ilt && op <= Opcode::ine);
 }
 
+/// The lesser of a constant and something that is at least another constant.
+bool is_clamp(const Tape& tape, const Operation& operation) {
+  if (operation.kind != Kind::least) return false;
+  const auto in = tape.operands_of(operation);
+  const auto is = [&](uint32_t o, Kind kind) { return tape.operations[o].kind == kind; };
+  for (const int i : {0, 1}) {
+    if (!is(in[i], Kind::constant) || !is(in[1 - i], Kind::greatest)) continue;
+    for (const uint32_t o : tape.operands_of(tape.operations[in[1 - i]]))
+      if (is(o, Kind::constant)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Evaluator::Evaluator(const Tape& tape)
@@ -36,7 +49,7 @@ Evaluator::Evaluator(const Tape& tape)
       proportions_(tape.operations.size()),
       guard_dead_(tape.guards.size()) {
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
-    if (tape.operations[i].kind != Kind::dot) continue;
+    if (tape.operations[i].kind != Kind::dot && !is_clamp(tape, tape.operations[i])) continue;
     cut_of_[i] = static_cast<uint32_t>(cuts_.size());
     cuts_.push_back(i);
   }

@@ -29,12 +29,12 @@ class Evaluator {
 
   /// All inputs in their ranges.
   Box whole() const;
-  /// Inputs, then scalar products: a box has a side for each.
+  /// Inputs, then scalar products and what is clamped: a box has a side for each.
   size_t side_count() const { return tape_.inputs.size() + cuts_.size(); }
   /// What a side was in the last walk: its range cut by what the operation gave there.
   Side reached(const Box& box, size_t side) const;
   std::string side_name(size_t side) const;
-  /// The scalar product that a side beyond the inputs is of.
+  /// The operation that a side beyond the inputs is of.
   uint32_t operation_of(size_t side) const { return cuts_[side - tape_.inputs.size()]; }
   /// Whether an operation depends on a side.
   bool depends(uint32_t operation, size_t side) const;
@@ -78,6 +78,7 @@ class Evaluator {
   bool apply_facts(const Operation& operation, uint32_t index);
   void carry_proportion(const Operation& operation, uint32_t index);
   void limit_quotient(uint32_t index, const Proportion& of_divisor);
+  void limit_square(uint32_t index);
   void limit_remainder(uint32_t index);
   void limit_residual(uint32_t index);
   /// Keeps as many as there is room for.
@@ -87,7 +88,7 @@ class Evaluator {
   double severity_of(const Operation& operation, Breach breach) const;
 
   const Tape& tape_;
-  std::vector<uint32_t> cuts_;    ///< the scalar products
+  std::vector<uint32_t> cuts_;    ///< the scalar products and clamps
   std::vector<uint32_t> cut_of_;  ///< of operations: which cut, or none
   std::vector<std::vector<bool>> depends_;
   std::vector<Bound> bounds_;

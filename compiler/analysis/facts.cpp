@@ -104,6 +104,26 @@ void Evaluator::propose(uint32_t index, const Proportion& proportion) {
   }
 }
 
+/// (k * x) * x has the sign of k.
+void Evaluator::limit_square(uint32_t index) {
+  const auto in = tape_.operands_of(tape_.operations[index]);
+  for (const int i : {0, 1}) {
+    const Operation& scaled = tape_.operations[in[i]];
+    if (scaled.kind != Kind::op || scaled.op != Opcode::fmul) continue;
+    const auto factors = tape_.operands_of(scaled);
+    for (const int f : {0, 1}) {
+      if (factors[f] != in[1 - i]) continue;
+      const Bound& k = bounds_[factors[1 - f]];
+      Bound& b = bounds_[index];
+      if (k.lo >= 0) b.lo = std::max(b.lo, 0.0);
+      if (k.hi <= 0) b.hi = std::min(b.hi, 0.0);
+      if (k.exact_lo() >= 0) b.exact_least = std::max(b.exact_least, 0.0);
+      if (k.exact_hi() <= 0) b.exact_most = std::min(b.exact_most, 0.0);
+      b = settled(b).bound;
+    }
+  }
+}
+
 /// x - x * y, where x >= 0 and y is in [0, 1]: neither rounded nor exactly is it negative or more than x.
 void Evaluator::limit_remainder(uint32_t index) {
   const auto in = tape_.operands_of(tape_.operations[index]);
@@ -161,6 +181,7 @@ void Evaluator::carry_proportion(const Operation& operation, uint32_t index) {
   if (operation.op == Opcode::fdiv)
     for (const Proportion& p : proportions_[in[1]]) limit_quotient(index, p);
   if (operation.op != Opcode::fmul) return;
+  limit_square(index);
   for (const int i : {0, 1}) {
     const Bound& other = bounds_[in[1 - i]];
     if (other.lo <= 0) continue;

@@ -38,13 +38,13 @@ struct Proof {
   uint64_t steps = 0;  ///< operations that were walked
 };
 
-/// A range that an input or a scalar product is restricted to.
+/// A range that an input, a scalar product or a clamped number is restricted to.
 struct Restriction {
-  std::string name;  ///< of an input, or of the node that gives the scalar product
+  std::string name;  ///< of an input, or of the node that gives it
   Side range;
 };
 
-/// What restrictions can name: inputs and scalar products.
+/// What restrictions can name.
 std::vector<std::string> sides_of(const Tape& tape);
 
 /// Over all inputs for which the restrictions hold.

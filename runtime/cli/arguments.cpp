@@ -262,7 +262,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   std::vector<std::string> ranges;
   check_app
       ->add_option("--where", ranges,
-                   "Only inputs that lie so; also for the scalar product that a node gives")
+                   "Only inputs that lie so; also of the scalar product or clamp that a node gives")
       ->check(range_text);
   add_precision(*check_app, check.precision);
 

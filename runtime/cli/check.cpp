@@ -83,7 +83,7 @@ std::optional<std::vector<analysis::Restriction>> restrictions(const std::vector
   for (const NamedRange& range : where) {
     all.push_back({range.name, {static_cast<double>(range.lo), static_cast<double>(range.hi)}});
     if (std::ranges::find(known, range.name) != known.end()) continue;
-    const std::string message = "no input or scalar product is called " + support::quote(range.name);
+    const std::string message = "no input, scalar product or clamp is called " + support::quote(range.name);
     diagnostics.report_unknown(support::Id::unknown_setting, {}, message, range.name, names);
     return std::nullopt;
   }
