@@ -13,6 +13,7 @@ namespace {
 
 bool is_null(const Member& member) { return member.value.kind == Json::Kind::null; }
 
+/// Merges values of a base, whose sources are numbered from 1, and changes, whose source is 0.
 class Merger {
  public:
   Merger(const Document& changes, support::Diagnostics& diagnostics)
@@ -33,15 +34,18 @@ class Merger {
         Member& member = *found->second;
         member.key_begin = change.key_begin;
         member.key_end = change.key_end;
+        const Extras extras(*this, change.key);
         merge(member.value, std::move(change.value));
       } else if (is_null(change)) {
         report_nothing_removed(change, base);
       } else {
+        const Extras extras(*this, change.key);
         change.value = without_nulls(std::move(change.value));
         added.push_back(std::move(change));
       }
     }
-    std::erase_if(base.members, is_null);
+    std::erase_if(base.members,
+                  [](const Member& member) { return is_null(member) && member.value.source == 0; });
     std::ranges::move(added, std::back_inserter(base.members));
     base.source = changes.source;
     base.begin = changes.begin;
@@ -49,8 +53,21 @@ class Merger {
   }
 
  private:
+  /// While it lives and the key is "extras", what is merged is free.
+  class Extras {
+   public:
+    Extras(Merger& merger, std::string_view key) : extras_(merger.extras_), before_(extras_) {
+      extras_ = extras_ || key == "extras";
+    }
+    ~Extras() { extras_ = before_; }
+
+   private:
+    bool& extras_;
+    bool before_;
+  };
+
   void report_nothing_removed(const Member& change, const Json& base) {
-    if (diagnostics_.full()) return;
+    if (extras_ || diagnostics_.full()) return;
     std::vector<std::string_view> keys;
     for (const Member& member : base.members) keys.push_back(member.key);
     diagnostics_.report_unknown(support::Id::unknown_key, changes_.key_span(change),
@@ -61,6 +78,7 @@ class Merger {
   Json without_nulls(Json value) {
     for (Member& member : value.members) {
       if (is_null(member)) report_nothing_removed(member, Json{});
+      const Extras extras(*this, member.key);
       member.value = without_nulls(std::move(member.value));
     }
     std::erase_if(value.members, is_null);
@@ -69,6 +87,7 @@ class Merger {
 
   const Document& changes_;
   support::Diagnostics& diagnostics_;
+  bool extras_ = false;
 };
 
 /// The sources of the value and of all in it, each as many further.

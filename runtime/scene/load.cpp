@@ -44,6 +44,10 @@ class Loader {
     }
     const Json* extends = document->root.find(extends_key);
     if (extends == nullptr) return document;
+    // What it extends would give it these keys, but then it would be no document by itself.
+    const auto kind = graph::document_kind(*document, diagnostics_);
+    if (!kind) return std::nullopt;
+    if (*kind != graph::DocumentKind::scene) return document;  // reported by who wants a scene
     chain_.push_back(graph::canonical_path(source->path()));
     const support::Span named_where = document->span(*extends);
     if (extends->kind != Json::Kind::string) {

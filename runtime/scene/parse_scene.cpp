@@ -158,7 +158,8 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
         "a scene is needed here, not a document of the kind " + std::string(graph::kind_name(*kind)));
     return std::nullopt;
   }
-  for (const std::string_view key : {"$schema", "isoshade", "doc"}) reader.ignore(key);
+  // "extends" is done already (load.h); here it is known for those who misspell it.
+  for (const std::string_view key : {"$schema", "isoshade", "doc", "extends"}) reader.ignore(key);
 
   Scene scene;
   scene.source = document.source;

@@ -49,6 +49,20 @@ TEST(Merge, RemovesByNull) {
             R"({"a": 1, "b": {"y": 2}})");
 }
 
+TEST(Merge, KeepsTheNullsOfTheBase) {
+  EXPECT_EQ(merged(R"({"a": {"x": null, "y": null, "z": null}})", R"({"a": {"y": null, "z": 1}})"),
+            R"({"a": {"x": null, "z": 1}})");
+}
+
+TEST(Merge, LeavesExtrasFree) {
+  support::Diagnostics diagnostics;
+  merged(R"({"b": {"extras": {"x": 1}}})", R"({"b": {"extras": {"y": {"z": null}}}, "extras": {"x": null}})",
+         &diagnostics);
+  EXPECT_EQ(diagnostics.text(), "");
+  merged("{}", R"({"extras": {}, "b": {"x": null}})", &diagnostics);
+  EXPECT_EQ(diagnostics.error_count(), 1u);
+}
+
 TEST(Merge, ReportsANullThatRemovesNothing) {
   for (const char* changes : {R"({"b": {"xx": null}})", R"({"new": {"xx": null}})"}) {
     support::Diagnostics diagnostics;

@@ -118,6 +118,24 @@ TEST_F(LoadScene, RefusesWhatIsNoSceneToExtend) {
   EXPECT_NE(error(R"("extends": "../outside.json")").find("outside-reference: "), std::string::npos);
 }
 
+TEST_F(LoadScene, WhatExtendsIsADocumentItself) {
+  const auto first_error = [&](const std::string& text) {
+    write("scenes/part.json", text);
+    return error(R"("extends": "part.json")");
+  };
+  EXPECT_EQ(first_error(R"({"scene": "s", "extends": "base/base.json"})"),
+            "missing-key: a document needs its version");
+  EXPECT_EQ(first_error(R"({"isoshade": 1, "extends": "base/base.json"})"),
+            "wrong-kind: a document is a function, effect, post or scene");
+  EXPECT_NE(first_error(R"({"isoshade": 1, "post": "p", "extends": "base/base.json"})").find("is no scene"),
+            std::string::npos);
+}
+
+TEST_F(LoadScene, SuggestsTheKeyThatExtends) {
+  load(R"("extend": "base/base.json")");
+  EXPECT_NE(diagnostics_.text().find("did you mean \"extends\"?"), std::string::npos) << diagnostics_.text();
+}
+
 TEST_F(LoadScene, RefusesAnEndlessRow) {
   for (size_t i = 0; i < 2 * max_bases; ++i) {
     write("scenes/s" + std::to_string(i) + ".json",
