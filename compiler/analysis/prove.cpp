@@ -199,7 +199,9 @@ bool Prover::refute(const Box& box, int tries) {
 
 void Prover::search_proof() {
   std::vector<Task> stack{{root_, 0}};
-  if (!evaluator_.walk(stack[0].box)) return;  // no input at all
+  const bool crossed = std::ranges::any_of(root_, [](const Side& side) { return side.lo > side.hi; });
+  proof_.vacuous = crossed || !evaluator_.walk(root_);
+  if (proof_.vacuous) return;
   if (!evaluator_.findings().empty() && refute(stack[0].box, effort_.tries)) return;
   size_t open = 0;
   while (!stack.empty()) {
@@ -230,7 +232,8 @@ void Prover::search_proof() {
     }
     for (Box& half : halves) stack.push_back({std::move(half), task.depth + 1});
   }
-  if (proof_.unproved.empty()) conclude();
+  proof_.vacuous = proof_.unproved.empty() && leaves_.empty();
+  if (proof_.unproved.empty() && !proof_.vacuous) conclude();
 }
 
 /// The bounds of the outputs over all boxes.

@@ -27,6 +27,7 @@ struct Unproved {
 
 /// Over all inputs, the whole result of one output component.
 struct Proof {
+  bool vacuous = false;            ///< no input lies within all ranges: then nothing else is told
   std::vector<Unproved> unproved;  ///< empty: all is proved
   std::vector<Bound> outputs;      ///< of Tape::outputs; without meaning where not all is proved
   /// The same, but the errors are those against exact arithmetic that takes the same side of each select. They are

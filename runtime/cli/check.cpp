@@ -108,6 +108,11 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   if (!where) return Result::error;
   for (const analysis::Subject& subject : *subjects) {
     const analysis::Proof proof = analysis::prove(subject.tape, {}, *where);
+    if (proof.vacuous) {
+      diagnostics.report(support::Id::out_of_range, "no input lies within all ranges that " +
+                                                        support::quote(path) + " and --where give");
+      return Result::error;
+    }
     const bool proved = proof.unproved.empty();
     const bool is_effect = typed->graph.kind == graph::DocumentKind::effect;
     const bool is_function = typed->graph.kind == graph::DocumentKind::function;

@@ -189,6 +189,16 @@ TEST(Proof, IsOfThePartThatIsAskedFor) {
   EXPECT_EQ(part.outputs[0].hi, 2);
 }
 
+TEST(Proof, SaysThatNoInputIsAllowed) {
+  const Checked c = checked(function_of(x_and_y, code("x + y")));
+  EXPECT_FALSE(c.proof.vacuous);
+  EXPECT_TRUE(analysis::prove(c.subject.tape, {}, {{"x", {2, 3}}}).vacuous);
+  EXPECT_FALSE(analysis::prove(c.subject.tape, {}, {{"x", {1, 3}}}).vacuous);
+  const std::string too_long = R"("v": {"type": "vector3", "unit": true, "min": 0.9})";
+  const std::string sum = R"("r": {"type": "dotproduct", "in1": "v", "in2": [1, 2, 3]})";
+  EXPECT_TRUE(checked(function_of(too_long, sum)).proof.vacuous);
+}
+
 TEST(Proof, IsTheSameEachTime) {
   const std::string text = function_of(x_and_y, code("1 / (x * x - y * y * y + 0.149)"));
   EXPECT_EQ(checked(text).messages, checked(text).messages);

@@ -78,6 +78,10 @@ TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_NE(unknown.text.find("did you mean \"n_dot_h\"?"), std::string::npos) << unknown.text;
   EXPECT_EQ(run("check " + ggx + " --where n_dot_h=1").exit, 2);
+  const Outcome vacuous = run("check " + ggx + " --where n_dot_h=2:3");
+  EXPECT_EQ(vacuous.exit, 2);
+  EXPECT_NE(vacuous.text.find("error[out-of-range]: no input lies within"), std::string::npos)
+      << vacuous.text;
   EXPECT_EQ(run("check " + scene).exit, 2);
   const Outcome as_data = run("check " + source_form + " --diagnostics json");
   EXPECT_NE(as_data.text.find("\"refuted\""), std::string::npos) << as_data.text;
