@@ -55,8 +55,7 @@ class Prover {
       : tape_(tape), effort_(effort), evaluator_(tape), runner_(tape), root_(evaluator_.whole()) {
     for (const Restriction& r : where)
       for (size_t s = 0; s < root_.size(); ++s)
-        if (evaluator_.side_name(s) == r.name)
-          root_[s] = {std::max(root_[s].lo, r.range.lo), std::min(root_[s].hi, r.range.hi)};
+        if (evaluator_.side_name(s) == r.name) restrict(s, r.range);
   }
 
   Proof run() {
@@ -66,6 +65,7 @@ class Prover {
   }
 
  private:
+  void restrict(size_t side, const Side& range);
   void search_proof();
   void conclude();
   /// How bad a walk up to `last` was, by what `measure` says of it; 0 where the box holds nothing.
@@ -93,6 +93,13 @@ class Prover {
   Proof proof_;
   std::vector<Leaf> leaves_;
 };
+
+void Prover::restrict(size_t side, const Side& range) {
+  Side& all = root_[side];
+  all = {std::max(all.lo, range.lo), std::min(all.hi, range.hi)};
+  const bool whole = side < tape_.inputs.size() && tape_.inputs[side].scalar != ir::Scalar::floating;
+  if (whole) all = {std::ceil(all.lo), std::floor(all.hi)};
+}
 
 std::vector<Side> Prover::sides_of(const Box& box) {
   std::vector<Side> sides;

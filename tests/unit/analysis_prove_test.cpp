@@ -194,6 +194,10 @@ TEST(Proof, SaysThatNoInputIsAllowed) {
   EXPECT_FALSE(c.proof.vacuous);
   EXPECT_TRUE(analysis::prove(c.subject.tape, {}, {{"x", {2, 3}}}).vacuous);
   EXPECT_FALSE(analysis::prove(c.subject.tape, {}, {{"x", {1, 3}}}).vacuous);
+  const Checked whole = checked(function_of(R"("i": {"type": "integer", "min": 0, "max": 9})",
+                                            R"("r": {"type": "convert", "in": "i", "to": "float"})"));
+  EXPECT_TRUE(analysis::prove(whole.subject.tape, {}, {{"i", {0.3, 0.6}}}).vacuous);
+  EXPECT_EQ(analysis::prove(whole.subject.tape, {}, {{"i", {0.3, 4.6}}}).outputs[0].lo, 1);
   const std::string too_long = R"("v": {"type": "vector3", "unit": true, "min": 0.9})";
   const std::string sum = R"("r": {"type": "dotproduct", "in1": "v", "in2": [1, 2, 3]})";
   EXPECT_TRUE(checked(function_of(too_long, sum)).proof.vacuous);
