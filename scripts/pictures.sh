@@ -7,6 +7,6 @@ isoshade=build/release/isoshade
 for pattern in planks shingles stones; do
   "$isoshade" --quiet render "graphs/textures/${pattern}_tile.json" -o "graphs/textures/$pattern.png"
 done
-for scene in material_balls cartoon_village fog_valley; do
+for scene in material_balls cartoon_village fog_valley fog_village; do
   "$isoshade" --quiet render "graphs/scenes/$scene.json" --samples 16 -o "docs/$scene.png"
 done
