@@ -21,7 +21,8 @@ class Merger {
 
   void merge(Json& base, Json changes) {
     const bool both = base.kind == Json::Kind::object && changes.kind == Json::Kind::object;
-    if (!both || changes.find("type") != nullptr) {
+    const Json* type = changes.find("type");
+    if (!both || (type != nullptr && type->kind == Json::Kind::string)) {
       base = without_nulls(std::move(changes));
       return;
     }

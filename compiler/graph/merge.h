@@ -11,7 +11,7 @@ namespace isoshade::graph {
 Json adopted(Document& document, support::Source source, Json value);
 
 /// `base` changed by `changes`, as JSON Merge Patch (RFC 7386) has it: of two objects the members are merged, null
-/// removes a member, and anything else takes the place of what was there. Two rules more: an object that has the key
+/// removes a member, and anything else takes the place of what was there. Two rules more: an object that tells its
 /// "type" takes the place of the other whole, because the keys of another type would mean nothing in it; and a null that
 /// removes nothing is reported, but in "extras". The first source of the result is that of `changes`.
 Document merge(Document base, Document changes, support::Diagnostics& diagnostics);

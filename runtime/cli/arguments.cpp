@@ -256,7 +256,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   CheckArguments check;
   CLI::App* check_app = app.add_subcommand(
       "check", "Prove that documents give finite numbers for all inputs they allow, and bound their error");
-  check_app->add_option("DOCUMENT", check.documents, "Function and effect documents")->required();
+  check_app->add_option("DOCUMENT", check.documents, "Function, effect and post documents")->required();
   check_app->add_option("-o,--output", check.output,
                         "Write the counterexamples of a function to this CSV file, as a table for `eval`");
   std::vector<std::string> ranges;

@@ -76,6 +76,9 @@ TEST(Merge, ReportsANullThatRemovesNothing) {
 TEST(Merge, ReplacesAnObjectThatTellsItsType) {
   EXPECT_EQ(merged(R"({"mesh": {"type": "box", "size": 1}})", R"({"mesh": {"type": "sphere"}})"),
             R"({"mesh": {"type": "sphere"}})");
+  // Here it is a name.
+  EXPECT_EQ(merged(R"({"objects": {"a": 1}})", R"({"objects": {"type": {}}})"),
+            R"({"objects": {"a": 1, "type": {}}})");
 }
 
 TEST(Merge, KeepsTheTextOfEveryValue) {

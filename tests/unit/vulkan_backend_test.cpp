@@ -85,7 +85,7 @@ layout(location = 0) out vec4 color;
 void main() {
   int triangle = texelFetch(ids, ivec2(gl_FragCoord.xy), 0).x - 1;
   if (triangle < 0) discard;
-  int object = triangles[16 * triangle + 3] >> 1;
+  int object = triangles[16 * triangle + 3] >> 2;
   if (int(objects[object + 37]) != push.program) discard;
   color = vec4(gl_FragCoord.xy, float(triangle) + lights[push.light_count - 1], )" +
          alpha + ");\n}\n";
@@ -129,7 +129,7 @@ struct Rectangles {
     const int corners[2][6] = {{x0, y0, x1, y0, x1, y1}, {x0, y0, x1, y1, x0, y1}};
     for (const auto& corner : corners) {
       const auto index = static_cast<float>(triangles.size() / 16);
-      int32_t record[16] = {0, 0, 0, 2 * item.program * object_words};
+      int32_t record[16] = {0, 0, 0, item.program * object_words << lower::triangle_flag::bits};
       std::copy(std::begin(corner), std::end(corner), record + lower::triangle_word::position);
       record[lower::triangle_word::depth] = bits(item.depth);
       triangles.insert(triangles.end(), std::begin(record), std::end(record));
