@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "runtime/scene/load.h"
 
@@ -12,7 +13,8 @@ namespace fs = std::filesystem;
 
 class LoadScene : public ::testing::Test {
  protected:
-  LoadScene() : folder_(fs::path(::testing::TempDir()) / "isoshade_load_scene") {
+  LoadScene()
+      : folder_(fs::path(::testing::TempDir()) / ("isoshade_load_scene_" + std::to_string(getpid()))) {
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "scenes" / "base");
     write("scenes/base/base.json", R"({"isoshade": 1, "scene": "base", "time": 3, "size": [8, 8],
