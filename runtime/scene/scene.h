@@ -186,7 +186,7 @@ Instance instance(const Object& object, int64_t index);
 std::string instance_name(const Object& object, const Instance& instance);
 /// Where a copy stands: the object's translation and the steps to it.
 glm::vec3 instance_translation(const Object& object, const Instance& instance);
-/// The value along an axis: exactly the first at place 0, exactly the last at the last place.
+/// The value along an axis: exactly the first at place 0, exactly the last at the last place, and never beyond them.
 graph::Literal variation_value(const Variation& variation, int64_t place, int64_t count);
 
 }  // namespace isoshade::scene

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Post documents over images that a test makes: what they read, and that every backend reads the same.
 #include <algorithm>
-#include <cmath>
 
 #include "backends/cpu/lane_count.h"
 #include "runtime/lanes/float_rules.h"
@@ -71,6 +70,14 @@ TEST(Posts, FindThePixelUnderTheirOwnInImagesOfOtherSizes) {
   }
 }
 
+/// The first of the two pixels between whose centres the centre of pixel `at` lies, where `made` of them lie over `read`,
+/// and how far it is on the way to the second: a fraction of integers, rounded once, less a half.
+std::pair<int, float> between(int at, int made, int read) {
+  const int centre = (2 * at + 1) * read, under = centre / (2 * made);
+  const float inside = static_cast<float>(centre % (2 * made)) / static_cast<float>(2 * made) - 0.5f;
+  return inside < 0 ? std::pair{under - 1, inside + 1.0f} : std::pair{under, inside};
+}
+
 TEST(Posts, FilterLinearlyInProportion) {
   const Pixels image = numbered(3, 2);
   constexpr int width = 7, height = 5;
@@ -79,16 +86,12 @@ TEST(Posts, FilterLinearlyInProportion) {
   const std::vector<float> found = screen.interpreted();
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const double across = (x + 0.5) * 3 / width - 0.5, down = (y + 0.5) * 2 / height - 0.5;
-      const int left = static_cast<int>(std::floor(across)), up = static_cast<int>(std::floor(down));
-      const double fx = across - left, fy = down - up;
-      const auto pixel = [&](int i, int j) {
-        return static_cast<double>(image.at(std::clamp(i, 0, 2), std::clamp(j, 0, 1))[0]);
-      };
-      const double upper = pixel(left, up) * (1 - fx) + pixel(left + 1, up) * fx;
-      const double lower = pixel(left, up + 1) * (1 - fx) + pixel(left + 1, up + 1) * fx;
-      ASSERT_NEAR(found[static_cast<size_t>(4 * (width * y + x))], upper * (1 - fy) + lower * fy, 1e-5)
-          << x << " " << y;
+      const auto [left, fx] = between(x, width, 3);
+      const auto [up, fy] = between(y, height, 2);
+      const auto pixel = [&](int i, int j) { return image.at(std::clamp(i, 0, 2), std::clamp(j, 0, 1))[0]; };
+      const float upper = pixel(left, up) * (1.0f - fx) + pixel(left + 1, up) * fx;
+      const float lower = pixel(left, up + 1) * (1.0f - fx) + pixel(left + 1, up + 1) * fx;
+      ASSERT_EQ(found[static_cast<size_t>(4 * (width * y + x))], upper * (1.0f - fy) + lower * fy) << x << " " << y;
     }
   }
 }

@@ -278,6 +278,26 @@ TEST(ParseScene, ChecksVariations) {
   EXPECT_TRUE(varied(R"({"values": [true, false, true]})").scene);
 }
 
+TEST(ParseScene, VariesNoValueBeyondItsEnds) {
+  const auto number = [](float value) {
+    graph::Literal literal;
+    literal.number = value;
+    return literal;
+  };
+  const std::pair<float, float> ends[] = {{0.1f, 0.9f}, {0.9f, 0.9f}, {0.7f, -0.3f}, {0.3f, 0.30000004f}};
+  for (const auto& [from, to] : ends) {
+    scene::Variation variation;
+    variation.values = {number(from), number(to)};
+    for (int64_t count = 2; count < 200; ++count) {
+      for (int64_t place = 0; place < count; ++place) {
+        const float value = scene::variation_value(variation, place, count).number;
+        ASSERT_GE(value, std::min(from, to)) << place << " of " << count;
+        ASSERT_LE(value, std::max(from, to)) << place << " of " << count;
+      }
+    }
+  }
+}
+
 TEST(ParseScene, KeepsNamesApart) {
   EXPECT_TRUE(parse_members(std::string(ball) +
                             R"(, "lights": {"ball": {"type": "directional", "direction": [0, -1, 0]}})")
