@@ -20,6 +20,21 @@ isoshade_test(pixel_derivatives_test
   TIMEOUT 300)
 target_compile_definitions(pixel_derivatives_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
+# Pictures, counted in pixels.
+isoshade_test(cartoon_test
+  SOURCES accuracy/cartoon_test.cpp
+  LINKS isoshade_render isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(cartoon_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
+isoshade_test(outline_test
+  SOURCES accuracy/outline_test.cpp
+  LINKS isoshade_render isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(outline_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
 # On every backend. `stress_test --update` writes docs/stress.md.
 isoshade_test(stress_test
   SOURCES
