@@ -38,6 +38,11 @@ R clamp(R x, R low, R high) {
   const R above = x < low ? low : x;
   return high < above ? high : above;
 }
+/// An infinity minus itself is NaN.
+template <class R>
+R finite_or_zero(R x) {
+  return x - x == 0 ? x : R(0);
+}
 /// 0 for NaN.
 template <class R>
 R saturate(R x) {

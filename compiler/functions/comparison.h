@@ -39,6 +39,14 @@ F saturate(F x) {
   return select(x > 0.0f, below_one, F(0.0f));
 }
 
+/// `x`, or 0 where it is infinite or NaN.
+/// Domain: all floats.
+/// Error: 0 ULP.
+template <class F>
+F finite_or_zero(F x) {
+  return select(abs(x) <= 3.4028234663852886e38f, x, F(0.0f));
+}
+
 /// 1, 0 or -1.
 /// Domain: all floats. Zeros and NaN give themselves.
 /// Error: 0 ULP.

@@ -266,8 +266,8 @@ void Body::make_fetch(const Node& node) {
   const auto edge = [](const Operand& port) { return static_cast<nodes::Edge>(port.index); };
   if (std::get<nodes::Fetch>(node.row->lowering) == nodes::Fetch::color) {
     const ReadImage& image = environment_.screen.images[ports[0].index];
-    const bool linear = ports[4].index == 1;
-    out[0] = fetch_color(b_, image, offset(ports[1]), offset(ports[2]), edge(ports[3]), linear);
+    const ColorFilter filter{edge(ports[3]), ports[4].index == 1, ports[5].index == 1};
+    out[0] = fetch_color(b_, image, offset(ports[1]), offset(ports[2]), filter);
     return;
   }
   out[0] = fetch_depth(b_, environment_.screen.depth, offset(ports[0]), offset(ports[1]), edge(ports[2]));

@@ -240,17 +240,22 @@ ScreenInputs screen_inputs(ir::Builder& b, const check::TypedGraph& graph, const
 }
 
 nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId offset_x, ir::ValueId offset_y,
-                         Edge edge, bool linear) {
+                         const ColorFilter& filter) {
   const ir::ValueId x = moved(b, image.x, offset_x), y = moved(b, image.y, offset_y);
-  if (!linear) {
-    if (offset_x == ir::none && offset_y == ir::none) return b.call(image.at, std::array{x, y})[0];
-    return read(b, image, x, y, edge);
+  const auto guarded = [&](ir::ValueId color) {
+    const Vec4 read(b, color);
+    return filter.finite_only ? finite_or_zero(read) : read;
+  };
+  if (!filter.linear) {
+    if (offset_x == ir::none && offset_y == ir::none)
+      return guarded(b.call(image.at, std::array{x, y})[0]).value;
+    return guarded(read(b, image, x, y, filter.edge)).value;
   }
   const Vec2 inside(b, image.inside);
   const Between across = between(Int(b, x), inside[0]), down = between(Int(b, y), inside[1]);
   const auto row = [&](Int at) {
-    const Vec4 left(b, read(b, image, across.lower.value, at.value, edge));
-    const Vec4 right(b, read(b, image, across.upper.value, at.value, edge));
+    const Vec4 left = guarded(read(b, image, across.lower.value, at.value, filter.edge));
+    const Vec4 right = guarded(read(b, image, across.upper.value, at.value, filter.edge));
     return mix(left, right, across.part);
   };
   const Vec4 upper = row(down.lower), lower = row(down.upper);

@@ -65,10 +65,17 @@ std::vector<std::pair<std::string, int>> tap_counts(const check::TypedGraph& gra
 /// Every name that functions of a post's module may have beside those of documents.
 std::vector<std::string> screen_function_names(const check::TypedGraph& graph);
 
-/// What nodes::Fetch::color and ::depth and nodes::WorldPosition give. `operands`: of the ports of the row.
+/// How nodes::Fetch::color reads an image.
+struct ColorFilter {
+  nodes::Edge edge;
+  bool linear;       ///< the four pixels around the place in proportion; else the one that it lies in
+  bool finite_only;  ///< channels that are infinite or NaN count as 0
+};
+
+/// What nodes::Fetch::color and ::depth and nodes::WorldPosition give. Offsets that are none are 0.
 nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId offset_x, ir::ValueId offset_y,
-                         nodes::Edge edge, bool linear);
-/// The depth as it is stored; offsets that are none are 0.
+                         const ColorFilter& filter);
+/// The depth as it is stored.
 ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, ir::ValueId offset_x, ir::ValueId offset_y,
                         nodes::Edge edge);
 /// The distance along the view of a depth.

@@ -70,6 +70,7 @@ std::vector<Row> math_rows() {
        AnyFloat,
        Function{"clamp"}},
       {"saturate", "`in`, but at least 0 and at most 1.", {in}, AnyFloat, Function{"saturate"}},
+      {"finite", "`in`, or 0 where it is infinite or NaN.", {in}, AnyFloat, Function{"finite_or_zero"}},
       {"absval", "`in` without its sign.", {in}, AnyFloat, fabs},
       {"sign", "-1, 0 or 1: the sign of `in`.", {in}, AnyFloat, Function{"sign"}},
       {"floor", "The greatest whole number that is not above `in`.", {in}, AnyFloat, floor},

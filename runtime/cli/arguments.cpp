@@ -13,8 +13,8 @@ namespace isoshade::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check) or not proved (check), 2 "
-    "error.\n"
+    "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check), not proved (check) or not\n"
+    "finite (--fail-on-nan), 2 error.\n"
     "\"-\" is standard input or output. Errors go to standard error.";
 
 bool parse_size(const std::string& text, Size& size) {
@@ -86,6 +86,10 @@ const CLI::Validator compared_names(
     "cpu,vulkan,interpreter");
 const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
 const CLI::IsMember division_names({"native", "exact"});
+
+void add_fail_on_nan(CLI::App& app, bool& fail) {
+  app.add_flag("--fail-on-nan", fail, "Exit with 1 if a pixel is infinite or NaN, before or after the posts");
+}
 
 void add_precision(CLI::App& app, functions::Tier& precision) {
   const auto choose = [&precision](const std::string& name) { precision = *functions::find_tier(name); };
@@ -205,6 +209,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
   render_app->add_flag("--stats", render.stats,
                        "Say what was drawn, what was skipped and why, and what each step took");
+  add_fail_on_nan(*render_app, render.fail_on_nan);
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
   add_choice(*render_app, render.choice);
@@ -233,6 +238,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                                                "A file of recorded hashes, of each scene at its own size");
   golden->excludes(verify_app->get_option("--size"));
   verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
+  add_fail_on_nan(*verify_app, verify.fail_on_nan);
   add_precision(*verify_app, verify.precision);
   add_changes(*verify_app, verify.changes);
   add_choice(*verify_app, verify.choice, false);

@@ -14,7 +14,7 @@ namespace isoshade::cli {
 /// Exit codes of every subcommand.
 enum Exit : int {
   success = 0,    ///< done; for verify: identical
-  different = 1,  ///< verify: some bit differs, or a hash is not the recorded one
+  different = 1,  ///< verify: some bit differs, or a hash is not the recorded one; --fail-on-nan
   failure = 2,    ///< an error, told on stderr
 };
 
@@ -56,6 +56,7 @@ struct RenderArguments {
   std::optional<Size> size;
   SceneChanges changes;
   bool stats = false;
+  bool fail_on_nan = false;
   functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };
@@ -69,6 +70,7 @@ struct VerifyArguments {
   std::string report;
   std::string golden;
   bool update = false;
+  bool fail_on_nan = false;
   functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };

@@ -57,13 +57,14 @@ std::optional<scene::Scene> load_scene(const std::string& path, const SceneChang
 
 namespace {
 
-bool render_to_file(const RenderArguments& arguments, const Common& common,
-                    support::Diagnostics& diagnostics) {
+/// The exit code.
+int render_to_file(const RenderArguments& arguments, const Common& common,
+                   support::Diagnostics& diagnostics) {
   if (!scene::check_image_path(arguments.output, diagnostics) ||
       !may_write(arguments.output, {arguments.scene}, diagnostics))
-    return false;
+    return failure;
   auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
-  if (!scene) return false;
+  if (!scene) return failure;
   check::Library library = make_library(common);
   render::Options options;
   if (arguments.size) {
@@ -74,27 +75,30 @@ bool render_to_file(const RenderArguments& arguments, const Common& common,
   options.compiler.reference = arguments.backend == "reference";
   options.compiler.tier = arguments.precision;
   const auto plan = render::plan_frame(*scene, options, diagnostics);
-  if (!plan) return false;
+  if (!plan) return failure;
   const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
-  if (backend == nullptr) return false;
+  if (backend == nullptr) return failure;
   progress(common, "rendering on " + backend->description());
   backends::Image image;
   render::DrawStats stats;
-  if (!render::render(*plan, *backend, image, stats, diagnostics)) return false;
+  if (!render::render(*plan, *backend, image, stats, diagnostics)) return failure;
   if (arguments.stats)
     std::fputs((backend->description() + "\n" + render::text(plan->stats) + render::text(stats)).c_str(),
                stderr);
   const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
-  return scene::write_image(arguments.output, view, scene->output.encoding, scene->output.exposure,
-                            diagnostics);
+  if (!scene::write_image(arguments.output, view, scene->output.encoding, scene->output.exposure,
+                          diagnostics))
+    return failure;
+  render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
+  return arguments.fail_on_nan && !stats.non_finite.none() ? different : success;
 }
 
 }  // namespace
 
 int render(const RenderArguments& arguments, const Common& common) {
   support::Diagnostics diagnostics = make_diagnostics(common);
-  const bool done = render_to_file(arguments, common, diagnostics);
-  return flush(diagnostics, common) || !done ? failure : success;
+  const int result = render_to_file(arguments, common, diagnostics);
+  return flush(diagnostics, common) ? failure : result;
 }
 
 }  // namespace isoshade::cli

@@ -112,13 +112,16 @@ class Verifier {
     const std::string samples = scene.samples > 1 ? ", " + std::to_string(scene.samples) + " samples" : "";
     std::printf("%s %dx%d%s%s%s\n", path.c_str(), size.width, size.height, samples.c_str(),
                 usual ? "" : " precision ", usual ? "" : tier.data());
+    int result = success;
     std::vector<backends::Image> images(backends_.size());
     for (size_t i = 0; i < backends_.size(); ++i) {
       progress(common_, "  rendering on " + backends_[i].name);
       render::DrawStats stats;
       if (!render::render(*plan, *backends_[i].backend, images[i], stats, diagnostics_)) return failure;
+      if (i > 0) continue;  // the others differ, or have the same
+      render::warn_non_finite(scene, *plan, stats.non_finite, diagnostics_);
+      if (arguments_.fail_on_nan && !stats.non_finite.none()) result = different;
     }
-    int result = success;
     for (size_t i = 1; i < images.size(); ++i)
       result = std::max(result, compare_with_first(path, scene, images, i));
     return std::max(result, hold_against_golden(path, scene, images[0]));

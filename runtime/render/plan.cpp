@@ -282,6 +282,7 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
                                           mesh.parts[part], parameters[part]);
         draw.cull = cull_of(pass.cull, mirrored);
         draw.over = pass.depth == graph::DepthTest::always;
+        plan_.origins.push_back({static_cast<uint32_t>(o), &pass});
       }
     }
     if (left_out) ++skipped[p].unseen;

@@ -27,6 +27,12 @@ struct Options {
   driver::Options compiler;  ///< `lights` is set by the scene
 };
 
+/// What a draw of the frame is of.
+struct DrawOrigin {
+  uint32_t object;  ///< in Scene::objects
+  const driver::Pass* pass;
+};
+
 /// A frame and all that it points into; made once, drawn by as many backends as are asked. Can be moved: what
 /// the frame points to stays where it is.
 struct Plan {
@@ -35,6 +41,7 @@ struct Plan {
   std::vector<driver::Post> post_documents;
   int samples = 1;        ///< of each pixel of the image: 1, 4 or 16
   backends::Frame frame;  ///< of as many samples as the image has, see render/samples.h
+  std::vector<DrawOrigin> origins;  ///< of each of frame.draws
   PostChain posts;
   PlanStats stats;
 

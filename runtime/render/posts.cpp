@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
+#include "compiler/support/release.h"
 #include "compiler/support/visible.h"
 #include "runtime/render/parameters.h"
 
@@ -211,7 +212,8 @@ std::optional<PostChain> ChainPlanner::plan() {
                   std::move(planned_[p].record),
                   part_of(width_, scene_.posts[p].size),
                   part_of(height_, scene_.posts[p].size),
-                  {}};
+                  {},
+                  p};
     for (size_t i = 0; i < planned_[p].sources.size(); ++i) {
       const bool reads = documents_[p]->reads[i];
       step.sources.push_back(reads ? number_of(planned_[p].sources[i]) : PostStep::not_read);
@@ -229,7 +231,19 @@ std::optional<PostChain> ChainPlanner::plan() {
 struct Layer {
   int width = 0, height = 0;
   std::vector<float> rgba;
+  bool finite = true;
 };
+
+/// Notes what of the image that a step made is not finite, and whether that is the step's doing.
+void note_non_finite(const PostStep& step, const std::vector<Layer>& layers, Layer& made,
+                     NonFiniteReport& report) {
+  report.result = find_non_finite(made.rgba, made.width);
+  made.finite = report.result.count == 0;
+  const bool read_finite = std::ranges::all_of(step.sources, [&](int source) {
+    return source == PostStep::not_read || layers[static_cast<size_t>(source)].finite;
+  });
+  if (!made.finite && read_finite) report.posts.push_back({step.post_number, report.result});
+}
 
 /// The arrays that a step reads.
 struct Arrays {
@@ -273,9 +287,10 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
 
 bool run_posts(const PostChain& chain, std::span<const float> frame, backends::Backend& backend,
                backends::Image& image, DrawStats& stats, Diagnostics& diagnostics) {
+  stats.non_finite.result = stats.non_finite.drawn;
   if (chain.steps.empty()) return true;
   std::vector<Layer> layers(1 + chain.steps.size());
-  layers[0] = {image.width, image.height, std::move(image.rgba)};
+  layers[0] = {image.width, image.height, std::move(image.rgba), stats.non_finite.drawn.count == 0};
   int64_t kept = 1;
   for (size_t s = 0; s < chain.steps.size(); ++s) {
     const PostStep& step = chain.steps[s];
@@ -289,9 +304,10 @@ bool run_posts(const PostChain& chain, std::span<const float> frame, backends::B
                                       step.record,         arrays.images, arrays.records};
       if (!backend.post(pass, made.rgba, diagnostics)) return false;
     }
+    note_non_finite(step, layers, made, stats.non_finite);
     for (size_t i = 0; i <= s; ++i) {
       if (!chain.is_done(i, s) || layers[i].rgba.empty()) continue;
-      layers[i].rgba = {};
+      support::release(layers[i].rgba);
       --kept;
     }
   }

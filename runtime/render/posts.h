@@ -19,6 +19,7 @@ struct PostStep {
   int width = 0, height = 0;  ///< of the image that it makes
   /// The image that it goes over, then those that its document lists; not_read where it does not look at it.
   std::vector<int> sources;
+  size_t post_number = 0;  ///< in Scene::posts
   static constexpr int not_read = -1;
 };
 

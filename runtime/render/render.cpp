@@ -5,6 +5,7 @@
 
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/check.h"
+#include "compiler/support/release.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/samples.h"
@@ -46,7 +47,7 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
     support::check(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
     raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, to_raster(draw.cull), draw.object, draw.over},
                           frame.width, frame.height, vertices, triangles);
-    clip[d] = {};  // not needed any more
+    support::release(clip[d]);
   }
   stats.triangles = static_cast<int64_t>(triangles.size()) / lower::triangle_word::stride;
   stats.made_vertices =

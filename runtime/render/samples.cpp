@@ -53,6 +53,48 @@ void copy_part(const Image& part, int x, int y, Image& image) {
   }
 }
 
+bool draw_parts(const backends::Frame& frame, int side, std::span<const int32_t> triangles,
+                backends::Drawing& drawing, Image& image, DrawStats& stats,
+                support::Diagnostics& diagnostics) {
+  const int size = max_part_size / side;  // of a part, in pixels
+  image.resize(frame.width / side, frame.height / side);
+  std::vector<int32_t> selected;
+  Image resolved;
+  for (int y = 0; y < image.height; y += size) {
+    for (int x = 0; x < image.width; x += size) {
+      const Window part{x, y, std::min(size, image.width - x), std::min(size, image.height - y)};
+      const Window window{side * part.x, side * part.y, side * part.width, side * part.height};
+      ++stats.parts;
+      select_triangles(triangles, window, selected);
+      if (selected.empty()) {
+        ++stats.empty_parts;
+        fill_with_background(frame, side, part, resolved);
+      } else {
+        if (!drawing.draw(window, selected, resolved, diagnostics)) return false;
+        while (resolved.width > part.width) halve(resolved);
+      }
+      copy_part(resolved, x, y, image);
+    }
+  }
+  return true;
+}
+
+/// Counts the pixels of the image that are not finite, and finds the object that the first of them shows: one of its
+/// samples, drawn again.
+bool note_non_finite(int side, std::span<const int32_t> triangles, backends::Drawing& drawing,
+                     const Image& image, NonFiniteReport& report, support::Diagnostics& diagnostics) {
+  report.drawn = find_non_finite(image.rgba, image.width);
+  if (report.drawn.count == 0) return true;
+  const Window pixel{side * report.drawn.x, side * report.drawn.y, side, side};
+  std::vector<int32_t> selected;
+  select_triangles(triangles, pixel, selected);
+  Image drawn;
+  if (!drawing.draw(pixel, selected, drawn, diagnostics)) return false;
+  const NonFinite sample = find_non_finite(drawn.rgba, side);
+  if (sample.count > 0) report.object = object_at(selected, pixel.x + sample.x, pixel.y + sample.y);
+  return true;
+}
+
 }  // namespace
 
 bool check_samples(const scene::Scene& scene, int width, int height, support::Diagnostics& diagnostics) {
@@ -94,29 +136,9 @@ bool draw(const backends::Frame& frame, int samples, std::span<const float> vert
   const auto drawing = backend.begin(frame, vertices, diagnostics);
   if (drawing == nullptr) return false;
   const int side = samples_each_way(samples);
-  if (side == 1) return drawing->draw({0, 0, frame.width, frame.height}, triangles, image, diagnostics);
-
-  const int size = max_part_size / side;  // of a part, in pixels
-  image.resize(frame.width / side, frame.height / side);
-  std::vector<int32_t> selected;
-  Image resolved;
-  for (int y = 0; y < image.height; y += size) {
-    for (int x = 0; x < image.width; x += size) {
-      const Window part{x, y, std::min(size, image.width - x), std::min(size, image.height - y)};
-      const Window window{side * part.x, side * part.y, side * part.width, side * part.height};
-      ++stats.parts;
-      select_triangles(triangles, window, selected);
-      if (selected.empty()) {
-        ++stats.empty_parts;
-        fill_with_background(frame, side, part, resolved);
-      } else {
-        if (!drawing->draw(window, selected, resolved, diagnostics)) return false;
-        while (resolved.width > part.width) halve(resolved);
-      }
-      copy_part(resolved, x, y, image);
-    }
-  }
-  return true;
+  const bool drawn = side == 1 ? drawing->draw({0, 0, frame.width, frame.height}, triangles, image, diagnostics)
+                               : draw_parts(frame, side, triangles, *drawing, image, stats, diagnostics);
+  return drawn && note_non_finite(side, triangles, *drawing, image, stats.non_finite, diagnostics);
 }
 
 }  // namespace isoshade::render

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/render/finite.h"
+
 namespace isoshade::render {
 
 /// Something left out that would not have changed a bit of the image.
@@ -35,6 +37,7 @@ struct DrawStats {
   int64_t parts = 0;          ///< that the frame is drawn in, where it has several samples a pixel
   int64_t empty_parts = 0;    ///< of them: no triangle, so not drawn
   int64_t kept_images = 0;    ///< by the post chain: the most at a time, with the one that is made
+  NonFiniteReport non_finite;
   double build_seconds = 0;   ///< of the backend, for code of the machine; part of none of the following
   double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0, post_seconds = 0;
 };

@@ -162,6 +162,7 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
     if (check_json(*document, refusal) && load_model(*bytes, files, images, model, refusal))
       result = build_gltf(model, refusal);
     if (result) {
+      warn_ignored(*document, path, where, diagnostics);
       for (GltfPart& part : result->parts)
         if (part.material_index >= 0)
           part.material = read_material(model, part.material_index, images, refusal);

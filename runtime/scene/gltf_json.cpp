@@ -22,8 +22,9 @@ uint32_t word_at(const std::string& bytes, size_t at) {
 /// The keys of what is read whose values are numbers of things, or codes: whole, and not negative.
 bool is_index(std::string_view key) {
   static constexpr std::string_view keys[] = {
-      "buffer",   "bufferView", "byteStride", "children", "componentType", "index",  "indices",
-      "material", "mesh",       "mode",       "nodes",    "scene",         "source", "texCoord"};
+      "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "children", "componentType",
+      "count",         "index",      "indices",    "material",   "mesh",       "mode",     "nodes",
+      "scene",         "source",     "texCoord"};
   return std::ranges::find(keys, key) != std::end(keys);
 }
 
@@ -77,8 +78,11 @@ bool check_version(const Json& root, Refusal& refusal) {
   const Json* version = asset == nullptr ? nullptr : asset->find("version");
   if (version == nullptr || version->kind != Json::Kind::string)
     return refusal.refuse("it is no glTF: it has no \"asset\" with a \"version\"");
-  if (version->string == "2" || version->string.starts_with("2.")) return true;
-  return refusal.refuse("it is of version " + quote(version->string) + ", not 2");
+  if (version->string != "2" && !version->string.starts_with("2."))
+    return refusal.refuse("it is of version " + quote(version->string) + ", not 2");
+  const Json* least = asset->find("minVersion");
+  if (least == nullptr || least->string == "2" || least->string == "2.0") return true;
+  return refusal.refuse("it needs a reader of glTF " + quote(least->string) + ", and isoshade reads 2.0");
 }
 
 bool decodes(const std::string& uri) {
@@ -138,14 +142,9 @@ bool check_json(const graph::Document& document, Refusal& refusal) {
   if (bytes > static_cast<double>(max_gltf_bytes))
     return refusal.refuse("its buffers have more than " + std::to_string(max_gltf_bytes >> 20) + " MiB");
   if (const Json* required = document.root.find("extensionsRequired")) {
-    for (const Json& extension : required->items) {
-      const std::string& name = extension.string;
-      if (name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
-          name.starts_with("EXT_texture_") || name == "KHR_lights_punctual") {
-        continue;
-      }
-      return refusal.refuse("it needs the extension " + quote(name));
-    }
+    for (const Json& extension : required->items)
+      return refusal.refuse("it requires the extension " + quote(extension.string) +
+                            ", and isoshade reads no extensions");
   }
   return check_indices(document, document.root, false, refusal);
 }

@@ -70,6 +70,22 @@ glm::vec3 apply(const glm::mat3& matrix, const glm::vec3& v) {
   return matrix[0] * v.x + matrix[1] * v.y + matrix[2] * v.z;
 }
 
+/// A vector under a matrix, at length 1. Files have normals of any length; a power of two, which rounds nothing, keeps
+/// the very long and the very short ones from overflowing and vanishing on the way.
+glm::vec3 direction(const glm::mat3& matrix, glm::vec3 v) {
+  const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (largest > 0x1p32f) v *= 0x1p-96f;
+  if (largest < 0x1p-32f) v *= 0x1p96f;
+  return normalize(apply(matrix, v));
+}
+
+bool is_finite(const glm::mat3& matrix) {
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (!std::isfinite(matrix[c][r])) return false;
+  return true;
+}
+
 /// The nodes of the scene that is to be shown.
 std::vector<int> Builder::roots() {
   if (!model_.scenes.empty()) {
@@ -141,10 +157,12 @@ bool Builder::add_node(const Placed& placed, std::vector<Placed>& open) {
   if (node.mesh < 0) return true;
   if (static_cast<size_t>(node.mesh) >= model_.meshes.size()) return refusal_.refuse("a mesh does not exist");
   const float determinant = dot(glm::vec3(matrix[0]), cross(glm::vec3(matrix[1]), glm::vec3(matrix[2])));
-  if (!std::isfinite(determinant)) return refusal_.refuse("the transforms of its nodes are too large");
+  const glm::mat3 normals = normal_matrix(matrix);
+  if (!std::isfinite(determinant) || !is_finite(normals))
+    return refusal_.refuse("the transforms of its nodes are too large");
   if (determinant == 0) return true;  // how files hide what is in them
   matrix_ = matrix;
-  normal_matrix_ = normal_matrix(matrix);
+  normal_matrix_ = normals;
   mirrored_ = determinant < 0;
   const auto& primitives = model_.meshes[static_cast<size_t>(node.mesh)].primitives;
   return std::ranges::all_of(primitives, [&](const auto& primitive) { return add_primitive(primitive); });
@@ -219,13 +237,13 @@ bool Builder::place_vertex(const Attributes& attributes, size_t i, Mesh& mesh) {
   glm::vec3 normal(0), tangent(0);
   glm::vec2 texcoord(0);
   if (!attributes.normals.empty())
-    normal = normalize(apply(normal_matrix_, vector_at(attributes.normals, i)));
+    normal = direction(normal_matrix_, vector_at(attributes.normals, i));
   if (!attributes.texcoords.empty())
     texcoord = {attributes.texcoords[2 * i], attributes.texcoords[2 * i + 1]};
   float sign = 1;
   if (!attributes.tangents.empty()) {
     const float* t = &attributes.tangents[4 * i];
-    tangent = normalize(apply(glm::mat3(matrix_), {t[0], t[1], t[2]}));
+    tangent = direction(glm::mat3(matrix_), {t[0], t[1], t[2]});
     sign = (t[3] < 0) != mirrored_ ? -1.0f : 1.0f;
   }
   add_vertex(mesh, glm::vec3(position), normal, texcoord.x, texcoord.y, tangent);

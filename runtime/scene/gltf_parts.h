@@ -49,10 +49,14 @@ std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal);
 bool is_binary(const std::string& bytes);
 
 /// What is asked of the text before tinygltf may read it: that it is JSON and not nested too deep, which would crash
-/// it; that it is glTF 2; that its buffers are not too large together; that it needs no extension that we lack; that each
+/// it; that it is glTF 2; that its buffers are not too large together; that it requires no extension, as none is read; that each
 /// image is somewhere; and that indices and numbers are such: tinygltf takes the lowest 32 bits of an integer, and what
 /// is of the wrong kind for nothing.
 bool check_json(const graph::Document& document, Refusal& refusal);
+
+/// Warns once, by name, of each feature and extension that the file uses and that is not read. `where` names the file.
+void warn_ignored(const graph::Document& document, const std::string& path, const support::Span& where,
+                  support::Diagnostics& diagnostics);
 
 /// The numbers of an accessor, `width` for each of `count` elements, as floats: integers of normalised ones
 /// divided by their greatest. Denormals are zeros, and all are finite.

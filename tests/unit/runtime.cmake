@@ -21,6 +21,7 @@ isoshade_test(compare_test
 
 isoshade_test(render_test
   SOURCES
+    unit/render_finite_test.cpp
     unit/render_parts_test.cpp
     unit/render_plan_test.cpp
     unit/render_posts_test.cpp
@@ -28,3 +29,4 @@ isoshade_test(render_test
     unit/render_textures_test.cpp
     unit/render_visibility_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter PkgConfig::stb)
+target_compile_definitions(render_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

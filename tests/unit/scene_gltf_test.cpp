@@ -249,6 +249,87 @@ TEST_F(Gltf, RefusesWhatWouldCrashItsReader) {
   EXPECT_TRUE(refuses_json(R"("byteLength": 156)", R"("byteLength": 400000000)", "more than 256 MiB"));
 }
 
+TEST_F(Gltf, WarnsOnceByNameOfWhatIsNotRead) {
+  struct Case {
+    const char* from;
+    const char* to;
+    const char* name;
+  };
+  const Case cases[] = {
+      {R"("materials": [{)", R"("materials": [{"alphaMode": "MASK", )", "alpha modes"},
+      {R"("materials": [{)", R"("materials": [{"alphaMode": "OPAQUE", )", nullptr},
+      {R"("materials": [{)", R"("materials": [{"doubleSided": true, )", "double-sided materials"},
+      {R"("materials": [{)", R"("materials": [{"doubleSided": false, )", nullptr},
+      {R"("materials": [{)", R"("materials": [{"normalTexture": {"index": 0, "texCoord": 1}, )",
+       "texture coordinates beyond the first set"},
+      {R"("materials": [{)", R"("materials": [{"extensions": {"KHR_materials_unlit": {}}, )",
+       "the extension \"KHR_materials_unlit\""},
+      {R"("materials": [{)",
+       R"("materials": [{"extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}, )",
+       "the extension \"KHR_materials_emissive_strength\""},
+      {R"("scene": 0)", R"("scene": 0, "samplers": [{"wrapS": 33071}, {"wrapT": 33648}])",
+       "wrap modes of samplers other than REPEAT"},
+      {R"("scene": 0)", R"("scene": 0, "samplers": [{"wrapS": 10497, "magFilter": 9729, "minFilter": 9987}])",
+       nullptr},
+      {R"("scene": 0)", R"("scene": 0, "samplers": [{"magFilter": 9728, "minFilter": 9984}])",
+       "nearest filtering of samplers"},
+      {R"("scene": 0)", R"("scene": 0, "skins": [{"joints": [0]}])", nullptr},
+      {R"([{"mesh": 0}])", R"([{"mesh": 0, "skin": 0}])", "skins"},
+      {R"("indices": 4)", R"("targets": [{"POSITION": 0}], "indices": 4)", "morph targets"},
+      {R"("scene": 0)", R"("scene": 0, "animations": [{"channels": [], "samplers": []}])", "animations"},
+      {R"("scene": 0)", R"("scene": 0, "extras": {"alphaMode": "MASK", "doubleSided": true})", nullptr},
+  };
+  for (const Case& test : cases) {
+    std::string json = square_json();
+    json.replace(json.find(test.from), std::string(test.from).size(), test.to);
+    load(glb(json, square_data()));
+    const std::string text = diagnostics_.text();
+    const size_t warned = text.find("warning[ignored-feature]");
+    if (test.name == nullptr) {
+      EXPECT_EQ(warned, std::string::npos) << test.to << "\n" << text;
+      continue;
+    }
+    ASSERT_NE(warned, std::string::npos) << test.to << "\n" << text;
+    EXPECT_EQ(text.find("warning[ignored-feature]", warned + 1), std::string::npos) << text;
+    EXPECT_NE(text.find(std::string(" uses ") + test.name + ", which isoshade does not read"), std::string::npos)
+        << text;
+  }
+}
+
+TEST_F(Gltf, RefusesRequiredExtensionsAndLaterVersions) {
+  for (const char* name : {"KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness", "KHR_lights_punctual"})
+    EXPECT_TRUE(refuses_json(R"("scene": 0)", R"("extensionsRequired": [")" + std::string(name) + R"("])", name));
+  EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.0", "minVersion": "3.0")", "needs a reader of glTF"));
+  EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.1", "minVersion": "2.1")", "needs a reader of glTF"));
+  std::string json = square_json();
+  json.replace(json.find(R"("version": "2.0")"), 16, R"("version": "2.1", "minVersion": "2.0")");
+  loaded(json);
+}
+
+TEST_F(Gltf, RefusesOffsetsThatAreNone) {
+  EXPECT_TRUE(refuses_json(R"("byteOffset": 48)", R"("byteOffset": -48)", "not a whole number"));
+  EXPECT_TRUE(refuses_json(R"("byteOffset": 144)", R"("byteOffset": 1e18)", "not a whole number"));
+  EXPECT_TRUE(refuses_json(R"("count": 4)", R"("count": -4)", "not a whole number"));
+  EXPECT_TRUE(refuses_json(R"("byteLength": 144)", R"("byteLength": 1.5)", "not a whole number"));
+}
+
+TEST_F(Gltf, NormalsOfAnyLengthStayDirections) {
+  for (const float length : {1e-37f, 1e-20f, 1.0f, 1e20f, 3e38f}) {
+    std::string data = square_data();
+    for (size_t v = 0; v < 4; ++v) std::memcpy(&data[48 + 12 * v + 8], &length, 4);
+    for (const char* node : {R"([{"mesh": 0}])", R"([{"mesh": 0, "scale": [1000, 1000, 1000]}])",
+                             R"([{"mesh": 0, "scale": [0.001, 0.001, 0.001]}])"}) {
+      const GltfModel model = loaded(square_json(all_attributes, node), data);
+      for (size_t v = 0; v < 4; ++v)
+        EXPECT_EQ(vector_at(model, v, word::normal), glm::vec3(0, 0, 1)) << length << " " << node;
+    }
+  }
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])",
+                           R"([{"children": [1], "scale": [1e9, 1e9, 1e-9]},
+    {"children": [2], "scale": [1e9, 1e9, 1e-9]}, {"mesh": 0, "scale": [1e9, 1e9, 1e-9]}])",
+                           "too large"));
+}
+
 TEST_F(Gltf, RefusesFilesThatAreNone) {
   const std::string good = glb(square_json(), square_data());
   EXPECT_TRUE(refuses("glTF", "first chunk"));
