@@ -13,8 +13,9 @@ namespace isoshade::emit {
 
 enum class ShaderKind : uint8_t { vertex, fragment };
 
-/// The module with entry point `main`, validated by SPIRV-Tools. Not optimised: every operation and its
-/// NoContraction are as in the text. The same text gives the same words on every machine. Thread-safe.
+/// The module with entry point `main`, validated by SPIRV-Tools. Not optimised: every operation is as in the text, and
+/// those on floats are NoContraction, whether the text says `precise` or not. The same text gives the same words on
+/// every machine, in time linear in its length. Thread-safe.
 ///
 /// `glsl` begins with glsl_head(); a module without SignedZeroInfNanPreserve 32 would be a bug of ours, so it
 /// aborts. A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.

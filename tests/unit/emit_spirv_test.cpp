@@ -6,6 +6,8 @@
 
 #include "compiler/emit/glsl.h"
 #include "compiler/emit/spirv.h"
+#include "compiler/emit/stages.h"
+#include "tests/unit/ir_text.h"
 
 namespace isoshade::emit {
 namespace {
@@ -56,6 +58,38 @@ TEST(CompileSpirv, KeepsEveryOperationOfPreciseStatementsUncontracted) {
   EXPECT_EQ(Operations(spirv, op_fmul).results.size(), 1u);
   EXPECT_EQ(Operations(spirv, op_fadd).results.size(), 2u) << "nothing is optimised away";
   EXPECT_TRUE(Operations(spirv, op_fmul).all_exact());
+  EXPECT_TRUE(Operations(spirv, op_fadd).all_exact());
+}
+
+TEST(CompileSpirv, KeepsEveryOperationUncontractedWhereNothingIsPrecise) {
+  constexpr uint32_t op_fadd = 129, op_fsub = 131, op_fmul = 133, op_fdiv = 136;
+  const std::vector<uint32_t> spirv = compile(fragment(
+      "  vec2 v = vec2(a, b) * b;\n  color = vec4(a * b + a, a - b, a / b, v.x * v.y);\n  color += color;\n"));
+  for (const uint32_t opcode : {op_fadd, op_fsub, op_fmul, op_fdiv}) {
+    EXPECT_FALSE(Operations(spirv, opcode).results.empty()) << opcode;
+    EXPECT_TRUE(Operations(spirv, opcode).all_exact()) << opcode;
+  }
+}
+
+// 2^200 paths lead from the last result back to the first: what follows each of them never ends.
+TEST(CompileSpirv, TakesLongChainsOfFunctionsWithSeveralResults) {
+  std::string text =
+      "func @two(%a: float, %b: float) -> (sum: float, difference: float) {\n"
+      "  %s = fadd %a, %b\n  %d = fsub %a, %b\n  return %s, %d\n}\n"
+      "func @eval(%row: int) -> (out: float) {\n  %a0 = itof %row\n  %b0 = fmul %a0, %a0\n";
+  constexpr int depth = 200;
+  for (int i = 0; i < depth; ++i) {
+    const std::string from = std::to_string(i), to = std::to_string(i + 1);
+    text.append("  %a" + to + ", %b" + to + " = call @two(%a" + from + ", %b" + from + ")\n");
+  }
+  const std::string last = std::to_string(depth);
+  const ir::Module module =
+      ir::valid(text + "  %out = fadd %a" + last + ", %b" + last + "\n  return %out\n}");
+  constexpr uint32_t op_fadd = 129, op_function_call = 57;
+  const std::vector<uint32_t> spirv =
+      compile(glsl_stage(module, module.find("eval"), lower::Stage::eval, {"", "test"}));
+  EXPECT_GE(Operations(spirv, op_function_call).results.size(), size_t{depth});
+  EXPECT_EQ(Operations(spirv, op_fadd).results.size(), 2u);
   EXPECT_TRUE(Operations(spirv, op_fadd).all_exact());
 }
 
