@@ -2,9 +2,11 @@
 #include "compiler/driver/drawing.h"
 
 #include <bit>
+#include <charconv>
 #include <fmt/format.h>
 #include <vector>
 
+#include "compiler/driver/box_layers.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 
@@ -68,20 +70,22 @@ class Picture {
                         escaped(graph.graph.name));
     Names inputs;
     for (const graph::Input& input : graph.graph.inputs)
-      inputs.push_back(input_box(input, input.value ? " = " + literal_text(*input.value) : ""));
+      inputs.push_back(full() ? "" : input_box(input, input.value ? " = " + literal_text(*input.value) : ""));
     const Drawn drawn = body(graph, inputs, 0);
     Names names_of_passes;  // in the order of TypedGraph::outputs
     for (const graph::Pass& pass : graph.graph.passes) names_of_passes.push_back(pass.name + " color");
     for (const graph::Pass& pass : graph.graph.passes)
       if (pass.position) names_of_passes.push_back(pass.name + " position");
-    for (size_t i = 0; i < graph.outputs.size(); ++i) {
+    for (size_t i = 0; i < graph.outputs.size() && !full(); ++i) {
       const bool has_outputs = graph.graph.kind != graph::DocumentKind::effect;
       const std::string name = has_outputs ? graph.graph.outputs[i].name : names_of_passes[i];
       edge(source_of(graph.outputs[i], drawn, inputs), output_box(name, graph.outputs[i].needed),
            graph.outputs[i]);
     }
-    if (boxes_ > most_drawn_nodes)
-      out_ += fmt::format("  more [label=\"more than {} nodes: the rest is not drawn\"]\n", most_drawn_nodes);
+    if (full())
+      out_ += fmt::format("  n{} [label=\"more than {} nodes: the rest is not drawn\"]\n", new_box(1),
+                          most_drawn_nodes);
+    if (boxes_ > most_laid_out_nodes) place_boxes();
     return out_ + "}\n";
   }
 
@@ -90,11 +94,31 @@ class Picture {
   /// Where links to a document's nodes begin: "n3:out", for each node and output.
   using Drawn = std::vector<Names>;
 
-  std::string new_name() { return "n" + std::to_string(boxes_++); }
+  size_t new_box(size_t rows) {
+    layers_.add_box(rows);
+    return boxes_++;
+  }
   bool full() const { return boxes_ > most_drawn_nodes; }
 
+  /// Says where each box is: Graphviz then only draws. In a picture of dots it has at most 60 inches a side.
+  void place_boxes() {
+    out_ += "  layout=nop\n  splines=line\n  size=\"60,60\"\n";
+    const std::vector<BoxLayers::Place> places = layers_.places();
+    for (size_t i = 0; i < places.size(); ++i)
+      out_ += fmt::format("  n{} [pos=\"{},{}\"]\n", i, places[i].x, places[i].y);
+  }
+
+  /// The number of the box that an end of a link names: "n12:i0".
+  static size_t box_of(std::string_view end) {
+    size_t number = 0;
+    std::from_chars(end.data() + 1, end.data() + end.size(), number);
+    return number;
+  }
+
   std::string box(std::string_view border, const std::string& rows) {
-    const std::string name = new_name();
+    size_t lines = 0;
+    for (size_t at = 0; (at = rows.find("<tr>", at)) != std::string::npos; ++at) ++lines;
+    const std::string name = "n" + std::to_string(new_box(lines));
     out_ += fmt::format(
         "  {} [label=<<table border=\"1\" color=\"{}\" cellborder=\"0\" cellspacing=\"0\" "
         "cellpadding=\"3\">{}"
@@ -218,6 +242,7 @@ class Picture {
 
   void edge(const std::string& from, const std::string& to, const Operand& operand) {
     if (from.empty() || to.empty()) return;
+    layers_.add_link(box_of(from), box_of(to));
     std::string label;
     for (int i = 0; i < operand.swizzle_count; ++i) label += "xyzw"[operand.swizzle[static_cast<size_t>(i)]];
     if (!label.empty()) label = "." + label;
@@ -285,15 +310,21 @@ class Picture {
     out_ += fmt::format(
         "  subgraph cluster_{} {{\n  label=\"{}  {}\"\n  style=rounded\n  color=\"#9ca3af\"\n"
         "  bgcolor=\"#f7f7f4\"\n",
-        new_name(), escaped(graph.graph.nodes[index].id), escaped(graph.graph.nodes[index].label()));
+        clusters_++, escaped(graph.graph.nodes[index].id), escaped(graph.graph.nodes[index].label()));
     const auto operands = graph.operands_of(node);
     Names own;
     for (size_t i = 0; i < operands.size(); ++i) {
       const bool written = operands[i].from == From::words;
-      own.push_back(input_box(callee.graph.inputs[i], written ? " = " + words_text(graph, operands[i]) : ""));
+      own.push_back(full() ? ""
+                           : input_box(callee.graph.inputs[i],
+                                       written ? " = " + words_text(graph, operands[i]) : ""));
     }
     const Drawn inner = body(callee, own, depth + 1);
     for (size_t i = 0; i < callee.outputs.size(); ++i) {
+      if (full()) {
+        drawn[index].emplace_back();
+        continue;
+      }
       drawn[index].push_back(output_box(callee.graph.outputs[i].name, callee.outputs[i].needed));
       edge(source_of(callee.outputs[i], inner, own), drawn[index].back(), callee.outputs[i]);
     }
@@ -305,7 +336,8 @@ class Picture {
 
   std::string out_;
   int deepest_;
-  size_t boxes_ = 0;
+  size_t boxes_ = 0, clusters_ = 0;
+  BoxLayers layers_;
 };
 
 }  // namespace

@@ -70,6 +70,51 @@ TEST_F(Drawing, VeryLargeGraphsAreCutAndSaySo) {
   EXPECT_LT(count(text, "[label=<"), 2100u);
 }
 
+/// A chain of `count` sums, each of the one before and the first.
+std::string chain(int count) {
+  std::string nodes = R"("n0": {"type": "add", "in1": "x", "in2": 1})";
+  for (int i = 1; i < count; ++i)
+    nodes += ", \"n" + std::to_string(i) + R"(": {"type": "add", "in1": "n)" + std::to_string(i - 1) +
+             R"(", "in2": "n0"})";
+  return R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}}, "nodes": {)" + nodes +
+         R"(}, "outputs": {"out": "n)" + std::to_string(count - 1) + "\"}}";
+}
+
+// Graphviz takes minutes to find places for some hundred boxes, so it is told them.
+TEST_F(Drawing, EveryBoxOfALargeGraphHasAPlaceRightOfWhatItReads) {
+  const std::string text = draw(chain(500));
+  EXPECT_NE(text.find("layout=nop"), std::string::npos);
+  const size_t boxes = count(text, "[label=<");
+  EXPECT_EQ(boxes, 502u);
+  EXPECT_EQ(count(text, " [pos=\""), boxes);
+  const auto column = [&](const std::string& box) {
+    const std::string head = "  " + box + " [pos=\"";
+    const size_t at = text.find(head);
+    return at == std::string::npos ? -1 : std::stoi(text.substr(at + head.size()));
+  };
+  size_t links = 0;
+  for (size_t at = 0; (at = text.find(" -> ", at)) != std::string::npos; ++at, ++links) {
+    const size_t begin = text.rfind('n', text.rfind(':', at));
+    const std::string from = text.substr(begin, text.find(':', begin) - begin);
+    const std::string to = text.substr(at + 4, text.find(':', at) - at - 4);
+    EXPECT_LT(column(from), column(to)) << from << " " << to;
+  }
+  EXPECT_EQ(links, 1000u);
+}
+
+TEST_F(Drawing, GraphvizLaysOutSmallGraphs) {
+  EXPECT_EQ(draw(chain(100)).find("layout="), std::string::npos);
+}
+
+TEST_F(Drawing, VeryManyInputsAreCut) {
+  std::string inputs = R"("x": {"type": "float"})";
+  for (int i = 0; i < 5000; ++i) inputs += ", \"x" + std::to_string(i) + R"(": {"type": "float"})";
+  const std::string text = draw(R"({"isoshade": 1, "function": "f", "inputs": {)" + inputs +
+                                R"(}, "nodes": {}, "outputs": {"out": "x"}})");
+  EXPECT_NE(text.find("more than 2000 nodes"), std::string::npos);
+  EXPECT_LT(count(text, "[label=<"), 2100u);
+}
+
 TEST_F(Drawing, WordsOfADocumentAreNoMarkup) {
   const std::string evil = R"(</b><img src=\"/etc/passwd\"/>\" ] } \\n &amp; -> \u202e)";
   const std::string text = draw(R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
