@@ -96,6 +96,13 @@ BROKEN = [
     (FUNCTION, "nodes/s/to", "colour3"),
     (FUNCTION, "nodes/s/in", ...),
     (FUNCTION, "nodes/a/type", ...),
+    (FUNCTION, "nodes/a/type", "ad"),
+    (FUNCTION, "nodes/k/type", "brdf/ggx_e"),
+    (FUNCTION, "nodes/k/type", "ggx_d"),
+    (FUNCTION, "nodes/k/n_dot_k", 1),
+    (FUNCTION, "nodes/k/alpha", ...),
+    (FUNCTION, "isoshade", ...),
+    ({"isoshade": 1, "efect": "e"}, "doc", "a kind that is none"),
     (FUNCTION, "nodes/e/code", ...),
     (FUNCTION, "nodes/m/in", [1, 2, 3]),
     (FUNCTION, "outputs/out", 1),
@@ -105,6 +112,7 @@ BROKEN = [
     (EFFECT, "passes", []),
     (EFFECT, "passes/0/color", ...),
     (EFFECT, "passes/0/cull", "left"),
+    (EFFECT, "passes/0/color", [1, 2]),
     (SCENE, "camera", ...),
     (SCENE, "camera/type", "fisheye"),
     (SCENE, "camera/height", 3),
@@ -171,6 +179,7 @@ class Schema(unittest.TestCase):
     def test_documents_of_every_kind_are_valid(self):
         for document in FUNCTION, EFFECT, SCENE, EXTENSION:
             self.assertEqual(self.errors(document), [])
+        self.assertEqual(self.errors(changed(EFFECT, "passes/0/color", [1, 0.5, 0])), [])
 
     def test_documents_with_one_thing_wrong_are_not(self):
         for document, path, value in BROKEN:

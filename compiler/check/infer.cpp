@@ -37,6 +37,34 @@ Type tuple_of(size_t numbers, nodes::TypeSet accepts) {
   }
 }
 
+bool takes_as_color(const Work& work, Operand& operand, const Link& link, Type needed) {
+  if (!nodes::color_types.has(needed) || graph::float_count(operand.type) != graph::float_count(needed) ||
+      !work.is_untyped(operand, link))
+    return false;
+  operand.type = needed;
+  return true;
+}
+
+bool NodeInference::takes(size_t i, Type needed) {
+  return converts(operand(i).type, needed) || takes_as_color(work_, operand(i), *given(i).link, needed);
+}
+
+/// Of a row whose output is as wide as an array of numbers that is written in place, of which nothing says what it is.
+bool NodeInference::makes_untyped() {
+  const Variable variable = node_.row->outputs[0].type.variable;
+  if (variable == Variable::none || !nodes::vector_types.has(type_of(node_.row->outputs[0].type))) return false;
+  bool has_array = false;
+  for (size_t i = 0; i < node_.operand_count; ++i) {
+    if (port(i).type.variable != variable || given(i).port == nullptr) continue;
+    if (!is_value(i)) return false;
+    const Literal* value = literal(i);
+    const bool array = value != nullptr ? value->kind == Literal::Kind::numbers : is_untyped(i);
+    if (value == nullptr && !array && nodes::vector_types.has(operand(i).type)) return false;
+    has_array |= array;
+  }
+  return has_array;
+}
+
 void NodeInference::infer_row() {
   const size_t count = node_.operand_count;
   for (size_t i = 0; i < count; ++i) {
@@ -54,6 +82,7 @@ void NodeInference::infer_row() {
   node_.first_type = static_cast<uint32_t>(work_.typed.types.size());
   node_.output_count = static_cast<uint32_t>(node_.row->outputs.size());
   for (const nodes::Output& output : node_.row->outputs) work_.typed.types.push_back(type_of(output.type));
+  work_.untyped[index_] = makes_untyped();
   if (node_.row->condition != nullptr) check_condition();
 }
 
@@ -150,9 +179,14 @@ void NodeInference::join(size_t i, Type type) {
 }
 
 void NodeInference::settle_by_links() {
-  for (size_t i = 0; i < node_.operand_count && !broken(); ++i) {
-    if (is_value(i) && given(i).link != nullptr && port(i).type.variable != Variable::none)
-      join(i, operand(i).type);
+  // Arrays are what the rest is, so they come last.
+  for (const bool untyped : {false, true}) {
+    for (size_t i = 0; i < node_.operand_count && !broken(); ++i) {
+      if (!is_value(i) || given(i).link == nullptr || port(i).type.variable == Variable::none) continue;
+      if (is_untyped(i) != untyped) continue;
+      const std::optional<Type> type = settled(i).type;
+      if (!type || !takes_as_color(work_, operand(i), *given(i).link, *type)) join(i, operand(i).type);
+    }
   }
 }
 
@@ -194,15 +228,27 @@ void NodeInference::check_settled() {
   }
 }
 
+/// Whether a parameter that takes a file is called so.
+bool is_file_parameter(const graph::Graph& graph, const std::string& name) {
+  const auto found = graph.names.find(name);
+  return found != graph.names.end() && found->second.is_input &&
+         graph.inputs[found->second.index].type == Type::filename;
+}
+
 void NodeInference::place_value(size_t i) {
   const Type needed = type_of(port(i).type);
   Operand& to = operand(i);
   if (given(i).link != nullptr) {
     to.needed = needed;
-    if (converts(to.type, needed)) return;
+    if (takes(i, needed)) return;
     report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(needed) + ", not " + name_of(to.type))
         .suggest(conversion_hint(*given(i).link, needed));
   } else if (const Literal* value = literal(i)) {
+    if (fits(*value, needed) && needed == Type::filename && is_file_parameter(work_.graph(), value->string)) {
+      report(Id::wrong_type, i, of_node(i) + " is a path, and " + quote(value->string) + " is a parameter")
+          .suggest("write {\"link\": \"" + value->string + "\"}; a file of that name is \"./" + value->string + "\"");
+      return;
+    }
     if (fits(*value, needed) && needed == Type::filename)
       return place_file(work_.typed, {value->string, given(i).port->place}, to);
     if (fits(*value, needed)) return place(work_.typed, *value, needed, to);
@@ -238,6 +284,8 @@ void infer_output(Work& work, size_t i) {
     work.report(Id::type_mismatch, link.place, "\"position\" is a vector3, not " + name_of(output.type));
     return;
   }
+  for (const Type color : {Type::color3, Type::color4})
+    if (takes_as_color(work, output, link, color)) output.needed = color;
   if (nodes::color_types.has(output.type)) return;
   output.needed = Type::color3;
   if (converts(output.type, Type::color3)) return;
@@ -249,6 +297,7 @@ void infer_output(Work& work, size_t i) {
 
 void infer(Work& work) {
   work.typed.types.reserve(work.typed.nodes.size());
+  work.untyped.resize(work.typed.nodes.size());
   for (const uint32_t node : work.typed.order)
     if (!work.broken[node]) NodeInference(work, node).infer();
   for (size_t i = 0; i < work.typed.outputs.size(); ++i) infer_output(work, i);

@@ -55,7 +55,7 @@ void NodeInference::place_argument(size_t i) {
   Operand& to = operand(i);
   if (given(i).link != nullptr) {
     to.needed = input.type;
-    if (converts(to.type, input.type)) return;
+    if (takes(i, input.type)) return;
     report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(input.type) + ", not " + name_of(to.type))
         .suggest(conversion_hint(*given(i).link, input.type));
     return;

@@ -64,6 +64,7 @@ void place(TypedGraph& typed, const nodes::Default& value, Type type, Operand& o
   } else if (const auto* numbers = std::get_if<std::array<float, 3>>(&value)) {
     begin(typed, type, operand);
     for (const float number : *numbers) typed.words.push_back(std::bit_cast<uint32_t>(number));
+    typed.words.resize(operand.index + static_cast<size_t>(graph::float_count(type)));
   } else if (const auto* truth = std::get_if<bool>(&value); truth != nullptr && type == Type::boolean) {
     begin(typed, type, operand);
     typed.words.push_back(*truth ? 1 : 0);

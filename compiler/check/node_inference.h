@@ -14,6 +14,8 @@ namespace isoshade::check {
 
 inline std::string name_of(Type type) { return std::string(graph::type_name(type)); }
 
+/// Whether a vector whose type arrays of numbers decided is taken as a colour; it is of the type then.
+bool takes_as_color(const Work& work, Operand& operand, const graph::Link& link, Type needed);
 /// How to make of what is linked what is needed.
 std::string conversion_hint(const graph::Link& link, Type to);
 /// The type that both are taken as.
@@ -86,6 +88,12 @@ class NodeInference {
     return only;
   }
 
+  /// Whether what is linked to an operand is taken as `needed`; its type is that then, or one that converts to it.
+  bool takes(size_t i, Type needed);
+  bool is_untyped(size_t i) {
+    return given(i).link != nullptr && work_.is_untyped(operand(i), *given(i).link);
+  }
+  bool makes_untyped();
   void infer_row();
   void read_text(size_t i);
   void read_integer(size_t i);

@@ -66,7 +66,7 @@ class NodeResolver {
           work_.report(Id::misplaced_node, source_.type_place,
                        (kind == DocumentKind::effect ? "an " : "a ") + std::string(graph::kind_name(kind)) +
                            " document cannot have the node " + quote(source_.label()));
-      if (in_function()) report.suggest("make it an input of the function");
+      if (in_function()) report.suggest(way_around());
       fail();
     }
     add_operands();
@@ -80,6 +80,16 @@ class NodeResolver {
   void fail() { work_.broken[index_] = true; }
   bool is_call() const { return source_.origin == graph::Node::Origin::call; }
   bool in_function() const { return work_.graph().kind == DocumentKind::function; }
+  /// What to do in a function instead of what only the documents that call it can.
+  std::string way_around() const {
+    if (node_.row->is_sum())
+      return "leave the sum to the effect or post that calls the function, and sum what the function gives there";
+    if (node_.row->is<nodes::Image>() || node_.row->is<nodes::Fetch>())
+      return "read the image in the document that calls the function, and make the colour an input of the function";
+    if (node_.row->is<nodes::Derivative>())
+      return "take the derivative in the effect that calls the function, and make it an input of the function";
+    return "make it an input of the function";
+  }
   bool at_home(nodes::Home home) const {
     switch (work_.graph().kind) {
       case DocumentKind::effect: return home != nodes::Home::posts;

@@ -31,10 +31,15 @@ struct Work {
   /// What node types that are not in the table refer to.
   std::unordered_map<std::string_view, std::shared_ptr<const TypedGraph>> functions = {};
   uint64_t passed_numbers = 0;  ///< to and from functions
+  /// Nodes whose output is a vector only because arrays of numbers are: it is taken where a colour is needed, too.
+  std::vector<bool> untyped = {};
   /// Nodes with errors. Their outputs have no type, and what reads them is not complained about again.
   std::vector<bool> broken = {};
 
   const graph::Graph& graph() const { return typed.graph; }
+  bool is_untyped(const Operand& operand, const graph::Link& link) const {
+    return operand.from == Operand::From::node && link.selectors.empty() && untyped[operand.index];
+  }
   /// Whether a document with inputs of any type is checked again, with another type than float.
   bool is_instance() const {
     return std::ranges::any_of(

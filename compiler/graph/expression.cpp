@@ -251,7 +251,7 @@ void ExpressionParser::parse() {
   for (size_t i = 0; i < used_.size() && !failed_; ++i) {
     if (used_[i]) continue;
     diagnostics_
-        .report(Id::unknown_port, graph_.span(made_.ports[i].name_place),
+        .report(Id::unread_key, graph_.span(made_.ports[i].name_place),
                 "the code does not read " + quote(made_.ports[i].name))
         .suggest("use it in the code, or remove it");
   }

@@ -31,7 +31,7 @@ inline constexpr int max_expression_depth = 100;
 inline constexpr size_t max_expression_nodes = 200'000;
 
 /// Makes graph.nodes[root], the node as it is written, what its code computes last, and appends the rest.
-/// `code` is the value of its key. Reports code that is malformed, or that does not read one of the ports.
+/// `code` is the value of its key. Reports code that is malformed, and warns of ports that it does not read.
 void expand_expression(Graph& graph, uint32_t root, const Document& document, const Json& code,
                        support::Diagnostics& diagnostics);
 

@@ -66,26 +66,42 @@ ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type ty
   const std::string type_text(name.text);
   const int count = float_count(type);
   const bool tuple = count >= 2 && count <= 4;
-  if (!tuple && type != Type::floating && type != Type::integer && type != Type::boolean)
-    return fail(place_of(name), "an expression makes no " + type_text,
-                "make it by a node and give the expression a port for it");
+  const bool matrix = type == Type::matrix33 || type == Type::matrix44;
+  if (!tuple && !matrix && type != Type::floating && type != Type::integer && type != Type::boolean)
+    return fail(place_of(name), "an expression makes no " + type_text, "give the expression a port for it");
+  if (matrix) {
+    const size_t columns = type == Type::matrix33 ? 3 : 4;
+    if (arguments.size() != columns)
+      return fail(place_of(name), type_text + " takes " + std::to_string(columns) + " arguments, its columns, not " +
+                                      std::to_string(arguments.size()));
+    return made_of("creatematrix", name, std::move(arguments));
+  }
   if (arguments.size() == 1) {
     const uint32_t node = add("convert", Node::Origin::operation, name.text, place_of(name));
     give(node, "in", "the argument", std::move(arguments[0]));
     give(node, "to", "the type", {string_literal(name.text), place_of(name)});
     return link_to(node, place);
   }
-  if (!tuple || arguments.size() != static_cast<size_t>(count))
-    return fail(place_of(name), type_text + " takes 1 " +
-                                    (tuple ? "or " + std::to_string(count) + " arguments" : "argument") +
-                                    ", not " + std::to_string(arguments.size()));
-  const uint32_t node =
-      add("combine" + std::to_string(count), Node::Origin::operation, name.text, place_of(name));
+  // Two arguments are two numbers, or all components but the last, and that.
+  const bool all = tuple && arguments.size() == static_cast<size_t>(count);
+  if (all || (tuple && arguments.size() == 2))
+    return made_of("combine" + std::to_string(arguments.size()), name, std::move(arguments));
+  return fail(place_of(name), type_text + " takes 1" +
+                                  (count > 2  ? ", 2 or " + std::to_string(count) + " arguments"
+                                   : tuple ? " or 2 arguments"
+                                           : " argument") +
+                                  ", not " + std::to_string(arguments.size()));
+}
+
+ExpressionParser::Operand ExpressionParser::made_of(std::string_view row, const Token& name,
+                                                    std::vector<Operand> arguments) {
+  const Place place = since(place_of(name));
+  const uint32_t node = add(row, Node::Origin::operation, name.text, place_of(name));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const std::string position = std::to_string(i + 1);
     give(node, "in" + position, "argument " + position, std::move(arguments[i]));
   }
-  if (count > 2) give(node, "to", "the type", {string_literal(name.text), place_of(name)});
+  give(node, "to", "the type", {string_literal(name.text), place_of(name)});
   return link_to(node, place);
 }
 

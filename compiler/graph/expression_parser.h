@@ -46,6 +46,9 @@ class ExpressionParser {
   Operand call(const Token& name);
   Operand type_call(const Token& name, Type type, std::vector<Operand> arguments, Place place);
 
+  /// A node of `row` with the arguments as in1, in2, ... and the type `name` as "to".
+  Operand made_of(std::string_view row, const Token& name, std::vector<Operand> arguments);
+
   /// Appends a node; `shown` is what stands for it in the code.
   uint32_t add(std::string_view type, Node::Origin origin, std::string_view shown, Place place);
   void give(uint32_t node, std::string_view port, std::string_view shown, Operand operand);

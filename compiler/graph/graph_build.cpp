@@ -49,6 +49,30 @@ std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
   return std::nullopt;
 }
 
+std::optional<Link> GraphBuilder::color(const Json& json) {
+  if (json.kind != Json::Kind::number && json.kind != Json::Kind::array) return link(json, "color");
+  auto value = parse_literal(document_, json, "color", diagnostics_);
+  if (!value) return std::nullopt;
+  const size_t count = value->kind == Literal::Kind::numbers ? value->numbers.size() : 3;
+  if (count != 3 && count != 4) {
+    diagnostics_.report(Id::wrong_type, document_.span(json),
+                        "\"color\" has 3 or 4 numbers, not " + std::to_string(count));
+    return std::nullopt;
+  }
+  Literal type;
+  type.kind = Literal::Kind::string;
+  type.string = count == 3 ? "color3" : "color4";
+  const Place place = place_of(json);
+  Node node;
+  node.id = node.shown = "color";
+  node.type = "constant";
+  node.origin = Node::Origin::operation;
+  node.id_place = node.type_place = node.place = place;
+  node.ports = {{"value", *std::move(value), place, place}, {"to", std::move(type), place, place}};
+  graph_.nodes.push_back(std::move(node));
+  return Link{"color", {}, place, static_cast<uint32_t>(graph_.nodes.size() - 1)};
+}
+
 void GraphBuilder::read_node(const Member& member) {
   Node node;
   node.id = member.key;
@@ -135,7 +159,9 @@ void GraphBuilder::read_outputs(const Json& outputs) {
   for (const Member& member : outputs.members) {
     check_id(member.key, key_place(member), "an output");
     Output output{member.key, {}, key_place(member)};
-    if (std::optional<Link> found = link(member.value, member.key)) output.link = std::move(*found);
+    const bool is_color = graph_.kind == DocumentKind::post && member.key == post_output;
+    if (std::optional<Link> found = is_color ? color(member.value) : link(member.value, member.key))
+      output.link = std::move(*found);
     graph_.outputs.push_back(std::move(output));
   }
 }

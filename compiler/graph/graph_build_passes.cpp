@@ -59,7 +59,7 @@ void GraphBuilder::read_pass(const Json& json) {
   }
   if (const Json* enabled = reader.value("enabled", Need::optional)) pass.enabled = switch_of(*enabled);
   if (const Json* color = reader.value("color")) {
-    if (std::optional<Link> found = link(*color, "color")) pass.color = std::move(*found);
+    if (std::optional<Link> found = this->color(*color)) pass.color = std::move(*found);
   }
   reader.finish();
   const Json* name = json.find("name");

@@ -28,6 +28,8 @@ class GraphBuilder {
   void enter(const Member& member, std::string_view what, Graph::Name name);
 
   std::optional<Link> link(const Json& json, std::string_view key);
+  /// A link, or a colour that is written in place.
+  std::optional<Link> color(const Json& json);
 
   void read_inputs(const Json& inputs, bool are_parameters);
   void read_input(const Member& member, bool is_parameter);

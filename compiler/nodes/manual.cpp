@@ -108,7 +108,7 @@ std::string default_text(const Port& port) {
   return list.empty() ? list : list + "]";
 }
 
-std::string table_text() {
+std::string table_text(std::span<const Row> library) {
   std::string text;
   std::string_view group;
   for (const Row& row : table()) {
@@ -116,7 +116,10 @@ std::string table_text() {
     group = row.group;
     text += line_text(row.name, row.doc);
   }
-  return text + "\nformulas\n" + line_text(graph::expression_type, graph::expression_doc);
+  text += "\nformulas\n" + line_text(graph::expression_type, graph::expression_doc);
+  if (!library.empty()) text += "\nlibrary\n";
+  for (const Row& row : library) text += line_text(row.name, row.doc);
+  return text;
 }
 
 std::string expression_text() {
@@ -152,10 +155,10 @@ std::string row_text(const Row& row) {
   return text;
 }
 
-std::string table_markdown() {
+std::string table_markdown(std::span<const Row> library) {
   std::string text;
   std::string_view group;
-  for (const Row& row : table()) {
+  const auto add = [&](const Row& row) {
     if (row.group != group) {
       text += (group.empty() ? "**" : "\n**") + std::string(row.group) +
               "**\n\n| node | ports (defaults) | gives | |\n|---|---|---|---|\n";
@@ -168,7 +171,9 @@ std::string table_markdown() {
       if (row.outputs.size() > 1) outputs += (outputs.empty() ? "`" : " `") + std::string(output.name) + "`";
     text += "| " + cell("`" + std::string(row.name) + "`") + " | " + cell(ports) + " | " + cell(outputs) +
             " | " + cell(std::string(row.doc)) + " |\n";
-  }
+  };
+  std::ranges::for_each(table(), add);
+  std::ranges::for_each(library, add);
   return text;
 }
 

@@ -2,6 +2,7 @@
 // The node table for readers.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "compiler/nodes/row.h"
@@ -13,14 +14,15 @@ std::string type_text(const PortType& type);
 /// "0.5", "true", "[0.2126, 0.7152, 0.0722]", "\"world\"", "the surface's normal"; empty if it must be given.
 std::string default_text(const Port& port);
 
-/// Every node with the first sentence about it, by group.
-std::string table_text();
+/// Every node, and every function of the library, with the first sentence about it, by group.
+std::string table_text(std::span<const Row> library);
 /// What a row does, its ports and outputs.
 std::string row_text(const Row& row);
 /// The same of the nodes that hold a formula, which are no rows.
 std::string expression_text();
 
-/// The tables of graphs/README.md, one a group: node, ports with defaults, what it does.
-std::string table_markdown();
+/// The tables of graphs/README.md, one a group: node, ports with defaults, what it does; the last one has the functions of
+/// the library.
+std::string table_markdown(std::span<const Row> library);
 
 }  // namespace isoshade::nodes

@@ -100,7 +100,7 @@ SchemaJson row_schema(const Row& row) {
   return object_schema(keys);
 }
 
-SchemaJson node_schema() {
+SchemaJson node_schema(std::span<const Row> library) {
   std::vector<SchemaJson> types, branches;
   const auto add = [&](std::string_view name, std::string_view doc, SchemaJson schema) {
     types.push_back({{"const", name}, {"description", doc}});
@@ -108,6 +108,7 @@ SchemaJson node_schema() {
                         {"then", std::move(schema)}});
   };
   for (const Row& row : table()) add(row.name, row.doc, row_schema(row));
+  for (const Row& row : library) add(row.name, row.doc, row_schema(row));
   add(graph::expression_type, graph::expression_doc,
       {{"required", {"code"}},
        {"properties",
@@ -115,8 +116,8 @@ SchemaJson node_schema() {
          {"doc", string_schema()},
          {"extras", true}}},
        {"additionalProperties", reference("port")}});
-  types.push_back({{"pattern", "/|\\.json$|^[A-Za-z_][A-Za-z0-9_]*$"},
-                   {"description", "a function document: its library name, or a path that ends in .json"},
+  types.push_back({{"pattern", "\\.json$"},
+                   {"description", "a function document: a path that ends in .json"},
                    {"type", "string"}});
   return {{"type", "object"},
           {"required", {"type"}},
@@ -139,6 +140,10 @@ SchemaJson input_schema(bool is_parameter) {
   return object_schema(keys);
 }
 
+SchemaJson color_schema() {
+  return any_of({reference("link"), number_schema(), numbers_schema(3), numbers_schema(4)});
+}
+
 SchemaJson pass_schema() {
   return object_schema(
       {{"name", reference("id"), true},
@@ -147,7 +152,7 @@ SchemaJson pass_schema() {
        {"position", described(reference("link"), "where vertices go; else they stay")},
        {"position_space", one_of({"world", "object", "view"})},
        {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
-       {"color", reference("link"), true}});
+       {"color", color_schema(), true}});
 }
 
 SchemaJson with_one_key(SchemaJson map) {
@@ -164,7 +169,7 @@ SchemaJson graph_schema(std::string_view kind, const std::vector<SchemaKey>& res
 
 }  // namespace
 
-std::string json_schema() {
+std::string json_schema(std::span<const Row> library) {
   constexpr std::string_view id = "[A-Za-z_][A-Za-z0-9_]{0,127}";
   const std::string link = "^" + std::string(id) + "(\\." + std::string(id) + "){0,2}$";
   SchemaJson definitions;
@@ -176,7 +181,7 @@ std::string json_schema() {
   definitions["literal"] =
       any_of({boolean_schema(), number_schema(), string_schema(), array_schema(number_schema(), 1, 16)});
   definitions["port"] = any_of({reference("literal"), reference("link")});
-  definitions["node"] = node_schema();
+  definitions["node"] = node_schema(library);
   definitions["input"] = input_schema(false);
   definitions["parameter"] = input_schema(true);
   definitions["pass"] = pass_schema();
@@ -191,21 +196,32 @@ std::string json_schema() {
       {{"parameters", parameters},
        {"images", described(array_schema(reference("id"), 0, 8), "names of further images that it reads")},
        {"enabled", described(reference("id"), "a parameter: where it is 0, the post is not run")},
-       {"outputs", object_schema({{"color", reference("link"), true}}), true}});
+       {"outputs", object_schema({{"color", color_schema(), true}}), true}});
   SchemaJson scene = scene_schema(definitions);
   definitions["scene"] = std::move(scene);
-  std::vector<SchemaJson> kinds;
-  for (const std::string_view kind : {"function", "effect", "post", "scene"})
-    kinds.push_back({{"if", {{"required", {kind}}}}, {"then", reference(kind)}});
+  struct Kind {
+    std::string_view key, doc;
+  };
+  constexpr Kind kinds[] = {{"function", "a function that graphs use as a node, and its name"},
+                            {"effect", "an effect that draws a mesh, and its name"},
+                            {"post", "a full-screen effect over a finished image, and its name"},
+                            {"scene", "a scene to render, and its name"}};
+  // Editors complete what stands in "properties"; what else a document has, its kind tells.
+  SchemaJson properties{{"$schema", string_schema()}, {"isoshade", {{"const", 1}}}};
+  std::vector<SchemaJson> one, branches;
+  for (const Kind& kind : kinds) {
+    const SchemaJson has{{"required", {kind.key}}};
+    properties[std::string(kind.key)] = described(reference("id"), kind.doc);
+    one.push_back(has);
+    branches.push_back({{"if", has}, {"then", reference(kind.key)}});
+  }
   const SchemaJson schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
                           {"title", "isoshade document"},
                           {"type", "object"},
-                          {"oneOf",
-                           {{{"required", {"function"}}},
-                            {{"required", {"effect"}}},
-                            {{"required", {"post"}}},
-                            {{"required", {"scene"}}}}},
-                          {"allOf", kinds},
+                          {"required", {"isoshade"}},
+                          {"properties", properties},
+                          {"oneOf", one},
+                          {"allOf", branches},
                           {"definitions", definitions}};
   return schema.dump(1) + "\n";
 }

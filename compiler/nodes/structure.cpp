@@ -75,12 +75,54 @@ void separate(Site& s) {
   for (uint32_t i = 0; i < s.out.size(); ++i) s.out[i] = s.b.extract(s[0], i % count);
 }
 
+/// Numbers, or a tuple and a number.
 void combine(Site& s) {
   std::array<ir::ValueId, 4> components;
   size_t count = 0;
-  for (size_t i = 0; i < s.in.size(); ++i)
-    if (s.in[i].count != 0) components[count++] = s[i];
+  for (size_t i = 0; i < s.in.size(); ++i) {
+    if (s.in[i].count == 0) continue;
+    const int width = float_count(s.types[i]);
+    if (width == 1) components[count++] = s[i];
+    for (int c = 0; width > 1 && c < width; ++c) components[count++] = s.b.extract(s[i], c);
+  }
   s.out[0] = s.b.construct(std::span<const ir::ValueId>(components).first(count));
+}
+
+/// The result has one component more than the first port, and is a colour where that is one.
+std::optional<Refusal> one_more(std::span<const Type> types, std::span<const uint32_t>, Type out) {
+  const auto made = [](Type type) {
+    switch (type) {
+      case Type::vector2: return Type::vector3;
+      case Type::vector3: return Type::vector4;
+      case Type::color3: return Type::color4;
+      default: return Type::vector2;
+    }
+  };
+  if (made(types[0]) == out) return std::nullopt;
+  const std::string name(graph::type_name(made(types[0])));
+  return Refusal{support::Id::type_mismatch, 2,
+                 "a " + std::string(graph::type_name(types[0])) + " and a float make a " + name + ", not a " +
+                     std::string(graph::type_name(out))};
+}
+
+std::optional<Refusal> columns_fit(std::span<const Type> types, std::span<const uint32_t>, Type out) {
+  if (out == Type::matrix44 || types[0] == Type::vector3) return std::nullopt;
+  return Refusal{support::Id::type_mismatch, 0, "the columns of a matrix33 are vector3, not vector4"};
+}
+
+/// Columns of three in a matrix of four: those of an affine transform.
+void create_matrix(Site& s) {
+  std::array<ir::ValueId, 4> columns;
+  const size_t count = s.out_types[0] == Type::matrix33 ? 3 : 4;
+  for (size_t i = 0; i < count; ++i) {
+    columns[i] = s[i];
+    if (count == 3 || s.types[i] == Type::vector4) continue;
+    std::array<ir::ValueId, 4> components;
+    for (int c = 0; c < 3; ++c) components[static_cast<size_t>(c)] = s.b.extract(s[i], c);
+    components[3] = s.b.constant(i == 3 ? 1.0f : 0.0f);
+    columns[i] = s.b.construct(components);
+  }
+  s.out[0] = Value(std::span<const ir::ValueId>(columns).first(count));
 }
 
 }  // namespace
@@ -88,6 +130,10 @@ void combine(Site& s) {
 std::vector<Row> structure_rows() {
   const PortType three{only(Type::vector3) | only(Type::color3), Variable::t};
   const PortType four{only(Type::vector4) | only(Type::color4), Variable::t};
+  const PortType begun{scalar_types | only(Type::vector2) | only(Type::vector3) | only(Type::color3), Variable::t};
+  const PortType ended{vector_types | only(Type::color4), Variable::u};
+  const PortType column{only(Type::vector3) | only(Type::vector4), Variable::t};
+  const PortType matrix{matrix_types, Variable::u};
   const Port in1{"in1", Float, "component 0: x or r", 0.0f};
   const Port in2{"in2", Float, "component 1: y or g", 0.0f};
   const Port in3{"in3", Float, "component 2: z or b", 0.0f};
@@ -105,7 +151,14 @@ std::vector<Row> structure_rows() {
        Other,
        convert,
        conversion_exists},
-      {"combine2", "A vector2 of two floats.", {in1, in2}, Vector2, combine},
+      {"combine2",
+       "A vector2 of two floats; or of a vector or colour and a float what has one component more.",
+       {{"in1", begun, "the first component, or all but the last", 0.0f},
+        {"in2", Float, "the last component", 0.0f},
+        {"to", name_of(ended), "vector2, vector3, vector4 or color4", "vector2"}},
+       ended,
+       combine,
+       one_more},
       {"combine3",
        "A vector3 or color3 of three floats.",
        {in1, in2, in3, {"to", name_of(three), "vector3 or color3", "vector3"}},
@@ -116,6 +169,17 @@ std::vector<Row> structure_rows() {
        {in1, in2, in3, in4, {"to", name_of(four), "vector4 or color4", "vector4"}},
        four,
        combine},
+      {"creatematrix",
+       "A matrix of its columns: where it moves the x, y and z axes, and in a matrix44 the origin. Columns of three "
+       "numbers in a matrix44 end with 0, the fourth with 1.",
+       {{"in1", column, "the first column", std::array{1.0f, 0.0f, 0.0f}},
+        {"in2", column, "the second column", std::array{0.0f, 1.0f, 0.0f}},
+        {"in3", column, "the third column", std::array{0.0f, 0.0f, 1.0f}},
+        {"in4", column, "the fourth column of a matrix44", std::array{0.0f, 0.0f, 0.0f}},
+        {"to", name_of(matrix), "matrix33 or matrix44", "matrix33"}},
+       matrix,
+       create_matrix,
+       columns_fit},
       {"extract",
        "One component of `in`. The same as a link \"node.x\".",
        {{"in", VectorOrColor, "a vector or colour"},

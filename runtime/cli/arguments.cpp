@@ -307,8 +307,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   devices_app->add_option("--device", devices.choice.device, "Only this device");
 
   NodesArguments nodes;
-  CLI::App* nodes_app = app.add_subcommand("nodes", "List the nodes of the language, or tell all of one");
-  CLI::Option* node = nodes_app->add_option("NAME", nodes.name, "A node: its ports, cost and error");
+  CLI::App* nodes_app = app.add_subcommand("nodes", "List the nodes of the language and the functions of the library, or tell all of one");
+  CLI::Option* node = nodes_app->add_option("NAME", nodes.name, "A node, or a function by its library name: its ports, ranges, cost and error");
   nodes_app->add_flag("--markdown", nodes.markdown, "All nodes as the tables of graphs/README.md")
       ->excludes(node);
 

@@ -30,7 +30,7 @@ int run(int argc, char** argv) {
   if (arguments->draw) return draw(*arguments->draw, arguments->common);
   if (arguments->bench) return bench(*arguments->bench, arguments->common);
   if (arguments->nodes) return nodes(*arguments->nodes, arguments->common);
-  if (arguments->schema) return schema();
+  if (arguments->schema) return schema(arguments->common);
   return devices(*arguments->devices, arguments->common);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "compiler/driver/library_rows.h"
 #include "compiler/driver/node_cost.h"
 #include "compiler/graph/expression.h"
 #include "compiler/nodes/manual.h"
@@ -59,36 +60,49 @@ std::string cost_text(const nodes::Row& row) {
 }  // namespace
 
 int nodes(const NodesArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  check::Library documents = make_library(common);
+  const driver::LibraryRows library(documents, diagnostics);
   if (arguments.name.empty()) {
-    const std::string text = arguments.markdown ? nodes::table_markdown() : nodes::table_text();
+    const std::string text =
+        arguments.markdown ? nodes::table_markdown(library.rows()) : nodes::table_text(library.rows());
     std::fputs(text.c_str(), stdout);
-    return success;
+    return flush(diagnostics, common) ? failure : success;
   }
   if (arguments.name == graph::expression_type) {
     std::fputs(nodes::expression_text().c_str(), stdout);
     return success;
   }
   const nodes::Row* row = nodes::find(arguments.name);
-  if (row == nullptr) {
-    support::Diagnostics diagnostics = make_diagnostics(common);
-    std::vector<std::string_view> names;
-    for (const nodes::Row& known : nodes::table()) names.push_back(known.name);
-    const std::string_view other = nodes::called_elsewhere(arguments.name, nodes::table());
-    const std::string_view near = other.empty() ? support::nearest(arguments.name, names) : other;
-    diagnostics.report(support::Id::unknown_node, "the node library has no " + support::quote(arguments.name))
-        .suggest(near.empty() ? "`isoshade nodes` lists all" : "did you mean " + support::quote(near) + "?");
-    flush(diagnostics, common);
-    return failure;
+  if (row != nullptr) {
+    std::string text = nodes::row_text(*row);
+    if (row->home() == nodes::Home::anywhere) text += cost_text(*row);
+    std::fputs(text.c_str(), stdout);
+    return success;
   }
-  std::string text = nodes::row_text(*row);
-  if (row->home() == nodes::Home::anywhere) text += cost_text(*row);
-  std::fputs(text.c_str(), stdout);
-  return success;
+  const auto function = std::ranges::find(library.rows(), arguments.name, &nodes::Row::name);
+  if (function != library.rows().end()) {
+    std::fputs(nodes::row_text(*function).c_str(), stdout);
+    return success;
+  }
+  std::vector<std::string_view> names;
+  for (const nodes::Row& known : nodes::table()) names.push_back(known.name);
+  for (const nodes::Row& known : library.rows()) names.push_back(known.name);
+  const std::string_view other = nodes::called_elsewhere(arguments.name, nodes::table());
+  const std::string_view near = other.empty() ? support::nearest(arguments.name, names) : other;
+  diagnostics
+      .report(support::Id::unknown_node, "neither the nodes nor the library have " + support::quote(arguments.name))
+      .suggest(near.empty() ? "`isoshade nodes` lists all" : "did you mean " + support::quote(near) + "?");
+  flush(diagnostics, common);
+  return failure;
 }
 
-int schema() {
-  std::fputs(nodes::json_schema().c_str(), stdout);
-  return success;
+int schema(const Common& common) {
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  check::Library documents = make_library(common);
+  const driver::LibraryRows library(documents, diagnostics);
+  std::fputs(nodes::json_schema(library.rows()).c_str(), stdout);
+  return flush(diagnostics, common) ? failure : success;
 }
 
 }  // namespace isoshade::cli

@@ -55,6 +55,6 @@ int draw(const DrawArguments& arguments, const Common& common);
 int bench(const BenchArguments& arguments, const Common& common);
 int devices(const DevicesArguments& arguments, const Common& common);
 int nodes(const NodesArguments& arguments, const Common& common);
-int schema();
+int schema(const Common& common);
 
 }  // namespace isoshade::cli

@@ -155,9 +155,15 @@ TEST(Expression, ErrorsPointIntoTheString) {
   EXPECT_EQ(error_of("x ? y"),
             "5 bad-expression: the code ends where \":\" between the two results of \"?\" is needed");
   EXPECT_EQ(error_of("x = y"), "2 bad-expression: an operator is needed before \"=\"");
-  EXPECT_EQ(error_of("vector3(x, y)"), "0 bad-expression: vector3 takes 1 or 3 arguments, not 2");
+  EXPECT_EQ(error_of("vector4(x, y, x)", R"("x": "x", "y": "y")"),
+            "0 bad-expression: vector4 takes 1, 2 or 4 arguments, not 3");
+  EXPECT_EQ(error_of("vector3(x, y)", R"("x": "x", "y": "y")"),
+            "0 type-mismatch: a float and a float make a vector2, not a vector3");
+  EXPECT_EQ(error_of("color4(v, x)", R"("x": "x", "v": "v")"),
+            "0 type-mismatch: a vector3 and a float make a vector4, not a color4");
   EXPECT_EQ(error_of("integer(x, y)"), "0 bad-expression: integer takes 1 argument, not 2");
-  EXPECT_EQ(error_of("matrix33(x)"), "0 bad-expression: an expression makes no matrix33");
+  EXPECT_EQ(error_of("matrix33(x)"), "0 bad-expression: matrix33 takes 3 arguments, its columns, not 1");
+  EXPECT_EQ(error_of("filename(x)"), "0 bad-expression: an expression makes no filename");
   EXPECT_EQ(error_of("x + z"), "4 unknown-port: the expression has no port \"z\"");
   EXPECT_EQ(error_of("x.q", R"("x": "x")"), "0 unknown-output: \"x\" has no output \"q\"");
   EXPECT_EQ(error_of("lenght(v)", R"("v": "v")"),
@@ -183,9 +189,23 @@ TEST(Expression, PlacesSurviveEscapes) {
   EXPECT_EQ(error_of("\\u0078 + \\u0078 $"), "16 bad-expression: an operator is needed before \"$\"");
 }
 
-TEST(Expression, PortsThatTheCodeDoesNotReadAreErrors) {
-  EXPECT_NE(messages_of("x", R"("x": "x", "y": "y")").find("the code does not read \"y\""),
-            std::string::npos);
+TEST(Expression, PortsThatTheCodeDoesNotReadAreWarnedOf) {
+  const std::string text = messages_of("x", R"("x": "x", "y": "y")");
+  EXPECT_NE(text.find("warning[unread-key]: the code does not read \"y\""), std::string::npos) << text;
+  EXPECT_EQ(text.find("error"), std::string::npos) << text;
+}
+
+TEST(Expression, TuplesAreMadeOfATupleAndANumber) {
+  EXPECT_EQ(value_of("vector4(v, 7)"), (Floats{1, 2, 5, 7}));
+  EXPECT_EQ(value_of("color4(color3(v), x)"), (Floats{1, 2, 5, 3}));
+  EXPECT_EQ(value_of("vector3(v.xy, y)"), (Floats{1, 2, 4}));
+  EXPECT_EQ(value_of("vector2(x, y)"), (Floats{3, 4}));
+}
+
+TEST(Expression, MatricesAreMadeOfTheirColumns) {
+  EXPECT_EQ(value_of("transform(matrix33(v, v * 2, v.zyx), vector3(1, 10, 100))"),
+            (Floats{1 + 20 + 500, 2 + 40 + 200, 5 + 100 + 100}));
+  EXPECT_EQ(value_of("transform_point(matrix44(v, v, v, vector3(7, 8, 9)), vector3(0, 0, 0))"), (Floats{7, 8, 9}));
 }
 
 TEST(Expression, LinksAreReportedAtThePort) {

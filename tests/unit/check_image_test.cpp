@@ -31,6 +31,13 @@ TEST(CheckImage, FilesAreWrittenOrLinked) {
   EXPECT_NE(messages_of(image(R"("filtertype": "linear")")).find("error[missing-port]"), std::string::npos);
 }
 
+TEST(CheckImage, NamesOfParametersAreNoPaths) {
+  const std::string text = messages_of(image(R"("file": "map")"));
+  EXPECT_NE(text.find("write {\"link\": \"map\"}"), std::string::npos) << text;
+  EXPECT_EQ(messages_of(image(R"("file": "./map")")), "");
+  EXPECT_EQ(messages_of(image(R"("file": "tint")")), "");
+}
+
 TEST(CheckImage, FileNamesAreNothingToComputeWith) {
   EXPECT_NE(messages_of(effect(R"("color": {"type": "multiply", "in1": "tint", "in2": "map"})"))
                 .find("error[type-mismatch]"),

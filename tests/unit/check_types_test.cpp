@@ -155,5 +155,40 @@ TEST(CheckTypes, ColorOfAPassIsAColour) {
   EXPECT_NE(messages("n").find("\"color\" is color3 or color4, not vector3"), std::string::npos);
 }
 
+/// An effect of one pass, with the colour as it is written there.
+std::string colored(const std::string& color, const std::string& nodes = "") {
+  return R"({"isoshade": 1, "effect": "e", "parameters": {"t": {"type": "float", "value": 0.5},
+    "tint": {"type": "color3", "value": [1, 1, 1]}, "axis": {"type": "vector3", "value": [1, 1, 1]}},
+"nodes": {)" + nodes +
+         R"(}, "passes": [{"name": "p", "color": )" + color + "}]}";
+}
+
+TEST(CheckTypes, ColoursAreWrittenInPlace) {
+  for (const char* color : {"[1, 0.5, 0]", "[1, 0.5, 0, 1]", "0.5"})
+    EXPECT_EQ(FrontEnd().messages(colored(color)), "") << color;
+  EXPECT_NE(FrontEnd().messages(colored("[1, 0.5]")).find("3 or 4 numbers, not 2"), std::string::npos);
+  EXPECT_NE(FrontEnd().messages(colored("true")).find("error[wrong-type]"), std::string::npos);
+}
+
+TEST(CheckTypes, ArraysAreColoursWhereColoursAreWanted) {
+  const char* made[] = {
+      R"("c": {"type": "constant", "value": [1, 0, 0]})",
+      R"("c": {"type": "mix", "fg": [1, 0, 0], "bg": [0, 0, 1], "mix": "t"})",
+      R"("c": {"type": "ifgreater", "value1": "t", "value2": 0.5, "in1": [1, 0, 0], "in2": [0, 0, 1]})",
+      R"("c": {"type": "expression", "code": "t > 0 ? a : b", "t": "t", "a": [1, 0, 0], "b": [0, 0, 1]})",
+      R"("a": {"type": "constant", "value": [1, 0, 0]}, "c": {"type": "multiply", "in1": "a", "in2": "t"})",
+      R"("a": {"type": "constant", "value": [1, 0, 0]}, "c": {"type": "add", "in1": "a", "in2": "tint"})",
+      R"("a": {"type": "constant", "value": [1, 0, 0]}, "c": {"type": "add", "in1": "tint", "in2": "a"})",
+      R"("a": {"type": "constant", "value": [1, 0, 0]}, "c": {"type": "luminance", "in": "a"})"};
+  for (const char* nodes : made) EXPECT_EQ(FrontEnd().messages(colored("\"c\"", nodes)), "") << nodes;
+  const char* vectors[] = {
+      R"("c": {"type": "constant", "value": [1, 0, 0], "to": "vector3"})",
+      R"("c": {"type": "add", "in1": [1, 0, 0], "in2": "axis"})",
+      R"("a": {"type": "constant", "value": [1, 0, 0]}, "c": {"type": "add", "in1": "a", "in2": "axis"})",
+      R"("c": {"type": "combine3", "in1": "t"})"};
+  for (const char* nodes : vectors)
+    EXPECT_NE(FrontEnd().messages(colored("\"c\"", nodes)).find("error[type-mismatch]"), std::string::npos) << nodes;
+}
+
 }  // namespace
 }  // namespace isoshade

@@ -100,6 +100,18 @@ TEST_F(Cli, ListsTheNodesAndTellsAllOfOne) {
   EXPECT_NE(none.text.find("did you mean \"noise3d\"?"), std::string::npos) << none.text;
 }
 
+TEST_F(Cli, ListsTheFunctionsOfTheLibraryAndTellsAllOfOne) {
+  EXPECT_NE(run("nodes").text.find("\nlibrary\n  brdf/"), std::string::npos);
+  const Outcome one = run("nodes brdf/ggx_d");
+  EXPECT_EQ(one.exit, 0);
+  EXPECT_NE(one.text.find("brdf/ggx_d (library)\n"), std::string::npos) << one.text;
+  for (const char* part : {"\n  alpha    float; required\n", "0.0001 to 1", "\noutputs\n  out      float\n"})
+    EXPECT_NE(one.text.find(part), std::string::npos) << part << "\n" << one.text;
+  const Outcome none = run("nodes brdf/ggx_e");
+  EXPECT_EQ(none.exit, 2);
+  EXPECT_NE(none.text.find("did you mean \"brdf/ggx_d\"?"), std::string::npos) << none.text;
+}
+
 TEST_F(Cli, NamesNodesByWhatOthersCallThem) {
   EXPECT_NE(run("nodes lerp").text.find("did you mean \"mix\"?"), std::string::npos);
   EXPECT_NE(run("nodes dot").text.find("did you mean \"dotproduct\"?"), std::string::npos);

@@ -19,6 +19,23 @@ Floats value_of(const std::string& node) {
   return program({});
 }
 
+TEST(NodeValues, MatricesAreMadeOfColumns) {
+  EXPECT_EQ(value_of(R"("type": "creatematrix", "in1": [1, 2, 3], "in2": [4, 5, 6], "in3": [7, 8, 9])"),
+            (Floats{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(value_of(R"("type": "creatematrix")"), (Floats{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in4": [7, 8, 9])"),
+            (Floats{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1}));
+  EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in1": [1, 2, 3, 4], "in2": [5, 6, 7, 8],
+                        "in3": [9, 10, 11, 12], "in4": [13, 14, 15, 16])"),
+            (Floats{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}));
+}
+
+TEST(NodeValues, TuplesGrowByANumber) {
+  EXPECT_EQ(value_of(R"("type": "combine2", "in1": 1, "in2": 2)"), (Floats{1, 2}));
+  EXPECT_EQ(value_of(R"("type": "combine2", "in1": [1, 2], "in2": 3, "to": "vector3")"), (Floats{1, 2, 3}));
+  EXPECT_EQ(value_of(R"("type": "combine2", "in1": [1, 2, 3], "in2": 4, "to": "color4")"), (Floats{1, 2, 3, 4}));
+}
+
 TEST(NodeValues, ArithmeticTakesItsPortsInOrder) {
   EXPECT_EQ(value_of(R"("type": "add", "in1": 5, "in2": 3)"), Floats{8});
   EXPECT_EQ(value_of(R"("type": "subtract", "in1": 5, "in2": 3)"), Floats{2});
