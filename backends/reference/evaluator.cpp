@@ -48,8 +48,40 @@ void compute(Opcode op, const Cell& a, const Cell& b, const Cell& c, Cell& to) {
     case Opcode::fbits_nonnan: to.word = std::bit_cast<uint32_t>(stored(x)); return;
     case Opcode::bitsf:
     case Opcode::bitsf_normal: to.number = float_of(a.word); return;
-    default: to.word = ir::evaluate(op, a.word, b.word, c.word); return;
+    case Opcode::iadd:
+    case Opcode::isub:
+    case Opcode::imul:
+    case Opcode::imulhi:
+    case Opcode::umulhi:
+    case Opcode::iand:
+    case Opcode::ior:
+    case Opcode::ixor:
+    case Opcode::ishl:
+    case Opcode::ishr:
+    case Opcode::isar:
+    case Opcode::ilt:
+    case Opcode::ile:
+    case Opcode::igt:
+    case Opcode::ige:
+    case Opcode::ieq:
+    case Opcode::ine:
+    case Opcode::ult:
+    case Opcode::band:
+    case Opcode::bor:
+    case Opcode::bxor:
+    case Opcode::bnot: to.word = ir::evaluate(op, a.word, b.word, c.word); return;
+    case Opcode::constant:
+    case Opcode::construct:
+    case Opcode::extract:
+    case Opcode::hidden_zero:
+    case Opcode::load:
+    case Opcode::call:
+    case Opcode::branch:
+    case Opcode::loop:
+    case Opcode::ddx:
+    case Opcode::ddy: break;
   }
+  support::bug("the reference computes an op that is none of numbers");
 }
 
 }  // namespace

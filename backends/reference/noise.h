@@ -24,9 +24,18 @@ uint32_t hash_words(std::array<int64_t, N> words) {
   return c;
 }
 
+/// Coordinates from 2^31 on in magnitude, infinities and NaN count as 0.
+template <class R>
+R within_cells(R x) {
+  return abs(x) < 0x1p31 ? x : R(0);
+}
+template <class R, int N>
+Vector<R, N> within_cells(Vector<R, N> p) {
+  return vector<N>([&](int i) { return within_cells(p[i]); });
+}
 template <class R>
 int64_t cell_of(R x) {
-  return static_cast<int64_t>(floor(x));
+  return static_cast<int64_t>(floor(within_cells(x)));
 }
 template <class R>
 R unit_of(uint32_t bits) {
@@ -56,6 +65,7 @@ constexpr int space_gradients[16][3] = {
 /// Perlin's noise in three channels: the sum over the corners of the point's cell.
 template <class R, int N>
 Vector<R, 3> gradient_noise(Vector<R, N> p, R scale) {
+  p = within_cells(p);
   Vector<R, 3> sum{};
   for (int corner = 0; corner < 1 << N; ++corner) {
     std::array<int64_t, N> at;
@@ -113,6 +123,9 @@ Vector<R, 3> fractal3d_magnitude(Vector<R, 3> p, R octaves, R lacunarity, R dimi
 /// The three least distances to the feature points of nine squares.
 template <class R>
 Vector<R, 3> worleynoise2d(Vector<R, 2> p, R jitter) {
+  const R none = R(1) / R(0);
+  if (jitter != jitter) return {{none, none, none}};
+  p = within_cells(p);
   std::array<R, 9> distances;
   for (int i = 0; i < 9; ++i) {
     const int64_t x = cell_of(p[0]) + i % 3 - 1, y = cell_of(p[1]) + i / 3 - 1;

@@ -55,6 +55,9 @@ bool difference_is_exact(const Bound& a, const Bound& b) {
   return a.magnitude() <= 2 * b_least && b.magnitude() <= 2 * a_least;
 }
 
+/// What flushing takes at most from results between these: nothing where none is 0.
+double flushed_from(const Bound& r) { return r.lo > 0 || r.hi < 0 ? 0 : smallest; }
+
 /// How much an exact value of the same sign as computed can have been moved to the other one's side.
 double beyond_zero(const Bound& a) {
   if (a.slack == 0 && a.relative < 1) return 0;
@@ -71,15 +74,17 @@ Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
   Bound r{ends.lo, ends.hi};
   place_exact_corners(r, a, b, times);
   const double u = rounds ? half_ulp : 0;
+  const bool grows = !rounds && (a.least_magnitude() >= 1 || b.least_magnitude() >= 1);  // by a power of two
+  const double flush = grows ? 0 : flushed_from(r);
   r.absolute = times(a.magnitude(), b.absolute) + times(b.magnitude(), a.absolute) +
-               times(a.absolute, b.absolute) + times(u, r.magnitude()) + smallest;
+               times(a.absolute, b.absolute) + times(u, r.magnitude()) + flush;
   const double carried = a.relative + b.relative + times(a.relative, b.relative);
   r.relative = carried + u * (1 + carried);
   const double a_exact = a.magnitude() + a.absolute, b_exact = b.magnitude() + b.absolute;
   r.slack = (times(times(a_exact, 1 + a.relative), b.slack) + times(times(b_exact, 1 + b.relative), a.slack) +
              times(a.slack, b.slack)) *
                 (1 + u) +
-            smallest;
+            flush;
   if (a.lo == 0 && a.hi == 0 && a.absolute == 0) return {exactly(0)};
   if (b.lo == 0 && b.hi == 0 && b.absolute == 0) return {exactly(0)};
   return settled(r);
@@ -104,10 +109,11 @@ double Bound::exact_hi() const {
 }
 double Bound::exact_least_magnitude() const { return std::max({0.0, exact_lo(), -exact_hi()}); }
 
-double Bound::relative_error() const {
+Bound::Share Bound::share() const {
   const double least = exact_least_magnitude();
   const double from_absolute = least > 0 ? up(absolute / least) : infinity;
-  return slack <= 0x1p-100 ? std::min(relative, from_absolute) : from_absolute;
+  if (slack <= 0x1p-100 && relative < from_absolute) return {relative, slack};
+  return {from_absolute, 0};
 }
 
 std::string_view words(Breach breach) {
@@ -186,12 +192,15 @@ Outcome add(const Bound& a, const Bound& b) {
       (a.magnitude() == 0 && a.absolute == 0) || (b.magnitude() == 0 && b.absolute == 0);
   const bool exact = nothing_added || difference_is_exact(a, negate(b));
   const double u = exact ? 0 : half_ulp;
-  r.absolute = a.absolute + b.absolute + times(u, r.magnitude()) + (nothing_added ? 0 : smallest);
+  // Sums are multiples of what the last bit of the lesser summand is worth.
+  const bool coarse = std::min(a.least_magnitude(), b.least_magnitude()) >= 0x1p-102;
+  const double flush = nothing_added || coarse ? 0 : flushed_from(r);
+  r.absolute = a.absolute + b.absolute + times(u, r.magnitude()) + flush;
   place_exact(r, a.exact_lo() + b.exact_lo(), a.exact_hi() + b.exact_hi());
   r.relative = r.slack = infinity;
   if (a.absolute == 0 && b.absolute == 0) {
     r.relative = u;  // one rounding, of whatever sign
-    r.slack = nothing_added ? 0 : smallest;
+    r.slack = flush;
   } else if (same_sign(a, b)) {
     const double e = std::max(a.relative, b.relative);
     r.relative = e + u * (1 + e);
@@ -226,14 +235,16 @@ Outcome divide(const Bound& a, const Bound& b) {
   const double b_least = b.least_magnitude();
   const double b_exact = b.exact_least_magnitude();
   if (b_exact > 0) place_exact_corners(r, a, b, [](double x, double y) { return x == 0 ? 0 : x / y; });
-  r.absolute = b_exact > 0 ? (times(r.magnitude(), b.absolute) + a.absolute) / b_exact : infinity;
-  r.absolute += times(u, r.magnitude()) + smallest;
+  const double before_rounding = r.magnitude() * (1 + 2 * half_ulp) + smallest;
+  r.absolute = b_exact > 0 ? (times(before_rounding, b.absolute) + a.absolute) / b_exact : infinity;
+  const double flush = flushed_from(r);
+  r.absolute += times(u, r.magnitude()) + flush;
   const double e = b_exact > 0 ? b.relative + b.slack / b_exact : infinity;
   r.relative = r.slack = infinity;
   if (e < 1) {
     const double carried = (a.relative + e) / (1 - e);
     r.relative = carried + u * (1 + carried);
-    r.slack = a.slack / b_least * (1 + u) + smallest;
+    r.slack = a.slack / b_least * (1 + u) + flush;
   }
   return settled(r);
 }
@@ -243,13 +254,14 @@ Outcome square_root(const Bound& a) {
   const double lo = std::max(a.lo, 0.0);
   Bound r{static_cast<double>(std::sqrt(static_cast<float>(lo))),
           static_cast<double>(std::sqrt(static_cast<float>(std::max(a.hi, 0.0))))};
-  place_exact(r, std::sqrt(std::max(a.exact_lo(), 0.0)), std::sqrt(std::max(a.exact_hi(), 0.0)));
+  const bool exists = a.absolute == 0 || a.exact_lo() >= 0;  // the exact root
+  if (exists) place_exact(r, std::sqrt(std::max(a.exact_lo(), 0.0)), std::sqrt(std::max(a.exact_hi(), 0.0)));
   const auto moved = [&](double error) {
     return std::min(std::sqrt(error), r.lo > 0 ? error / r.lo * (1 + half_ulp) : infinity);
   };
-  r.absolute = moved(a.absolute) + half_ulp * r.hi;
+  r.absolute = exists ? moved(a.absolute) + half_ulp * r.hi : infinity;
   r.relative = r.slack = infinity;
-  if (a.relative < 1) {
+  if (exists && a.relative < 1) {
     const double carried = a.relative / (1 + std::sqrt(1 - a.relative));
     r.relative = carried + half_ulp * (1 + carried);
     r.slack = moved(a.slack) * (1 + half_ulp);

@@ -39,8 +39,13 @@ struct Bound {
   double magnitude() const;        ///< the largest |y|
   double least_magnitude() const;  ///< the smallest |y|
   bool is_point() const { return lo == hi; }
-  /// The least e for which |y - x| <= e |x| is known, but for 2^-100; infinite where there is none.
-  double relative_error() const;
+  /// The least e for which |y - x| <= e |x| + slack is known, with a slack of at most 2^-100 (what flushing takes);
+  /// infinite where there is none.
+  struct Share {
+    double error, slack;
+  };
+  Share share() const;
+  double relative_error() const { return share().error; }
 };
 
 /// What is not proved of an operation.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "compiler/analysis/bound.h"
+#include "compiler/support/check.h"
 
 namespace isoshade::analysis {
 namespace {
@@ -71,6 +72,8 @@ Bound compare(ir::Opcode op, const Bound& a, const Bound& b) {
   const bool may_differ = !exact && !apart;
   const bool may_differ_below = may_differ && !surely_not_less(a, b);
   const bool may_differ_above = may_differ && !surely_not_less(b, a);
+  const bool disjoint = surely_below || surely_above;
+  const bool one = a.is_point() && b.is_point() && a.lo == b.lo;
   switch (op) {
     case flt:
     case ilt: return truth(!surely_below, !never_below, may_differ_below);
@@ -80,12 +83,12 @@ Bound compare(ir::Opcode op, const Bound& a, const Bound& b) {
     case igt: return truth(!surely_above, !never_above, may_differ_above);
     case fge:
     case ige: return truth(!never_below, !surely_below, may_differ_below);
-    default: break;
+    case feq:
+    case ieq: return truth(!one, !disjoint, may_differ);
+    case fne:
+    case ine: return truth(!disjoint, !one, may_differ);
+    default: support::bug("a bound is compared by an op that does not compare");
   }
-  const bool disjoint = surely_below || surely_above;
-  const bool one = a.is_point() && b.is_point() && a.lo == b.lo;
-  if (op == feq || op == ieq) return truth(!one, !disjoint, may_differ);
-  return truth(!disjoint, !one, may_differ);
 }
 
 Outcome other(ir::Opcode op, const Bound& a, const Bound& b) {
@@ -114,7 +117,18 @@ Outcome other(ir::Opcode op, const Bound& a, const Bound& b) {
     case bitsf:
     case bitsf_normal: return {anything(), Breach::unknown};
     case ult: return {{0, 1, differs}};
-    default: return any_integer();
+    case fbits:
+    case fbits_nonnan:
+    case imul:
+    case imulhi:
+    case umulhi:
+    case iand:
+    case ior:
+    case ixor:
+    case ishl:
+    case ishr:
+    case isar: return any_integer();
+    default: support::bug("a bound of an op that has another rule");
   }
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "compiler/support/check.h"
+
 namespace isoshade::analysis {
 namespace {
 
@@ -19,10 +21,6 @@ Outcome constant_outcome(const Operation& operation) {
   if (std::isnan(value)) return {anything(), Breach::unknown};
   // Library functions compare with infinity: a number beyond the floats stands for it.
   return {exactly(std::clamp(value, -4 * largest, 4 * largest))};
-}
-
-bool is_comparison(Opcode op) {
-  return (op >= Opcode::flt && op <= Opcode::fne) || (op >= Opcode::ilt && op <= Opcode::ine);
 }
 
 /// The lesser of a constant and something that is at least another constant.
@@ -43,33 +41,17 @@ bool is_clamp(const Tape& tape, const Operation& operation) {
 Evaluator::Evaluator(const Tape& tape)
     : tape_(tape),
       cut_of_(tape.operations.size(), none),
-      depends_(tape.operations.size()),
+      side_at_(tape.inputs.size(), none),
       bounds_(tape.operations.size()),
       states_(tape.operations.size()),
       proportions_(tape.operations.size()),
       guard_dead_(tape.guards.size()) {
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
-    if (tape.operations[i].kind != Kind::dot && !is_clamp(tape, tape.operations[i])) continue;
+    const Operation& operation = tape.operations[i];
+    if (operation.kind == Kind::input) side_at_[operation.index] = i;
+    if (operation.kind != Kind::dot && !is_clamp(tape, operation)) continue;
     cut_of_[i] = static_cast<uint32_t>(cuts_.size());
     cuts_.push_back(i);
-  }
-  for (uint32_t i = 0; i < tape.operations.size(); ++i) {
-    std::vector<bool>& sides = depends_[i];
-    sides.resize(side_count());
-    const Operation& operation = tape.operations[i];
-    if (operation.kind == Kind::input) sides[operation.index] = true;
-    if (cut_of_[i] != none) sides[tape.inputs.size() + cut_of_[i]] = true;
-    const auto add = [&](uint32_t from) {
-      for (size_t s = 0; s < sides.size(); ++s)
-        if (depends_[from][s]) sides[s] = true;
-    };
-    for (const uint32_t operand : tape.operands_of(operation)) add(operand);
-    for (uint32_t guard = operation.guard; guard != 0; guard = tape.guards[guard].parent)
-      if (tape.guards[guard].condition < i) add(tape.guards[guard].condition);
-    if (const auto facts = tape.facts.find(i); facts != tape.facts.end())
-      for (const Fact& fact : facts->second)
-        for (const uint32_t other : {fact.first, fact.second})
-          if (other != none) add(other);
   }
 }
 
@@ -93,7 +75,27 @@ std::string Evaluator::side_name(size_t side) const {
   return tape_.places[tape_.operations[cuts_[side - tape_.inputs.size()]].place].node;
 }
 
-bool Evaluator::depends(uint32_t operation, size_t side) const { return depends_[operation][side]; }
+bool Evaluator::depends(uint32_t operation, size_t side) {
+  if (depends_of_ != operation) {
+    depends_of_ = operation;
+    depends_.assign(operation + 1, false);
+    depends_[operation] = true;
+    for (uint32_t i = operation + 1; i-- > 0;) {
+      if (!depends_[i]) continue;
+      const auto add = [&](uint32_t other) {
+        if (other < i) depends_[other] = true;
+      };
+      for (const uint32_t operand : tape_.operands_of(tape_.operations[i])) add(operand);
+      for (uint32_t guard = tape_.operations[i].guard; guard != 0; guard = tape_.guards[guard].parent)
+        add(tape_.guards[guard].condition);
+      if (const auto facts = tape_.facts.find(i); facts != tape_.facts.end())
+        for (const Fact& fact : facts->second)
+          for (const uint32_t other : {fact.first, fact.second}) add(other);
+    }
+  }
+  const uint32_t at = side < tape_.inputs.size() ? side_at_[side] : operation_of(side);
+  return at != none && at <= operation && depends_[at];
+}
 
 /// Whether vectors of length 1 exist in the box, where components are of unit vectors.
 bool Evaluator::units_possible(const Box& box) const {
@@ -118,7 +120,7 @@ bool Evaluator::walk(const Box& box, uint32_t last) {
   undecided_.clear();
   guard_dead_.assign(tape_.guards.size(), false);
   if (!units_possible(box)) return false;
-  steps_ += last + 1;
+  steps_ += std::max<size_t>(last + 1, box.size());  // boxes of thousands of inputs cost time and memory too
   for (uint32_t i = 0; i <= last; ++i) {
     const Operation& operation = tape_.operations[i];
     proportions_[i] = {};
@@ -210,7 +212,8 @@ bool Evaluator::narrow(const Operation& operation, uint32_t index) {
     case Opcode::fgt: return restrict(index, above(by.lo), largest);
     case Opcode::fge: return restrict(index, by.lo, largest);
     case Opcode::feq: return restrict(index, by.lo, by.hi);
-    default: break;
+    case Opcode::fne: break;
+    default: support::bug("a value is narrowed by what does not compare");
   }
   const Bound& all = bounds_[index];
   if (!by.is_point()) return true;
@@ -226,7 +229,8 @@ Outcome Evaluator::outcome_of(const Operation& operation, uint32_t index) {
     case Kind::least: return least_of(in);
     case Kind::greatest: return {greater(bounds_[in[0]], bounds_[in[1]])};
     case Kind::dot: return dot_of(in);
-    case Kind::sum: return sum_of(bounds_[in[0]], most_lights);
+    case Kind::sum: return sum_of(bounds_[in[0]], operation.index);
+    case Kind::asked: return answer_of(static_cast<Answer>(operation.index), in);
     case Kind::unknown: return {anything(), Breach::unknown};
     case Kind::op: break;
     case Kind::row: {
@@ -263,17 +267,62 @@ Outcome Evaluator::op_of(const Operation& operation, std::span<const uint32_t> i
   const Bound& b = bounds_[in[in.size() > 1 ? 1 : 0]];
   const bool same = in.size() > 1 && in[0] == in[1];
   switch (operation.op) {
-    case Opcode::fadd: return same ? multiply(exactly(2), a) : add(a, b);
-    case Opcode::fsub: return same ? Outcome{exactly(0)} : subtract(a, b);
-    case Opcode::fmul: return same ? square(a) : multiply(a, b);
-    case Opcode::fdiv: return divide(a, b);
-    case Opcode::fsqrt: return square_root(a);
-    case Opcode::fneg: return {negate(a)};
-    case Opcode::fabs: return {magnitude(a)};
-    case Opcode::floor: return {floor_of(a)};
-    default:
-      return is_comparison(operation.op) ? Outcome{compare(operation.op, a, b)} : other(operation.op, a, b);
+    using enum Opcode;
+    case fadd: return same ? multiply(exactly(2), a) : add(a, b);
+    case fsub: return same ? Outcome{exactly(0)} : subtract(a, b);
+    case fmul: return same ? square(a) : multiply(a, b);
+    case fdiv: return divide(a, b);
+    case fsqrt: return square_root(a);
+    case fneg: return {negate(a)};
+    case fabs: return {magnitude(a)};
+    case floor: return {floor_of(a)};
+    case flt:
+    case fle:
+    case fgt:
+    case fge:
+    case feq:
+    case fne:
+    case ilt:
+    case ile:
+    case igt:
+    case ige:
+    case ieq:
+    case ine: return {compare(operation.op, a, b)};
+    case ult:
+    case ftoi:
+    case itof:
+    case fbits:
+    case fbits_nonnan:
+    case bitsf:
+    case bitsf_normal:
+    case iadd:
+    case isub:
+    case imul:
+    case imulhi:
+    case umulhi:
+    case iand:
+    case ior:
+    case ixor:
+    case ishl:
+    case ishr:
+    case isar:
+    case band:
+    case bor:
+    case bxor:
+    case bnot: return other(operation.op, a, b);
+    case select:
+    case constant:
+    case construct:
+    case extract:
+    case hidden_zero:
+    case load:
+    case call:
+    case branch:
+    case loop:
+    case ddx:
+    case ddy: break;
   }
+  return {anything(), Breach::unknown};
 }
 
 Outcome Evaluator::least_of(std::span<const uint32_t> in) const {

@@ -9,10 +9,6 @@
 
 namespace isoshade::analysis {
 
-struct Side {
-  double lo = 0, hi = 0;
-};
-
 /// Where the inputs lie, and the operations that boxes are cut along too.
 using Box = std::vector<Side>;
 
@@ -36,8 +32,8 @@ class Evaluator {
   std::string side_name(size_t side) const;
   /// The operation that a side beyond the inputs is of.
   uint32_t operation_of(size_t side) const { return cuts_[side - tape_.inputs.size()]; }
-  /// Whether an operation depends on a side.
-  bool depends(uint32_t operation, size_t side) const;
+  /// Whether an operation depends on a side. Quick only for the operation that was asked about last.
+  bool depends(uint32_t operation, size_t side);
 
   /// Walks operations up to `last`. False if the box holds no input at all. Needs lanes::FpGuard.
   bool walk(const Box& box, uint32_t last);
@@ -65,6 +61,7 @@ class Evaluator {
   Outcome outcome_of(const Operation& operation, uint32_t index);
   Outcome op_of(const Operation& operation, std::span<const uint32_t> in);
   Outcome least_of(std::span<const uint32_t> in) const;
+  Outcome answer_of(Answer answer, std::span<const uint32_t> in) const;
   Outcome dot_of(std::span<const uint32_t> in) const;
   Outcome select_of(std::span<const uint32_t> in, uint32_t index);
   bool narrow(const Operation& operation, uint32_t index);
@@ -88,9 +85,11 @@ class Evaluator {
   double severity_of(const Operation& operation, Breach breach) const;
 
   const Tape& tape_;
-  std::vector<uint32_t> cuts_;    ///< the scalar products and clamps
-  std::vector<uint32_t> cut_of_;  ///< of operations: which cut, or none
-  std::vector<std::vector<bool>> depends_;
+  std::vector<uint32_t> cuts_;     ///< the scalar products and clamps
+  std::vector<uint32_t> cut_of_;   ///< of operations: which cut, or none
+  uint32_t depends_of_ = none;     ///< the operation that `depends_` is of
+  std::vector<bool> depends_;      ///< the operations that it depends on, itself among them
+  std::vector<uint32_t> side_at_;  ///< of inputs: their operations
   std::vector<Bound> bounds_;
   std::vector<State> states_;
   std::vector<Proportions> proportions_;

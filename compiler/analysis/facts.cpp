@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compiler/analysis/evaluate.h"
+#include "compiler/lower/limits.h"
 
 namespace isoshade::analysis {
 namespace {
@@ -93,6 +94,32 @@ void Evaluator::limit_error(uint32_t index, size_t terms, const Lengths& a, cons
   if (error >= bound.absolute) return;
   bound.absolute = error;
   bound = settled(bound).bound;
+}
+
+/// Of a number from outside, where rounding may have moved what was asked for.
+Outcome Evaluator::answer_of(Answer answer, std::span<const uint32_t> in) const {
+  Bound r = bounds_[in[0]];
+  // The box may hold a part of the answers, but the exact one may be any of them.
+  const Input& all = tape_.inputs[tape_.operations[in[0]].index];
+  const double range = std::max(r.hi - all.lo, all.hi - r.lo);
+  double error = 0;
+  for (const uint32_t question : in.subspan(1)) error = std::max(error, bounds_[question].absolute);
+  switch (answer) {
+    case Answer::same: r.absolute = error == 0 ? 0 : range; break;
+    case Answer::other: r.absolute = range; break;
+    case Answer::filtered: {
+      // A coordinate is brought into [0, 1], multiplied by the size, and half a texel is taken away: some roundings of at
+      // most the size. In proportion between texels nothing is steeper than their range.
+      const double texels =
+          lower::max_size * (bounds_[in[2]].absolute + bounds_[in[3]].absolute + 4 * 4 * half_ulp);
+      r.absolute = std::min(range, (all.hi - all.lo) * texels) + 8 * half_ulp * r.magnitude() + 4 * smallest;
+      break;
+    }
+    case Answer::quotient: r.absolute = error == 0 ? 4 * half_ulp * r.magnitude() : range; break;
+    case Answer::unknown: r.absolute = HUGE_VAL; break;
+  }
+  r.relative = r.slack = HUGE_VAL;
+  return settled(r);
 }
 
 void Evaluator::propose(uint32_t index, const Proportion& proportion) {

@@ -12,7 +12,8 @@ namespace {
 using ir::Opcode;
 using ir::Scalar;
 
-constexpr double any_number = 1e6;
+/// What derivatives are at most.
+constexpr double steepest = 1e6;
 
 /// Gives bodies to the declarations of functions.def, and only to those.
 void give_bodies(ir::Module& module, functions::Tier tier) {
@@ -57,7 +58,10 @@ class Flattener {
   Words primitive(const ir::Instruction& i, ir::Type type, const std::vector<Words>& in, uint32_t place);
   void branch(Frame& frame, const ir::Instruction& i, uint32_t condition, uint32_t place);
   void loop(Frame& frame, const ir::Instruction& i, const std::vector<Words>& in, uint32_t place);
-  uint32_t summed(uint32_t initial, uint32_t carried, uint32_t next, bool fixed, uint32_t place);
+  uint32_t summed(uint32_t initial, uint32_t carried, uint32_t next, const Side& turns, uint32_t place);
+  std::optional<Side> turns_of(uint32_t count) const;
+  Words ask(const Given& given, ir::Type type, const Words& question, uint32_t place);
+  Words derivative(ir::Opcode op, ir::Type type, const Words& of, uint32_t place);
   double quotient_by(uint32_t divisor) const;
   uint32_t place_of(Frame& frame, uint32_t origin);
   uint32_t unknown(Scalar scalar, uint32_t place);
@@ -108,13 +112,50 @@ std::vector<Words> Flattener::call(uint32_t function, const std::vector<Words>& 
   if (!callee.library.empty()) return library(function, arguments, caller);
   const std::vector<Given> given = callee.document.empty() ? outside_(callee.name) : std::vector<Given>();
   if (!callee.is_declaration() && given.empty()) return body(function, arguments, caller);
+  Words question;
+  for (const Words& argument : arguments) question.insert(question.end(), argument.begin(), argument.end());
   std::vector<Words> results;
   for (size_t i = 0; i < callee.results.size(); ++i) {
-    Given result{callee.name + "." + callee.results[i].name, -any_number, any_number};
-    if (i < given.size()) result = given[i];
-    results.push_back(input(result, callee.results[i].type));
+    const ir::Type type = callee.results[i].type;
+    if (i < given.size()) {
+      results.push_back(ask(given[i], type, question, caller));
+      continue;
+    }
+    Words& words = results.emplace_back();
+    for (uint32_t c = 0; c < type.width; ++c) words.push_back(unknown(type.scalar, caller));
   }
   return results;
+}
+
+/// What a host answers: a number from outside, whose error depends on that of what it is asked with.
+Words Flattener::ask(const Given& given, ir::Type type, const Words& question, uint32_t place) {
+  const Words there = input(given, type);
+  const bool exact = std::ranges::all_of(
+      question, [&](uint32_t o) { return pool_[o].kind == Kind::input || pool_[o].kind == Kind::constant; });
+  if (given.answer == Answer::same && exact) return there;
+  Words words;
+  for (const uint32_t number : there) {
+    Words operands{number};
+    operands.insert(operands.end(), question.begin(), question.end());
+    words.push_back(pool_.make({.kind = Kind::asked,
+                                .scalar = type.scalar,
+                                .index = static_cast<uint32_t>(given.answer),
+                                .place = place},
+                               operands));
+  }
+  if (given.unit && type.width > 1) {
+    pool_.units.insert(words);
+    pool_.at_most_units.insert(words);
+  }
+  return words;
+}
+
+/// Of numbers from outside they are from outside too; of others nobody computes them exactly.
+Words Flattener::derivative(ir::Opcode op, ir::Type type, const Words& of, uint32_t place) {
+  const bool exact = std::ranges::all_of(of, [&](uint32_t o) { return pool_[o].kind == Kind::input; });
+  Given given{std::string(ir::name(op)) + " at " + pool_.tape().places[place].node, -steepest, steepest};
+  given.answer = exact ? Answer::same : Answer::unknown;
+  return ask(given, type, of, place);
 }
 
 std::vector<Words> Flattener::body(uint32_t function, const std::vector<Words>& arguments, uint32_t caller) {
@@ -226,12 +267,11 @@ void Flattener::instruction(Frame& frame, const ir::Instruction& i) {
     case Opcode::loop: return loop(frame, i, in, place);
     case Opcode::load: out = {unknown(type.scalar, place)}; return;
     case Opcode::ddx:
-    case Opcode::ddy: {
-      const std::string name(ir::name(i.op));
-      out = input({name + " at " + pool_.tape().places[place].node, -any_number, any_number}, type);
+    case Opcode::ddy: out = derivative(i.op, type, in[0], place); return;
+#define OP(name, arity, rule, glsl, cpp, precondition) case Opcode::name:
+#include "compiler/ir/ops.def"
+      out = primitive(i, type, in, place);
       return;
-    }
-    default: out = primitive(i, type, in, place); return;
   }
 }
 
@@ -251,7 +291,14 @@ Words Flattener::primitive(const ir::Instruction& i, ir::Type type, const std::v
     for (const Words& operand : in) operands.push_back(operand[std::min<size_t>(c, operand.size() - 1)]);
     const double limit = i.op == Opcode::fdiv ? quotient_by(operands[1]) : 0;
     if (limit > 0) {
-      out.push_back(input({"distance at " + pool_.tape().places[place].node, 0, limit}, ir::float_type)[0]);
+      Given distance{"distance at " + pool_.tape().places[place].node, 0, limit};
+      distance.answer = Answer::quotient;
+      // The divisor is d0 + depth * d1.
+      const Operation& product = pool_[pool_.operands(operands[1])[1]];
+      const bool known = product.kind == Kind::op && product.op == Opcode::fmul;
+      if (!known) distance.answer = Answer::unknown;
+      const Words depth{known ? pool_.operands(pool_.operands(operands[1])[1])[0] : operands[1]};
+      out.push_back(ask(distance, ir::float_type, depth, place)[0]);
       continue;
     }
     out.push_back(
@@ -277,7 +324,8 @@ void Flattener::branch(Frame& frame, const ir::Instruction& i, uint32_t conditio
 
 void Flattener::loop(Frame& frame, const ir::Instruction& i, const std::vector<Words>& in, uint32_t place) {
   const ir::Block& body = frame.function.blocks[i.blocks[0]];
-  frame.values[body.parameters[0]] = input({"turn", 0, most_lights - 1}, ir::int_type);
+  const Side turns = turns_of(in[0][0]).value_or(Side{0, 0x1p31});
+  frame.values[body.parameters[0]] = input({"turn", 0, std::max(0.0, turns.hi - 1)}, ir::int_type);
   for (uint32_t r = 0; r < i.result_count; ++r) {
     const ir::ValueId carried = body.parameters[r + 1];
     const ir::Type type = frame.function.type(carried);
@@ -286,66 +334,42 @@ void Flattener::loop(Frame& frame, const ir::Instruction& i, const std::vector<W
   }
   block(frame, i.blocks[0]);
   if (pool_.too_long()) return;
-  const Operation& count = pool_[in[0][0]];
-  const bool fixed =
-      count.kind == Kind::input && pool_.tape().inputs[count.index].name.starts_with(taps_group);
   for (uint32_t r = 0; r < i.result_count; ++r) {
     const Words& carried = frame.values[body.parameters[r + 1]];
     const Words& next = frame.values[body.yields[r]];
     Words& out = frame.values[i.first_result + r];
     for (size_t c = 0; c < carried.size(); ++c)
-      out.push_back(summed(in[r + 1][c], carried[c], next[c], fixed, place));
+      out.push_back(summed(in[r + 1][c], carried[c], next[c], turns, place));
   }
 }
 
+/// How often a loop turns, if that is given.
+std::optional<Side> Flattener::turns_of(uint32_t count) const {
+  const Operation& o = pool_[count];
+  const auto turns = static_cast<double>(static_cast<int32_t>(o.bits));
+  if (o.kind == Kind::constant) return Side{turns, turns};
+  if (o.kind != Kind::input) return std::nullopt;
+  return Side{pool_.tape().inputs[o.index].lo, pool_.tape().inputs[o.index].hi};
+}
+
 /// What a loop makes of `initial`: if each round adds to it, the sum.
-uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, bool fixed, uint32_t place) {
+uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, const Side& turns,
+                           uint32_t place) {
   const Operation& added = pool_[next];
   const auto operands = pool_.operands(next);
   const bool adds = added.kind == Kind::op && added.op == Opcode::fadd && operands[0] == carried;
-  if (!adds || initial != pool_.constant(Scalar::floating, 0)) return unknown(Scalar::floating, place);
+  constexpr double most = 1 << 20;
+  if (!adds || initial != pool_.constant(Scalar::floating, 0) || turns.hi > most)
+    return unknown(pool_[carried].scalar, place);
+  if (turns.hi <= 0) return initial;
   // What is added reads nothing of former rounds: else the unknown of `carried` stays in it.
-  return pool_.make({.kind = Kind::sum, .bits = fixed ? 1u : 0u, .place = place},
-                    std::array{pool_.operands(next)[1]});
+  const bool fixed = turns.lo == turns.hi;
+  return pool_.make(
+      {.kind = Kind::sum, .index = static_cast<uint32_t>(turns.hi), .bits = fixed ? 1u : 0u, .place = place},
+      std::array{pool_.operands(next)[1]});
 }
 
 }  // namespace
-
-std::vector<uint32_t> Pool::key(const Operation& o, std::span<const uint32_t> operands) {
-  std::vector<uint32_t> key{static_cast<uint32_t>(o.kind),
-                            static_cast<uint32_t>(o.op),
-                            static_cast<uint32_t>(o.scalar),
-                            o.component,
-                            o.index,
-                            o.bits};
-  key.insert(key.end(), operands.begin(), operands.end());
-  return key;
-}
-
-uint32_t Pool::make(Operation operation, std::span<const uint32_t> operands) {
-  const auto next = static_cast<uint32_t>(tape_.operations.size());
-  const auto [found, is_new] = made_.emplace(key(operation, operands), next);
-  if (!is_new) return found->second;
-  operation.first = static_cast<uint32_t>(tape_.operands.size());
-  operation.count = static_cast<uint32_t>(operands.size());
-  const Words copy(operands.begin(), operands.end());  // they may lie in what grows
-  tape_.operands.insert(tape_.operands.end(), copy.begin(), copy.end());
-  tape_.operations.push_back(operation);
-  return next;
-}
-
-uint32_t Pool::make_op(Opcode op, std::initializer_list<uint32_t> operands, Scalar scalar, uint32_t place) {
-  return make({.kind = Kind::op, .op = op, .scalar = scalar, .place = place}, operands);
-}
-
-uint32_t Pool::constant(Scalar scalar, uint32_t bits) {
-  return make({.kind = Kind::constant, .scalar = scalar, .bits = bits}, {});
-}
-
-uint32_t Pool::find(const Operation& operation, std::span<const uint32_t> operands) const {
-  const auto found = made_.find(key(operation, operands));
-  return found == made_.end() ? none : found->second;
-}
 
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
              const std::function<std::vector<Given>(std::string_view)>& outside) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "compiler/analysis/flatten.h"
+#include "compiler/support/check.h"
 
 namespace isoshade::analysis {
 namespace {
@@ -17,7 +18,8 @@ Opcode inverse(Opcode op) {
     case fgt: return fle;
     case fge: return flt;
     case feq: return fne;
-    default: return feq;
+    case fne: return feq;
+    default: support::bug("only comparisons have an inverse");
   }
 }
 
@@ -29,7 +31,9 @@ Opcode mirrored(Opcode op) {
     case fle: return fge;
     case fgt: return flt;
     case fge: return fle;
-    default: return op;
+    case feq:
+    case fne: return op;
+    default: support::bug("only comparisons can be mirrored");
   }
 }
 

@@ -272,8 +272,9 @@ std::vector<Bound> Prover::bounds_of_leaves() const {
     Bound all{infinity, -infinity};
     for (const Leaf& leaf : leaves_) {
       const Bound& b = leaf.outputs[o];
+      const Bound::Share share = b.share();
       all = {std::min(all.lo, b.lo), std::max(all.hi, b.hi), std::max(all.absolute, b.absolute),
-             std::max(all.relative, b.relative_error()), 0};
+             std::max(all.relative, share.error), std::max(all.slack, share.slack)};
     }
     bounds.push_back(all);
   }

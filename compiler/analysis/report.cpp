@@ -57,7 +57,10 @@ std::string port_of(const Documents::Found& found, Breach breach) {
     case Breach::logarithm:
     case Breach::arc:
     case Breach::conversion: wanted = "in"; break;
-    default: return "";
+    case Breach::none:
+    case Breach::overflow:
+    case Breach::domain:
+    case Breach::unknown: return "";
   }
   if (found.node == none || found.graph->nodes[found.node].row == nullptr) return "";
   const std::vector<nodes::Port>& ports = found.graph->nodes[found.node].row->ports;

@@ -15,7 +15,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 constexpr double ulp = 2 * half_ulp;
-/// What rows err by at most where they promise nothing: outside of the domain that functions.def states.
+/// What rows that approximate err by at most outside of the domain that functions.def states.
 constexpr double careless = 16 * ulp;
 
 using Arguments = std::span<const Bound>;
@@ -48,7 +48,8 @@ Outcome monotone(const Monotone& f, const Bound& x, double error) {
   const double least = f.value(f.rising ? first : last), most = f.value(f.rising ? last : first);
   if (x.absolute > 0)
     carried = std::min(carried, (most - least) * (1 + 1e-12) + 1e-14 * std::max(-least, most));
-  const bool exact_is_inside = f.least <= 0 || x.exact_lo() >= f.least;
+  const bool exact_is_inside =
+      f.breach == Breach::none || (x.exact_lo() >= f.least && x.exact_hi() <= f.most);
   if (x.absolute > 0 && !exact_is_inside) carried = infinity;
   Outcome outcome = approximate(a, b, error, carried);
   if (exact_is_inside) {
@@ -80,20 +81,27 @@ Outcome wave(const Bound& x, double phase, double error) {
   return approximate(lo, hi, error, x.absolute);
 }
 
-Outcome rule_sin(Arguments in, uint32_t, double error) { return wave(in[0], 0, error); }
-Outcome rule_cos(Arguments in, uint32_t, double error) { return wave(in[0], pi / 2, error); }
-
-Outcome rule_tan(Arguments in, uint32_t, double error) {
-  const Bound& x = in[0];
-  const double pole = pi * (std::ceil((x.lo - 1e-9) / pi - 0.5) + 0.5);
-  // No float of magnitude up to 8192 is nearer to a pole than 1e-9.
-  if (x.magnitude() > 8192) return {anything(), Breach::unknown};
-  if (pole <= x.hi + 1e-9) return bounded(-1e9, 1e9, in, error * 1e9);
-  const double steepest = 1 + std::pow(std::max(std::abs(std::tan(x.lo)), std::abs(std::tan(x.hi))), 2);
-  return approximate(std::tan(x.lo), std::tan(x.hi), error, slope_times(steepest, x.absolute));
+Outcome rule_sin(Arguments in, uint32_t, const Accuracy& accuracy) { return wave(in[0], 0, accuracy.error); }
+Outcome rule_cos(Arguments in, uint32_t, const Accuracy& accuracy) {
+  return wave(in[0], pi / 2, accuracy.error);
 }
 
-Outcome rule_fract(Arguments in, uint32_t, double) {
+Outcome rule_tan(Arguments in, uint32_t, const Accuracy& accuracy) {
+  const Bound& x = in[0];
+  // Both arguments, the computed and the exact one, lie here.
+  const double from = std::min(x.lo, x.exact_lo()), to = std::max(x.hi, x.exact_hi());
+  const double pole = pi * (std::ceil((from - 1e-9) / pi - 0.5) + 0.5);
+  // No float of magnitude up to 8192 is nearer to a pole than 1e-9.
+  if (x.magnitude() > 8192) return {anything(), Breach::unknown};
+  if (pole <= to + 1e-9) {
+    Bound r{-1e9, 1e9, x.absolute > 0 ? infinity : accuracy.error * 1e9, infinity, infinity};
+    return settled(r);
+  }
+  const double steepest = 1 + std::pow(std::max(std::abs(std::tan(from)), std::abs(std::tan(to))), 2);
+  return approximate(std::tan(x.lo), std::tan(x.hi), accuracy.error, slope_times(steepest, x.absolute));
+}
+
+Outcome rule_fract(Arguments in, uint32_t, const Accuracy&) {
   const Bound& x = in[0];
   const double below = std::floor(x.lo - x.absolute);
   const bool one_piece = below == std::floor(x.hi + x.absolute);
@@ -109,22 +117,25 @@ Outcome rule_fract(Arguments in, uint32_t, double) {
   return settled(r);
 }
 
-Outcome rule_mod(Arguments in, uint32_t, double) {
+Outcome rule_mod(Arguments in, uint32_t, const Accuracy&) {
   const Bound &x = in[0], &y = in[1];
   if (y.lo <= 0 && y.hi >= 0) return {anything(), Breach::division_by_zero};
   const double size = x.magnitude() + y.magnitude();
+  // The quotient, and what is taken away: where they are too large for floats, infinity less infinity is left.
+  const double quotient = x.magnitude() / y.least_magnitude();
+  if (quotient > largest || 1.001 * size > largest) return {anything(), Breach::overflow};
   Bound r{y.hi > 0 ? 0 : y.lo, y.hi > 0 ? y.hi : 0};
-  if (x.magnitude() / y.least_magnitude() >= 0x1p22) {
+  if (quotient >= 0x1p22) {
     r.lo = -2.01 * size;
     r.hi = 2.01 * size;
   }
   const bool jumps = x.absolute > 0 || y.absolute > 0;
-  r.absolute = jumps ? 2.01 * size : y.magnitude() + size * ulp;
+  r.absolute = jumps ? 2.01 * size : y.magnitude() + size * ulp + smallest;
   r.relative = r.slack = infinity;
   return settled(r);
 }
 
-Outcome rule_pow(Arguments in, uint32_t, double error) {
+Outcome rule_pow(Arguments in, uint32_t, const Accuracy& accuracy) {
   Bound x = in[0];
   const Bound& y = in[1];
   Breach breach = Breach::none;
@@ -136,22 +147,29 @@ Outcome rule_pow(Arguments in, uint32_t, double error) {
   // It is monotone in either argument.
   const auto [lo, hi] =
       std::minmax({std::pow(x.lo, y.lo), std::pow(x.lo, y.hi), std::pow(x.hi, y.lo), std::pow(x.hi, y.hi)});
-  const double x_least = x.lo - x.absolute, x_most = x.hi + x.absolute;
   double carried = 0;
   if (x.absolute > 0 || y.absolute > 0) {
+    // Both bases, the computed and the exact one, lie here, and both exponents.
+    const double x_least = std::min(x.lo, x.exact_lo()), x_most = std::max(x.hi, x.exact_hi());
+    const double y_least = std::min(y.lo, y.exact_lo()), y_most = std::max(y.hi, y.exact_hi());
+    const bool exists = x_least >= 0 && (x_least > 0 || y_least >= 0);
+    const auto [least, most] = std::minmax({std::pow(x_least, y_least), std::pow(x_least, y_most),
+                                            std::pow(x_most, y_least), std::pow(x_most, y_most)});
     // The slopes are y x^(y - 1) and x^y log(x).
-    const double power = y.magnitude() + y.absolute - 1;
-    const double base_slope = y.lo - y.absolute >= 1 ? (power + 1) * std::pow(std::max(x_most, 1.0), power)
-                              : x_least > 0          ? (power + 1) * hi * 1.01 / x_least
-                                                     : infinity;
+    const double power = std::max(std::abs(y_least), std::abs(y_most));
+    const double base_slope = y_least >= 1  ? power * std::pow(std::max(x_most, 1.0), power - 1)
+                              : x_least > 0 ? power * most / x_least
+                                            : infinity;
     const double logarithm =
         x_least > 0 ? std::max(std::abs(std::log(x_least)), std::abs(std::log(x_most))) : infinity;
-    carried = slope_times(base_slope, x.absolute) + slope_times(1.01 * hi * logarithm, y.absolute);
+    carried = slope_times(base_slope, x.absolute) + slope_times(most * logarithm, y.absolute);
+    carried = 1.001 * std::min(carried, most - least);
+    if (!exists || !std::isfinite(most)) carried = infinity;
   }
-  Outcome outcome = approximate(lo, hi, error, carried);
+  Outcome outcome = approximate(lo, hi, accuracy.error, carried);
   const double e = y.magnitude() * x.relative;
   if (y.absolute == 0 && x.slack == 0 && e < 0.01) {
-    outcome.bound.relative = std::min(outcome.bound.relative, 1.02 * e + error);
+    outcome.bound.relative = 1.02 * (e + accuracy.error);
     outcome.bound.slack = smallest;
     outcome.bound = settled(outcome.bound).bound;
   }
@@ -159,7 +177,7 @@ Outcome rule_pow(Arguments in, uint32_t, double error) {
   return outcome;
 }
 
-Outcome rule_atan2(Arguments in, uint32_t, double error) {
+Outcome rule_atan2(Arguments in, uint32_t, const Accuracy& accuracy) {
   const Bound &y = in[0], &x = in[1];
   const double lo = y.lo >= 0 ? 0 : x.lo > 0 ? -pi / 2 : -pi;
   const double hi = y.hi < 0 ? 0 : x.lo > 0 ? pi / 2 : pi;
@@ -169,7 +187,7 @@ Outcome rule_atan2(Arguments in, uint32_t, double error) {
   const double near = std::hypot(far_x, far_y);
   const double moved = x.absolute + y.absolute;
   const double carried = moved == 0 ? 0 : jumps ? 2 * pi : std::min(2 * pi, moved / near);
-  return approximate(lo, hi, error, carried);
+  return approximate(lo, hi, accuracy.error, carried);
 }
 
 double norm(Arguments v, double (Bound::*part)() const) {
@@ -183,7 +201,7 @@ double error_norm(Arguments v) {
   return std::sqrt(sum);
 }
 
-Outcome rule_normalize(Arguments in, uint32_t component, double error) {
+Outcome rule_normalize(Arguments in, uint32_t component, const Accuracy& accuracy) {
   const Bound& c = in[component];
   double others_least = 0, others_most = 0;
   for (uint32_t i = 0; i < in.size(); ++i) {
@@ -200,30 +218,54 @@ Outcome rule_normalize(Arguments in, uint32_t component, double error) {
   const double moved = error_norm(in);
   const double least = norm(in, &Bound::least_magnitude) - moved;
   const double carried = moved == 0 ? 0 : least > 0 ? std::min(2.0, 2 * moved / least) : 2;
-  return approximate(lo, hi, error, carried);
+  return approximate(lo, hi, accuracy.error, carried);
 }
 
-Outcome rule_length(Arguments in, uint32_t, double error) {
-  return approximate(norm(in, &Bound::least_magnitude), norm(in, &Bound::magnitude), error, error_norm(in));
+Outcome rule_length(Arguments in, uint32_t, const Accuracy& accuracy) {
+  return approximate(norm(in, &Bound::least_magnitude), norm(in, &Bound::magnitude), accuracy.error,
+                     error_norm(in));
 }
 
-Outcome rule_rotate2d(Arguments in, uint32_t, double) {
+Outcome rule_rotate2d(Arguments in, uint32_t, const Accuracy&) {
   const double size = in[0].magnitude() + in[1].magnitude();
-  const double reach = norm(in.first(2), &Bound::magnitude) + 2.5 * ulp * size;
+  const double reach = norm(in.first(2), &Bound::magnitude) + 2.5 * ulp * size + smallest;
   const double turned = std::min(2 * size, size * 0.01745330 * in[2].absolute);
-  Bound r{-reach, reach, in[0].absolute + in[1].absolute + turned + 2.5 * ulp * size, infinity, infinity};
+  Bound r{-reach, reach, in[0].absolute + in[1].absolute + turned + 2.5 * ulp * size + 4 * smallest, infinity,
+          infinity};
   if (in[2].magnitude() > 0x1p22) r.absolute = 2 * reach;
   return settled(r);
 }
 
-Outcome rule_rgb_to_hsv(Arguments in, uint32_t component, double) {
+/// Op by op, but its weights are floats near those that it is defined by.
+Outcome rule_luminance(Arguments in, uint32_t, const Accuracy&) {
+  constexpr double weights[] = {0.2126, 0.7152, 0.0722};
+  Outcome sum;
+  for (size_t i = 0; i < std::size(weights); ++i) {
+    const double nearest = rounded(weights[i]), error = 1.001 * std::abs(nearest - weights[i]);
+    const Outcome term = multiply({nearest, nearest, error, 1.001 * error / weights[i], 0}, in[i]);
+    const Breach before = sum.breach;
+    sum = i == 0 ? term : add(sum.bound, term.bound);
+    if (term.breach != Breach::none) sum.breach = term.breach;
+    if (before != Breach::none) sum.breach = before;
+  }
+  return sum;
+}
+
+Outcome rule_rgb_to_hsv(Arguments in, uint32_t component, const Accuracy&) {
   if (component == 2) return {greater(greater(in[0], in[1]), in[2])};
   const bool positive = in[0].lo >= 0 && in[1].lo >= 0 && in[2].lo >= 0;
   if (!positive && component == 1) return {anything(), Breach::unknown};
+  // Where the difference of two components is a denormal it counts as 0, and the hue and the saturation too.
+  const double value = greater(greater(in[0], in[1]), in[2]).lo;
+  if (value < 0x1p-100) return bounded(0, 1 + 3 * ulp, in, 1);
   return bounded(0, 1 + 3 * ulp, in, 3 * ulp);
 }
 
 Outcome fractal(Arguments in) {
+  const double farthest = std::max({in[0].magnitude(), in[1].magnitude(), in[2].magnitude()});
+  // Infinities would count as 0, but what is multiplied by them may be NaN.
+  if (farthest * std::pow(std::max(1.0, in[4].magnitude()), 16) > largest)
+    return {anything(), Breach::overflow};
   const double growth = std::max(1.0, in[5].magnitude());
   double most = 0;
   for (int octave = 0; octave < 16; ++octave) most += 2 * std::pow(growth, octave);
@@ -232,20 +274,22 @@ Outcome fractal(Arguments in) {
   outcome.bound.absolute = 2 * most;
   return outcome;
 }
-Outcome rule_fractal3d(Arguments in, uint32_t, double) { return fractal(in); }
-Outcome rule_fractal3d_vector3(Arguments in, uint32_t, double) { return fractal(in); }
+Outcome rule_fractal3d(Arguments in, uint32_t, const Accuracy&) { return fractal(in); }
+Outcome rule_fractal3d_vector3(Arguments in, uint32_t, const Accuracy&) { return fractal(in); }
 
-Outcome worley(Arguments in) {
+Outcome worley(Arguments in, const Accuracy& accuracy) {
   if (in[2].lo < 0 || in[2].hi > 1) return {anything(), Breach::unknown};
-  return bounded(0, 3, in, 2 * ulp);  // of nine cells none is farther than 2 sqrt(2)
+  return bounded(0, 3, in, accuracy.promised ? 2 * ulp : 3);  // of nine cells none is farther than 2 sqrt(2)
 }
-Outcome rule_worleynoise2d(Arguments in, uint32_t, double) { return worley(in); }
-Outcome rule_worleynoise2d_vector3(Arguments in, uint32_t, double) { return worley(in); }
+Outcome rule_worleynoise2d(Arguments in, uint32_t, const Accuracy& accuracy) { return worley(in, accuracy); }
+Outcome rule_worleynoise2d_vector3(Arguments in, uint32_t, const Accuracy& accuracy) {
+  return worley(in, accuracy);
+}
 
 constexpr bool rising = true, falling = false;
 
 #define MONOTONE(row, direction, least, most, breach, value_of_x, slope_in_ab)                       \
-  Outcome rule_##row(Arguments in, uint32_t, double error) {                                         \
+  Outcome rule_##row(Arguments in, uint32_t, const Accuracy& accuracy) {                             \
     static constexpr Monotone f{                                                                     \
         direction,                                                                                   \
         least,                                                                                       \
@@ -253,10 +297,12 @@ constexpr bool rising = true, falling = false;
         Breach::breach,                                                                              \
         [](double x) -> double { return value_of_x; },                                               \
         []([[maybe_unused]] double a, [[maybe_unused]] double b) -> double { return slope_in_ab; }}; \
-    return monotone(f, in[0], error);                                                                \
+    return monotone(f, in[0], accuracy.error);                                                       \
   }
-#define BOUNDED(row, least, most) \
-  Outcome rule_##row(Arguments in, uint32_t, double) { return bounded(least, most, in, 2 * ulp); }
+#define BOUNDED(row, least, most)                                                \
+  Outcome rule_##row(Arguments in, uint32_t, const Accuracy& accuracy) {         \
+    return bounded(least, most, in, accuracy.promised ? 2 * ulp : most - least); \
+  }
 #include "compiler/functions/ranges.def"
 
 constexpr Rule rules[] = {
@@ -333,11 +379,10 @@ Outcome bound_of(const Rule& rule, std::span<const Bound> arguments, uint32_t co
   const RowFacts& facts = *facts_of(rule.row, tier);
   const bool inside = is_within(facts.domain, arguments, is_componentwise(rule.row));
   if (facts.tier == functions::Tier::fast && !inside) return {anything(), Breach::domain};
-  const bool promises = inside || rule.row != "pow";
   const double ulps = facts.of_one ? facts_of(rule.row, functions::Tier::standard)->ulp : facts.ulp;
   const bool is_default = facts.tier == functions::Tier::standard;
-  const double error = promises ? (is_default ? std::max(ulps, 1.0) : ulps) * ulp * (1 + ulp) : careless;
-  Outcome outcome = rule.bound(arguments, component, error);
+  const double error = inside ? (is_default ? std::max(ulps, 1.0) : ulps) * ulp * (1 + ulp) : careless;
+  Outcome outcome = rule.bound(arguments, component, {error, inside});
   if (!facts.of_one) return outcome;
   Bound& b = outcome.bound;
   b.lo -= facts.ulp * ulp;

@@ -10,11 +10,17 @@
 
 namespace isoshade::analysis {
 
+/// What a row errs by.
+struct Accuracy {
+  double error;   ///< relative to its result
+  bool promised;  ///< the arguments lie within the domain that its table states
+};
+
 struct Rule {
   std::string_view row;
   /// The bound of one component of the result. Where the row works componentwise, `arguments` are those of the
-  /// component, else all words of all arguments. `error`: what the row errs by, relative to its result.
-  Outcome (*bound)(std::span<const Bound> arguments, uint32_t component, double error);
+  /// component, else all words of all arguments.
+  Outcome (*bound)(std::span<const Bound> arguments, uint32_t component, const Accuracy& accuracy);
 };
 
 /// The same, with what the tables say of the row's body in a tier. Where a fast body promises nothing, it is a breach.

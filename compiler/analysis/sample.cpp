@@ -62,9 +62,14 @@ double Points::pick(double lo, double hi, uint32_t i) {
     case 2: return lo + size * std::exp2(-40 * random_.unit());
     case 3: return hi - size * std::exp2(-40 * random_.unit());
     case 4: return std::clamp(static_cast<double>(static_cast<int>(random_.below(3)) - 1), lo, hi);
-    case 5:
+    case 5: {
       if (i == 0) break;
-      return std::clamp(static_cast<double>(as_float(words_[random_.below(i)])), lo, hi);
+      const uint32_t other = random_.below(i);
+      const bool is_float = tape_.inputs[other].scalar == ir::Scalar::floating;
+      const auto value = is_float ? static_cast<double>(as_float(words_[other]))
+                                  : static_cast<double>(static_cast<int32_t>(words_[other]));
+      return std::clamp(value, lo, hi);
+    }
     case 6:
       if (lo <= 0) break;
       return lo * std::pow(hi / lo, random_.unit());
@@ -76,7 +81,6 @@ double Points::pick(double lo, double hi, uint32_t i) {
 uint32_t Points::number(uint32_t i) {
   const Side& side = box_[i];
   if (tape_.inputs[i].scalar == ir::Scalar::floating) {
-    // Words of integers among the others are denormals, that is zeros, as floats.
     const auto value = static_cast<float>(pick(side.lo, side.hi, i));
     words_[i] = as_word(std::clamp(value, static_cast<float>(side.lo), static_cast<float>(side.hi)));
   } else {
@@ -162,7 +166,8 @@ Breach Runner::breach_of(const Operation& operation, uint32_t index) const {
   }
   if (operation.kind == Kind::op && operation.op == Opcode::fdiv && (words_[in[1]] << 1) == 0)
     return Breach::division_by_zero;
-  const bool given = operation.kind == Kind::constant || operation.kind == Kind::input;
+  const bool given =
+      operation.kind == Kind::constant || operation.kind == Kind::input || operation.kind == Kind::asked;
   if (given || operation.scalar != ir::Scalar::floating || is_finite(words_[index])) return Breach::none;
   if (operation.kind == Kind::op && operation.op == Opcode::fsqrt) return Breach::root_of_negative;
   if (operation.kind != Kind::row) return Breach::overflow;
@@ -196,6 +201,7 @@ std::optional<Runner::Broken> Runner::run(std::span<const uint32_t> inputs) {
       case Kind::row: words_[i] = row(operation); break;
       case Kind::sum: words_[i] = ir::evaluate(Opcode::fadd, 0, words_[in[0]], 0); break;
       case Kind::unknown: words_[i] = 0; break;
+      case Kind::asked:
       case Kind::narrow: words_[i] = words_[in[0]]; break;
       case Kind::enter: {
         const Guard& guard = tape_.guards[operation.index];

@@ -16,8 +16,6 @@
 namespace isoshade::analysis {
 
 inline constexpr uint32_t none = ir::none;
-/// What a scene has at most of lights, and a post of taps: sums over them are bounded by it.
-inline constexpr int most_lights = 256;
 /// Functions that would become more operations than this have no tape.
 inline constexpr size_t most_operations = 200'000;
 
@@ -29,10 +27,11 @@ enum class Kind : uint8_t {
   greatest,  ///< and max
   dot,       ///< of the first half of its operands with the second
   row,       ///< one component of another function of functions.def
-  sum,       ///< of its operand over at most most_lights turns; bits: 1 where their number is not free
-  unknown,   ///< anything
-  narrow,    ///< its first operand, of which `op` with the second holds here
-  enter,     ///< index: in Tape::guards; from here on it is known whether it holds
+  sum,       ///< of its operand over at most `index` turns; bits: 1 where their number is not free
+  asked,  ///< its first operand, an input: what is there where a host was asked with the others; index: an Answer
+  unknown,  ///< anything
+  narrow,   ///< its first operand, of which `op` with the second holds here
+  enter,    ///< index: in Tape::guards; from here on it is known whether it holds
 };
 
 struct Operation {
@@ -47,11 +46,24 @@ struct Operation {
   uint32_t guard = 0;             ///< in Tape::guards: it is only looked at where this holds
 };
 
+/// How far what a host answers may lie from what it would have answered to the exact question.
+enum class Answer : uint8_t {
+  same,      ///< asked exactly, it is exact; else it may be any other
+  other,     ///< it may be any other, however it is asked: the nearest texel, that rounding moves to the next
+  filtered,  ///< in proportion between texels; asked with a texture and its two coordinates
+  quotient,  ///< asked exactly, it errs by a few roundings; else it may be any other
+  unknown,   ///< nothing is known of its error
+};
+
 /// The node that an operation comes from.
 struct Place {
   std::string document;  ///< as ir::Function::document
   std::string node;
   uint32_t caller = none;  ///< the node that called the document's function, in Tape::places
+};
+
+struct Side {
+  double lo = 0, hi = 0;
 };
 
 /// A number from outside.
@@ -71,6 +83,7 @@ struct Given {
   int element = -1;   ///< of a matrix's column: the number of its first element in the matrix
   double quotient =
       0;  ///< not 0: what is divided by a sum that begins with it is from outside too, and from 0 to this
+  Answer answer = Answer::same;  ///< of what a host is asked for
 };
 
 /// A truth under which operations are looked at. 0 always holds.
@@ -115,9 +128,6 @@ struct VectorShape {
   double length = 1e30;                ///< what its length is at most
 };
 
-/// The group of parameters that say how many taps a post sums: as many as it is written for, no fewer.
-inline constexpr std::string_view taps_group = "taps";
-
 struct Tape {
   ir::Module module;                                 ///< with bodies for all calls to functions.def
   functions::Tier tier = functions::Tier::standard;  ///< whose bodies they are
@@ -144,7 +154,8 @@ struct Tape {
 inline constexpr double unit_tolerance = 0x1p-21;
 
 /// The tape of a function. `given`: of its parameters, one each. `outside`: what a function that no document has returns, one a
-/// result, by its name; nothing of one whose body tells. Nothing if it would be too long.
+/// result, by its name; nothing of one whose body tells. Of results and words that nothing is given of nothing is assumed. Nothing if it
+/// would be too long.
 std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
                               const std::function<std::vector<Given>(std::string_view)>& outside,
                               functions::Tier tier = functions::Tier::standard);

@@ -16,15 +16,27 @@ namespace isoshade::cli {
 
 namespace {
 
-std::string number(double value) { return support::format_float(static_cast<float>(value)); }
+/// Of floats the nearest that are not less, or not more: what is told must hold.
+std::string number_above(double value) {
+  auto nearest = static_cast<float>(value);
+  if (static_cast<double>(nearest) < value) nearest = std::nextafter(nearest, HUGE_VALF);
+  return support::format_float(nearest);
+}
+std::string number_below(double value) {
+  auto nearest = static_cast<float>(value);
+  if (static_cast<double>(nearest) > value) nearest = std::nextafter(nearest, -HUGE_VALF);
+  return support::format_float(nearest);
+}
 
-/// "error at most 1e-06, at most 3.5 ULP"
+/// "error at most 1e-06, at most 3.5 ULP and 1.2e-38"
 std::string error_text(const analysis::Bound& bound) {
   if (bound.absolute > analysis::largest) return "error unknown";
   const double ulps = bound.relative * 0x1p24;
-  std::string text = "error at most " + number(bound.absolute);
-  if (ulps > 0 && ulps < 1e6) text += ", at most " + number(std::ceil(10 * ulps) / 10) + " ULP";
-  return text;
+  std::string text = "error at most " + number_above(bound.absolute);
+  if (!(ulps > 0 && ulps < 1e6)) return text;
+  // Results below the normal floats are zeros: no number of ULP holds for them.
+  text += ", at most " + support::format_float(static_cast<float>(std::ceil(10 * ulps) / 10)) + " ULP";
+  return bound.slack > 0 ? text + " and " + number_above(bound.slack) : text;
 }
 
 bool tells_less(const analysis::Bound& a, const analysis::Bound& b) {
@@ -43,8 +55,8 @@ void print_bounds(const analysis::Tape& tape, const analysis::Proof& proof) {
     if (proof.lost[i] != analysis::none) error += ", lost at node " + node(proof.lost[i]);
     if (differs) error += "; where rounding tips a branch, " + error_text(bound);
     tips = tips || differs;
-    std::printf("  %s in [%s, %s], %s\n", tape.outputs[i].name.c_str(), number(bound.lo).c_str(),
-                number(bound.hi).c_str(), error.c_str());
+    std::printf("  %s in [%s, %s], %s\n", tape.outputs[i].name.c_str(), number_below(bound.lo).c_str(),
+                number_above(bound.hi).c_str(), error.c_str());
   }
   std::string nodes;
   std::set<std::string> named;

@@ -102,8 +102,8 @@ class Measurement {
     if (error > bound.absolute)
       wrong("off by " + std::to_string(error) + " of " + std::to_string(bound.absolute));
     const auto size = static_cast<double>(abs(exact));
-    const double relative = bound.relative_error();
-    if (error > relative * size + 0x1p-100)
+    const auto [relative, slack] = bound.share();
+    if (error > relative * size * (1 + 0x1p-50) + slack)
       wrong("off by " + std::to_string(error / size * 0x1p24) + " ULP of " +
             std::to_string(relative * 0x1p24));
     return error;

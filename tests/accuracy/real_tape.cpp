@@ -7,6 +7,7 @@
 #include "backends/reference/functions.h"
 #include "compiler/functions/library.h"
 #include "compiler/ir/evaluate.h"
+#include "compiler/support/check.h"
 
 namespace isoshade::accuracy {
 
@@ -36,6 +37,7 @@ RealTape::Cell RealTape::value_of(const Operation& operation, uint32_t index,
     case Kind::greatest: return {std::max(cells_[in[0]].number, cells_[in[1]].number)};
     case Kind::dot: return {dot(in)};
     case Kind::row: return {row(operation)};
+    case Kind::asked:
     case Kind::sum:
     case Kind::narrow: return cells_[in[0]];
     case Kind::unknown: return given(floats_.word(index));
@@ -69,8 +71,44 @@ RealTape::Cell RealTape::op(const Operation& operation, bool follow) {
       const auto cut = std::clamp<int64_t>(static_cast<int64_t>(number(0)), INT32_MIN, INT32_MAX);
       return {{}, static_cast<uint32_t>(static_cast<int32_t>(cut))};
     }
-    default: return {{}, ir::evaluate(operation.op, word(0), word(1), word(2))};
+    case Opcode::fbits:
+    case Opcode::fbits_nonnan: return {{}, std::bit_cast<uint32_t>(reference::stored(number(0)))};
+    case Opcode::bitsf:
+    case Opcode::bitsf_normal: return {std::bit_cast<float>(ir::flush_denormal(word(0)))};
+    case Opcode::iadd:
+    case Opcode::isub:
+    case Opcode::imul:
+    case Opcode::imulhi:
+    case Opcode::umulhi:
+    case Opcode::iand:
+    case Opcode::ior:
+    case Opcode::ixor:
+    case Opcode::ishl:
+    case Opcode::ishr:
+    case Opcode::isar:
+    case Opcode::ilt:
+    case Opcode::ile:
+    case Opcode::igt:
+    case Opcode::ige:
+    case Opcode::ieq:
+    case Opcode::ine:
+    case Opcode::ult:
+    case Opcode::band:
+    case Opcode::bor:
+    case Opcode::bxor:
+    case Opcode::bnot: return {{}, ir::evaluate(operation.op, word(0), word(1), word(2))};
+    case Opcode::constant:
+    case Opcode::construct:
+    case Opcode::extract:
+    case Opcode::hidden_zero:
+    case Opcode::load:
+    case Opcode::call:
+    case Opcode::branch:
+    case Opcode::loop:
+    case Opcode::ddx:
+    case Opcode::ddy: break;
   }
+  support::bug("exact arithmetic has no such op");
 }
 
 Real RealTape::dot(std::span<const uint32_t> in) const {

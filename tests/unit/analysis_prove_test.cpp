@@ -153,8 +153,8 @@ TEST(Proof, OfASumOverLightsBoundsAnyNumberOfThem) {
   };
   const Checked c = checked(effect("c * color3(max(dot(n, l), 0))"));
   EXPECT_TRUE(c.proof.unproved.empty()) << c.messages;
-  EXPECT_GE(c.proof.outputs[0].hi, 256e6);
-  EXPECT_LT(c.proof.outputs[0].hi, 257e6);
+  EXPECT_GE(c.proof.outputs[0].hi, 1024e6);
+  EXPECT_LT(c.proof.outputs[0].hi, 1025e6);
   EXPECT_FALSE(checked(effect("c / color3(dot(n, l))")).proof.unproved.empty());
 }
 
