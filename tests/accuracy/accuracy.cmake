@@ -89,3 +89,15 @@ isoshade_test(bound_test
 target_compile_definitions(bound_test PRIVATE
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
   $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
+# With ISOSHADE_FULL=1 in the environment: 20,000 documents.
+isoshade_test(soundness_test
+  SOURCES
+    accuracy/document_runs.cpp
+    accuracy/random_graph.cpp
+    accuracy/real_tape.cpp
+    accuracy/soundness_test.cpp
+  LINKS isoshade_analysis isoshade_interpreter isoshade_reference
+  LABEL accuracy
+  TIMEOUT 7200)
+target_compile_definitions(soundness_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
