@@ -1,74 +1,209 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR through tinyexr.
+// OpenEXR: its library packs and unpacks pixels. What it reads is a file of one part and one level, that we write around
+// the chunks of the real one: so it never sees a header that has not been checked (exr_file.h), nor chunks that are not
+// whole (exr_chunks.h).
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfTiledInputFile.h>
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
-#include <tinyexr.h>
+#include <limits>
+#include <stdexcept>
 
 #include "compiler/support/check.h"
+#include "runtime/lanes/float_rules.h"
+#include "runtime/scene/exr_chunks.h"
+#include "runtime/scene/exr_file.h"
 #include "runtime/scene/image_codecs.h"
-#include "runtime/scene/scene.h"
 
 namespace isoshade::scene {
 namespace {
 
-constexpr int channel_count = 5;
-// The format wants its channels in alphabetical order.
-constexpr const char* channel_names[channel_count] = {"A", "B", "G", "R", "Z"};
-constexpr int channel_source[channel_count] = {3, 2, 1, 0, 4};  // in our pixel; 4 is the depth
+using exr_file::Chunk;
+using exr_file::Part;
+using exr_file::Window;
 
-/// tinyexr's messages have to be freed.
-std::string take_message(const char* message) {
-  if (message == nullptr) return "the file is damaged";
-  std::string text(message);
-  FreeEXRErrorMessage(message);
-  return text;
-}
-
-struct Header : EXRHeader {
-  Header() { InitEXRHeader(this); }
-  ~Header() { FreeEXRHeader(this); }
-  Header(const Header&) = delete;
-  Header& operator=(const Header&) = delete;
-};
-
-struct LoadedImage : EXRImage {
-  LoadedImage() { InitEXRImage(this); }
-  ~LoadedImage() { FreeEXRImage(this); }
-  LoadedImage(const LoadedImage&) = delete;
-  LoadedImage& operator=(const LoadedImage&) = delete;
-};
-
-int find_channel(const EXRHeader& header, const char* name) {
-  for (int c = 0; c < header.num_channels; ++c)
-    if (std::strcmp(header.channels[c].name, name) == 0) return c;
-  return -1;
-}
-
-bool is_grey(const EXRHeader& header) {
-  return find_channel(header, "Y") >= 0 && find_channel(header, "R") < 0;
-}
-
-/// Empty if the header describes what we read: flat scanlines of a sensible size with the three colours, or grey.
-std::string refuse(const EXRVersion& version, const EXRHeader& header) {
-  if (version.multipart != 0 || version.non_image != 0 || header.tiled != 0)
-    return "it is tiled, deep or of several parts";
-  const EXRBox2i& window = header.data_window;
-  const int64_t width = int64_t{window.max_x} - window.min_x + 1;
-  const int64_t height = int64_t{window.max_y} - window.min_y + 1;
-  if (std::string reason = refuse_size(width, height); !reason.empty()) return reason;
-  constexpr int64_t most_values = int64_t{8} * max_size * max_size;  // tinyexr unpacks all channels
-  if (header.num_channels > most_values / (width * height) || header.num_channels > 64)
-    return "it has too many channels";
-  for (const char* name : {"R", "G", "B"})
-    if (!is_grey(header) && find_channel(header, name) < 0) return "it has no channel " + std::string(name);
-  for (int c = 0; c < header.num_channels; ++c) {
-    if (header.channels[c].x_sampling != 1 || header.channels[c].y_sampling != 1)
-      return "a channel is subsampled";
-    if (header.channels[c].pixel_type == TINYEXR_PIXELTYPE_UINT) return "a channel holds integers";
+/// A file that is written to memory.
+class Writer : public Imf::OStream {
+ public:
+  Writer() : OStream("") {}
+  void write(const char* data, int size) override {
+    const auto count = static_cast<size_t>(size);
+    bytes_.resize(std::max(bytes_.size(), at_ + count));
+    std::memcpy(bytes_.data() + at_, data, count);
+    at_ += count;
   }
-  return {};
+  uint64_t tellp() override { return at_; }
+  void seekp(uint64_t at) override { at_ = at; }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+  size_t at_ = 0;
+};
+
+/// A file that stands in pieces of memory.
+class Pieces : public Imf::IStream {
+ public:
+  Pieces() : IStream("") {}
+  void add(std::string_view piece) {
+    pieces_.push_back(piece);
+    starts_.push_back(size_);
+    size_ += piece.size();
+  }
+  bool read(char* to, int size) override {
+    auto count = static_cast<size_t>(size);
+    if (size < 0 || count > size_ - at_) throw std::runtime_error("the data end too early");
+    while (count > 0) {
+      const auto after = std::ranges::upper_bound(starts_, at_);
+      const auto piece = static_cast<size_t>(after - starts_.begin()) - 1;
+      const std::string_view rest = pieces_[piece].substr(at_ - starts_[piece]);
+      const size_t part = std::min(rest.size(), count);
+      std::memcpy(to, rest.data(), part);
+      to += part;
+      at_ += part;
+      count -= part;
+    }
+    return at_ < size_;
+  }
+  uint64_t tellg() override { return at_; }
+  void seekg(uint64_t at) override { at_ = std::min<uint64_t>(at, size_); }
+
+ private:
+  std::vector<std::string_view> pieces_;  ///< none is empty
+  std::vector<uint64_t> starts_;
+  uint64_t size_ = 0, at_ = 0;
+};
+
+Imf::PixelType imf_type(exr_file::PixelType type) {
+  switch (type) {
+    case exr_file::PixelType::uint: return Imf::UINT;
+    case exr_file::PixelType::half: return Imf::HALF;
+    case exr_file::PixelType::single: return Imf::FLOAT;
+  }
+  support::bug("exr: no such pixel type");
+}
+
+Imath::Box2i imf_box(const Window& window) {
+  return {{window.min_x, window.min_y}, {window.max_x, window.max_y}};
+}
+
+/// What comes before the chunks: the header of a file of one part and one level, and where each chunk is.
+std::string head_of(const Part& part, const std::vector<Chunk>& chunks) {
+  Imf::Header header(imf_box(part.data), imf_box(part.data));
+  header.compression() = static_cast<Imf::Compression>(part.compression);
+  for (const exr_file::Channel& channel : part.channels)
+    header.channels().insert(channel.name, Imf::Channel(imf_type(channel.type), channel.x_sampling,
+                                                        channel.y_sampling, channel.linear != 0));
+  if (part.tiles) header.setTileDescription({part.tiles->width, part.tiles->height});
+  Writer writer;
+  constexpr char tiled = 2, long_names = 4;
+  writer.write("\x76\x2f\x31\x01\x02", 5);
+  const char flags[3] = {static_cast<char>(long_names | (part.tiles ? tiled : 0)), 0, 0};
+  writer.write(flags, 3);
+  header.writeTo(writer, part.tiles.has_value());
+  std::string head = writer.take();
+  uint64_t offset = head.size() + 8 * chunks.size();
+  for (const Chunk& chunk : chunks) {
+    for (int shift = 0; shift < 64; shift += 8) head += static_cast<char>(offset >> shift & 255);
+    offset += chunk.bytes.size();
+  }
+  return head;
+}
+
+/// Of a chunk's pixel, what is read of it: r g b a z.
+constexpr size_t read_count = 5;
+
+/// Where the pixels of a window go, that has them one after another.
+Imf::FrameBuffer frame_buffer(const Part& part, const Window& window, float* to) {
+  Imf::FrameBuffer buffer;
+  constexpr size_t pixel = read_count * sizeof(float);
+  const auto insert = [&](int channel, size_t place) {
+    if (channel < 0) return;
+    buffer.insert(part.channels[static_cast<size_t>(channel)].name,
+                  Imf::Slice::Make(Imf::FLOAT, to + place, imf_box(window), pixel,
+                                   pixel * static_cast<size_t>(window.width())));
+  };
+  const exr_file::Picture& picture = part.picture;
+  insert(picture.colors[0], 0);
+  if (picture.colors[1] != picture.colors[0]) insert(picture.colors[1], 1), insert(picture.colors[2], 2);
+  insert(picture.alpha, 3);
+  insert(picture.depth, 4);
+  return buffer;
+}
+
+/// Puts the pixels of a window where they are in the display window, or nowhere.
+void place(const Part& part, const Window& from, const std::vector<float>& pixels, FileImage& image) {
+  const Window& display = part.display;
+  const int32_t left = std::max(from.min_x, display.min_x), right = std::min(from.max_x, display.max_x);
+  const int32_t top = std::max(from.min_y, display.min_y), bottom = std::min(from.max_y, display.max_y);
+  const exr_file::Picture& picture = part.picture;
+  const bool grey = picture.colors[0] == picture.colors[1];
+  for (int32_t y = top; y <= bottom; ++y) {
+    const int64_t row = (int64_t{y} - from.min_y) * from.width(),
+                  row_to = (int64_t{y} - display.min_y) * image.width;
+    for (int32_t x = left; x <= right; ++x) {
+      const float* source = &pixels[read_count * static_cast<size_t>(row + x - from.min_x)];
+      const auto to = static_cast<size_t>(row_to + x - display.min_x);
+      for (size_t c = 0; c < 3; ++c) image.rgba[4 * to + c] = source[grey ? 0 : c];
+      image.rgba[4 * to + 3] = picture.alpha < 0 ? 1.0f : source[3];
+      if (picture.depth >= 0) image.depth[to] = source[4];
+    }
+  }
+}
+
+/// A channel Z with fewer samples than pixels is not read.
+Part without_sparse_depth(Part part) {
+  if (part.picture.depth < 0) return part;
+  const exr_file::Channel& depth = part.channels[static_cast<size_t>(part.picture.depth)];
+  if (depth.x_sampling != 1 || depth.y_sampling != 1) part.picture.depth = -1;
+  return part;
+}
+
+void unpack(const Part& part, const std::vector<Chunk>& chunks, FileImage& image) {
+  const std::string head = head_of(part, chunks);
+  Pieces file;
+  file.add(head);
+  for (const Chunk& chunk : chunks) file.add(chunk.bytes);
+  std::optional<Imf::TiledInputFile> tiles;
+  std::optional<Imf::InputFile> rows;
+  if (part.tiles)
+    tiles.emplace(file, 0);
+  else
+    rows.emplace(file, 0);
+  std::vector<float> pixels;
+  for (const Chunk& chunk : chunks) {
+    const Window& window = chunk.pixels;
+    pixels.assign(read_count * static_cast<size_t>(window.width() * window.height()), 0.0f);
+    const Imf::FrameBuffer buffer = frame_buffer(part, window, pixels.data());
+    if (tiles) {
+      tiles->setFrameBuffer(buffer);
+      tiles->readTile(chunk.column, chunk.row);
+    } else {
+      rows->setFrameBuffer(buffer);
+      rows->readPixels(window.min_y, window.max_y);
+    }
+    place(part, window, pixels, image);
+  }
+}
+
+/// The library unpacks DWAA and DWAB by sums of floats whose order depends on the processor: with AVX, as nearly all have
+/// it, another one than without.
+bool unpacks_alike(exr_file::Compression compression) {
+  const bool cosines =
+      compression == exr_file::Compression::dwaa || compression == exr_file::Compression::dwab;
+  return !cosines || __builtin_cpu_supports("avx") != 0;
+}
+
+/// What an exception of the library says, without the name of the file, which it does not know.
+std::string reason_of(const std::exception& exception) {
+  std::string text = exception.what();
+  if (const size_t name = text.find("\"\". "); name != std::string::npos) text.erase(0, name + 4);
+  return "the file is damaged: " + text;
 }
 
 }  // namespace
@@ -76,99 +211,61 @@ std::string refuse(const EXRVersion& version, const EXRHeader& header) {
 std::string exr(const ImageView& image) {
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
   support::check(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "exr: image of odd size");
-  std::vector<float> planes[channel_count];
-  unsigned char* pointers[channel_count];
-  EXRChannelInfo infos[channel_count];
-  int types[channel_count];
-  for (int c = 0; c < channel_count; ++c) {
-    planes[c].resize(pixels);
-    const int source = channel_source[c];
-    for (size_t i = 0; i < pixels; ++i)
-      planes[c][i] = source == 4 ? image.depth[i] : image.rgba[4 * i + static_cast<size_t>(source)];
-    pointers[c] = reinterpret_cast<unsigned char*>(planes[c].data());
-    std::memset(&infos[c], 0, sizeof infos[c]);
-    std::strcpy(infos[c].name, channel_names[c]);
-    types[c] = TINYEXR_PIXELTYPE_FLOAT;
-  }
-
-  // These two only borrow what they point to, so they are not freed.
-  EXRHeader header;
-  InitEXRHeader(&header);
-  header.num_channels = channel_count;
-  header.channels = infos;
-  header.pixel_types = types;
-  header.requested_pixel_types = types;
-  header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
-  EXRImage picture;
-  InitEXRImage(&picture);
-  picture.num_channels = channel_count;
-  picture.images = pointers;
-  picture.width = image.width;
-  picture.height = image.height;
-
-  unsigned char* memory = nullptr;
-  const char* message = nullptr;
-  const size_t size = SaveEXRImageToMemory(&picture, &header, &memory, &message);
-  if (size == 0) support::bug("tinyexr: " + take_message(message));
-  const std::unique_ptr<unsigned char, void (*)(void*)> owner(memory, std::free);
-  return std::string(reinterpret_cast<const char*>(memory), size);
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer buffer;
+  const auto add = [&](const char* name, const float* first, size_t step) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    // The library writes from it, although it takes a pointer that it could write to.
+    char* base = const_cast<char*>(reinterpret_cast<const char*>(first));
+    const size_t stride = step * sizeof(float);
+    buffer.insert(name, Imf::Slice(Imf::FLOAT, base, stride, stride * static_cast<size_t>(image.width)));
+  };
+  constexpr const char* colors[] = {"R", "G", "B", "A"};
+  for (size_t c = 0; c < 4; ++c) add(colors[c], image.rgba.data() + c, 4);
+  add("Z", image.depth.data(), 1);
+  Writer writer;
+  {
+    Imf::OutputFile file(writer, header, 0);
+    file.setFrameBuffer(buffer);
+    file.writePixels(image.height);
+  }  // writes where the rows are
+  return writer.take();
 }
 
 bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
-namespace {
-
-/// Why there is none; empty if it was read and describes what we read.
-std::string read_into(Header& header, std::string_view bytes) {
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  EXRVersion version;
-  if (ParseEXRVersionFromMemory(&version, data, bytes.size()) != TINYEXR_SUCCESS)
-    return "it is no OpenEXR file";
-  if (version.multipart != 0) return "it is of several parts";
-  const char* message = nullptr;
-  if (ParseEXRHeaderFromMemory(&header, &version, data, bytes.size(), &message) != TINYEXR_SUCCESS)
-    return take_message(message);
-  return refuse(version, header);
-}
-
-}  // namespace
-
 Read<ImageHeader> read_exr_header(std::string_view bytes) {
-  Header header;
-  if (std::string reason = read_into(header, bytes); !reason.empty()) return {{}, std::move(reason)};
-  const EXRBox2i& window = header.data_window;
-  return {ImageHeader{window.max_x - window.min_x + 1, window.max_y - window.min_y + 1, false}, {}};
+  Read<exr_file::Contents> contents = exr_file::read_contents(bytes);
+  if (!contents.found) return {{}, std::move(contents.reason)};
+  const Window& display = contents.found->read_part().display;
+  return {ImageHeader{static_cast<int>(display.width()), static_cast<int>(display.height()), false}, {}};
 }
 
 Read<FileImage> decode_exr(std::string_view bytes) {
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  Header header;
-  if (std::string reason = read_into(header, bytes); !reason.empty()) return {{}, std::move(reason)};
-  const char* message = nullptr;
-  for (int c = 0; c < header.num_channels; ++c) header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
-  LoadedImage loaded;
-  loaded.num_channels = header.num_channels;  // so that on failure tinyexr frees all of them
-  if (LoadEXRImageFromMemory(&loaded, &header, data, bytes.size(), &message) != TINYEXR_SUCCESS) {
-    InitEXRImage(&loaded);  // tinyexr has freed what it allocated, and left the pointers
-    return {{}, take_message(message)};
-  }
-  if (loaded.images == nullptr) return {{}, "it holds no scanlines"};
-
+  const Read<exr_file::Contents> contents = exr_file::read_contents(bytes);
+  if (!contents.found) return {{}, contents.reason};
+  if (!unpacks_alike(contents.found->read_part().compression))
+    return {{},
+            "on a processor without AVX, its compression DWAA or DWAB would give other bits than elsewhere"};
+  const Read<std::vector<Chunk>> chunks = exr_file::find_chunks(bytes, *contents.found);
+  if (!chunks.found) return {{}, chunks.reason};
+  const Part part = without_sparse_depth(contents.found->read_part());
   FileImage image;
-  image.width = loaded.width;
-  image.height = loaded.height;
+  image.width = static_cast<int>(part.display.width());
+  image.height = static_cast<int>(part.display.height());
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  image.rgba.assign(4 * pixels, 1.0f);
-  for (int c = 0; c < channel_count; ++c) {
-    const bool color = channel_source[c] < 3;
-    const int place = find_channel(header, color && is_grey(header) ? "Y" : channel_names[c]);
-    if (place < 0) continue;
-    const auto* plane = reinterpret_cast<const float*>(loaded.images[place]);
-    if (channel_source[c] == 4) {
-      image.depth.assign(plane, plane + pixels);
-      continue;
-    }
-    for (size_t i = 0; i < pixels; ++i) image.rgba[4 * i + static_cast<size_t>(channel_source[c])] = plane[i];
+  try {
+    image.rgba.assign(4 * pixels, 0.0f);
+    if (part.picture.depth >= 0) image.depth.assign(pixels, 0.0f);
+    unpack(part, *chunks.found, image);
+  } catch (const std::bad_alloc&) {
+    return {{}, "there is not enough memory"};
+  } catch (const std::exception& exception) { return {{}, reason_of(exception)}; }
+  make_finite(image);
+  if (part.chromaticities && part.picture.colors[0] != part.picture.colors[1]) {
+    const lanes::FpGuard guard;
+    if (const auto matrix = to_rec709(*part.chromaticities).matrix) transform(*matrix, image.rgba);
   }
   return {std::move(image), {}};
 }

@@ -2,6 +2,7 @@
 #include "runtime/scene/image_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -44,6 +45,19 @@ bool write_image(const std::string& path, const ImageView& image, Encoding encod
   if (format_of(path) == Format::exr) return write_file(path, exr(image), diagnostics);
   return write_file(path, png(image.width, image.height, encode(image.rgba, encoding, exposure)),
                     diagnostics);
+}
+
+void make_finite(FileImage& image) {
+  for (size_t i = 0; i < image.rgba.size(); i += 4) {
+    bool finite = true;
+    for (size_t c = i; c < i + 4; ++c) {
+      float& value = image.rgba[c];
+      if (std::isfinite(value)) continue;
+      finite = false;
+      value = std::isnan(value) ? 0.0f : std::copysign(greatest_texel, value);
+    }
+    if (!finite) ++image.not_finite;
+  }
 }
 
 std::vector<float> numbers_of(const FileImage& image) {
@@ -115,7 +129,16 @@ std::optional<ImageHeader> read_header(const std::string& name, std::string_view
 
 std::optional<FileImage> read_image(const std::string& name, std::string_view bytes, Diagnostics& diagnostics,
                                     const support::Span& where) {
-  return reported(decode_image(bytes), name, diagnostics, where);
+  auto image = reported(decode_image(bytes), name, diagnostics, where);
+  if (image && image->not_finite > 0) {
+    const bool one = image->not_finite == 1;
+    diagnostics
+        .report(Id::not_finite, where,
+                std::to_string(image->not_finite) + (one ? " pixel" : " pixels") + " of the image " +
+                    quote(name) + (one ? " is" : " are") + " not finite")
+        .note("infinity is read as 65504, and NaN as 0");
+  }
+  return image;
 }
 
 std::optional<FileImage> read_image(const std::string& path, Diagnostics& diagnostics,

@@ -23,7 +23,8 @@ struct ImageView {
 };
 
 /// An image as a file holds it, as encoded: in `bytes` or in `rgba`, the other of which is empty. Where a file is grey,
-/// its three colours are alike; where it has no alpha, it is 1; where it has no depth, `depth` is empty.
+/// its three colours are alike; where it has no alpha, it is 1; where it has no depth, `depth` is empty. All numbers of
+/// `rgba` are finite.
 struct FileImage {
   int width = 0;
   int height = 0;
@@ -31,10 +32,16 @@ struct FileImage {
   std::vector<uint32_t> bytes;
   std::vector<float> rgba;  ///< 4 a pixel; numbers of 16 bits are over 65535
   std::vector<float> depth;
+  size_t not_finite = 0;  ///< pixels that had numbers in the file which are not finite
 
   bool has_bytes() const { return !bytes.empty(); }
   ImageView view() const { return {width, height, rgba, depth}; }
 };
+
+/// What infinity becomes where an image is read: the greatest half float.
+inline constexpr float greatest_texel = 65504;
+/// Makes infinite numbers of `rgba` +-greatest_texel and NaN 0, and counts their pixels in `not_finite`.
+void make_finite(FileImage& image);
 
 /// The bytes over 255, or `rgba` as it is: 4 floats a pixel.
 std::vector<float> numbers_of(const FileImage& image);
@@ -79,7 +86,7 @@ std::optional<std::string> read_image_file(const std::string& path, support::Dia
 /// What a file that messages call `name` says of its image; or reports at `where` that it is no image, or too large.
 std::optional<ImageHeader> read_header(const std::string& name, std::string_view bytes,
                                        support::Diagnostics& diagnostics, const support::Span& where);
-/// The image in such a file. Reports also what is damaged.
+/// The image in such a file. Reports also what is damaged, and warns of numbers that were not finite.
 std::optional<FileImage> read_image(const std::string& name, std::string_view bytes,
                                     support::Diagnostics& diagnostics, const support::Span& where);
 /// The same of a file on the disk.

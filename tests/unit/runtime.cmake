@@ -1,7 +1,9 @@
 isoshade_test(scene_test
   SOURCES
+    unit/scene_exr_test.cpp
     unit/scene_gltf_test.cpp
     unit/scene_gltf_textures_test.cpp
+    unit/scene_hdr_test.cpp
     unit/scene_image_file_test.cpp
     unit/scene_image_formats_test.cpp
     unit/scene_load_test.cpp
@@ -10,7 +12,7 @@ isoshade_test(scene_test
     unit/scene_placement_test.cpp
     unit/scene_settings_test.cpp
     unit/scene_texture_test.cpp
-  LINKS isoshade_scene PkgConfig::stb)
+  LINKS isoshade_scene OpenEXR::OpenEXR PkgConfig::stb)
 
 isoshade_test(compare_test
   SOURCES

@@ -67,7 +67,12 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-TEST_F(ImageFile, ExrKeepsEveryBitOfColourAndDepth) {
+FileImage finite(FileImage image) {
+  scene::make_finite(image);
+  return image;
+}
+
+TEST_F(ImageFile, ExrKeepsEveryFiniteColourAndEveryDepth) {
   const std::pair<int, int> sizes[] = {{1, 1}, {3, 2}, {15, 15}, {17, 33}, {64, 1}, {1, 100}, {200, 120}};
   for (const auto& [width, height] : sizes) {
     const FileImage image = special_image(width, height);
@@ -77,8 +82,28 @@ TEST_F(ImageFile, ExrKeepsEveryBitOfColourAndDepth) {
     ASSERT_TRUE(read) << diagnostics.text();
     EXPECT_EQ(read->width, width);
     EXPECT_EQ(read->height, height);
-    EXPECT_TRUE(same_bits(read->rgba, image.rgba)) << width << " x " << height;
+    EXPECT_TRUE(same_bits(read->rgba, finite(image).rgba)) << width << " x " << height;
     EXPECT_TRUE(same_bits(read->depth, image.depth)) << width << " x " << height;
+  }
+}
+
+TEST_F(ImageFile, PixelsThatAreNotFiniteAreClampedWithAWarningThatNamesTheFile) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  FileImage image{3, 1, {}, {inf, 1, -inf, 1, 1, 2, 3, 1, 0, nan, 0, 1}, {0, 0, 0}};
+  for (const bool clean : {false, true}) {
+    if (clean) image = finite(image);
+    Diagnostics diagnostics;
+    ASSERT_TRUE(scene::write_image(path("a.exr"), image.view(), Encoding::srgb, 1, diagnostics));
+    const auto read = scene::read_image(path("a.exr"), diagnostics);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->rgba, (std::vector<float>{65504, 1, -65504, 1, 1, 2, 3, 1, 0, 0, 0, 1}));
+    EXPECT_FALSE(diagnostics.has_errors());
+    ASSERT_EQ(diagnostics.all().size(), clean ? 0u : 1u);
+    if (clean) continue;
+    EXPECT_EQ(diagnostics.all()[0].id, support::Id::not_finite);
+    EXPECT_NE(diagnostics.text().find("2 pixels of the image \"" + path("a.exr").substr(0, 10)),
+              std::string::npos)
+        << diagnostics.text();
   }
 }
 
