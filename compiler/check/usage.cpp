@@ -97,6 +97,27 @@ void check_positions(Work& work) {
   }
 }
 
+/// Reports nodes that colours of passes depend on, but that only vertices have.
+void check_colors(Work& work) {
+  const TypedGraph& typed = work.typed;
+  std::vector<bool> reached(typed.nodes.size());
+  const auto reach = [&](const Operand& operand) {
+    if (operand.from == From::node) reached[operand.index] = true;
+  };
+  std::ranges::for_each(typed.values(), reach);
+  for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
+    if (!reached[*it]) continue;
+    const Node& node = typed.nodes[*it];
+    std::ranges::for_each(typed.operands_of(node), reach);
+    const auto* attribute = node.row != nullptr ? std::get_if<nodes::Surface>(&node.row->lowering) : nullptr;
+    if (attribute == nullptr || !nodes::is_corner_normal(*attribute)) continue;
+    const graph::Node& source = work.graph().nodes[*it];
+    work.report(Id::misplaced_node, source.type_place,
+                "the \"color\" of a pass cannot depend on " + quote(source.label()))
+        .suggest("only vertices have it: use it for \"position\"");
+  }
+}
+
 /// Reports derivatives of what depends on a derivative: there are first ones only.
 void check_derivatives(Work& work) {
   const TypedGraph& typed = work.typed;
@@ -185,6 +206,7 @@ void check_usage(Work& work) {
   mark_per_turn(work.typed);
   check_summands(work);
   check_positions(work);
+  check_colors(work);
   check_derivatives(work);
   check_size(work);
   if (!work.is_instance()) warn_unused(work);

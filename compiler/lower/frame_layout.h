@@ -53,7 +53,9 @@ inline constexpr int tangent =
 inline constexpr int color = 12;  ///< r g b a, linear
 inline constexpr int outline_normal =
     16;  ///< x y z, unit, object space: the way out of the surface, one for all vertices at a position
-inline constexpr int stride = 19;
+inline constexpr int corner_normals =
+    19;  ///< three vectors in object space, packed by functions/octahedral.h: normals of surfaces that meet there
+inline constexpr int stride = 22;
 }  // namespace vertex_word
 
 /// triangles: one record of 64 bytes. Wound so that the doubled area, y down, is positive.

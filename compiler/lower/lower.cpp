@@ -299,7 +299,10 @@ const std::vector<SurfaceField>& surface_fields() {
                                        {"bitangent", Surface::bitangent, 3, true},
                                        {"color", Surface::color, 4, false},
                                        {"outline_normal", Surface::outline_normal, 3, true},
-                                       {"pixel_size", Surface::pixel_size, 1, false}}) {
+                                       {"pixel_size", Surface::pixel_size, 1, false},
+                                       {"corner_normal1", Surface::corner_normal1, 3, true},
+                                       {"corner_normal2", Surface::corner_normal2, 3, true},
+                                       {"corner_normal3", Surface::corner_normal3, 3, true}}) {
       const ir::Type type = ir::vector_type(attribute.width);
       const std::string name(attribute.name);
       all.push_back({name, {attribute.what}, type});

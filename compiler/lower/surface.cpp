@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/lower/surface.h"
 
+#include "compiler/functions/octahedral.h"
+
 namespace isoshade::lower {
 
 namespace {
@@ -91,6 +93,12 @@ Vec3 SurfacePoint::column(SpaceMatrix matrix, int number) {
   return k_.load3(FrameBuffer::frame, frame, frame_word::inverse_view + 3 * number);
 }
 
+Vec3 SurfacePoint::local_corner_normal(nodes::Surface which) {
+  const Vec3 packed(k_.b, once(local_corner_normals_, 3, vertex_word::corner_normals));
+  const int i = static_cast<int>(which) - static_cast<int>(nodes::Surface::corner_normal1);
+  return functions::octahedral_decode(packed[i]);
+}
+
 std::array<Vec3, 3> SurfacePoint::linear(SpaceMatrix matrix) {
   return {column(matrix, 0), column(matrix, 1), column(matrix, 2)};
 }
@@ -151,6 +159,9 @@ Vec3 SurfacePoint::object_direction(nodes::Surface attribute) {
   switch (attribute) {
     case nodes::Surface::normal: return normalize(local_normal());
     case nodes::Surface::outline_normal: return normalize(local_outline_normal());
+    case nodes::Surface::corner_normal1:
+    case nodes::Surface::corner_normal2:
+    case nodes::Surface::corner_normal3: return normalize(local_corner_normal(attribute));
     case nodes::Surface::tangent: return normalize(tangent());
     case nodes::Surface::bitangent: return normalize(bitangent());
     default: return normalize(weighted(linear(SpaceMatrix::object_from_world), towards_eye()));
@@ -167,6 +178,7 @@ Vec3 SurfacePoint::world_normal(Vec3 local) {
 Vec3 SurfacePoint::world_direction(nodes::Surface attribute) {
   if (attribute == nodes::Surface::normal) return world_normal(local_normal());
   if (attribute == nodes::Surface::outline_normal) return world_normal(local_outline_normal());
+  if (nodes::is_corner_normal(attribute)) return world_normal(local_corner_normal(attribute));
   if (attribute == nodes::Surface::view_direction) return normalize(towards_eye());
   const Vec3 local = attribute == nodes::Surface::tangent ? tangent() : bitangent();
   return normalize(weighted(linear(SpaceMatrix::world_from_object), local));

@@ -40,6 +40,7 @@ class SurfacePoint {
   Vec3 local_outline_normal() {
     return Vec3(k_.b, once(local_outline_normal_, 3, vertex_word::outline_normal));
   }
+  Vec3 local_corner_normal(nodes::Surface which);
   Vec4 local_tangent() { return Vec4(k_.b, once(local_tangent_, 4, vertex_word::tangent)); }
 
   Vec3 column(SpaceMatrix matrix, int number);
@@ -63,6 +64,7 @@ class SurfacePoint {
   ir::ValueId local_position_ = ir::none;
   ir::ValueId local_normal_ = ir::none;
   ir::ValueId local_outline_normal_ = ir::none;
+  ir::ValueId local_corner_normals_ = ir::none;
   ir::ValueId local_tangent_ = ir::none;
   ir::ValueId position_ = ir::none;
 };

@@ -26,6 +26,9 @@ void facing_ratio(Site& s) {
 std::vector<Row> geometry_rows() {
   const Port space{"space", Choice, "the space that it is given in; \"model\" is \"object\"", "world",
                    space_names};
+  constexpr std::string_view corner_doc =
+      "The unit normal of one of up to three surfaces that meet at a vertex, as three sides of a box do; where fewer "
+      "meet, one of them again. The same for all vertices at a place. Only for the \"position\" of a pass.";
   const Port set{"index", WholeNumber, "which set of texture coordinates", 0.0f};
   return {
       {"position", "Where the point is.", {space}, Vector3, Surface::position},
@@ -37,6 +40,9 @@ std::vector<Row> geometry_rows() {
        {space},
        Vector3,
        Surface::outline_normal},
+      {"cornernormal1", corner_doc, {space}, Vector3, Surface::corner_normal1},
+      {"cornernormal2", corner_doc, {space}, Vector3, Surface::corner_normal2},
+      {"cornernormal3", corner_doc, {space}, Vector3, Surface::corner_normal3},
       {"tangent",
        "The unit vector along u on the surface.",
        {space, set},

@@ -31,8 +31,13 @@ enum class Surface : uint8_t {
   bitangent,       ///< vec3, unit, up in the texture: against its v
   color,           ///< vec4, linear: what the mesh has, else 1; has no space
   outline_normal,  ///< vec3, unit: one for all vertices at a place
-  pixel_size       ///< float, world units; has no space
+  pixel_size,      ///< float, world units; has no space
+  corner_normal1,  ///< vec3, unit: of a surface that meets others at a vertex; at vertices only
+  corner_normal2,
+  corner_normal3
 };
+
+constexpr bool is_corner_normal(Surface attribute) { return attribute >= Surface::corner_normal1; }
 
 /// Where coordinates count from.
 enum class Space : uint8_t {
@@ -52,7 +57,7 @@ struct SurfaceValue {
 
   constexpr size_t index() const { return 3 * static_cast<size_t>(attribute) + static_cast<size_t>(space); }
 };
-inline constexpr size_t surface_value_count = 3 * 9;  ///< of SurfaceValue::index
+inline constexpr size_t surface_value_count = 3 * 12;  ///< of SurfaceValue::index
 
 /// What a port has that is neither linked nor given: nothing (then it must be), a number in every component
 /// (of a matrix: of the diagonal), a boolean (0 where another type is needed), three numbers, a text, or an

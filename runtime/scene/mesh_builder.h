@@ -13,7 +13,7 @@ inline float fraction(int64_t part, int64_t whole) {
   return static_cast<float>(part) / static_cast<float>(whole);
 }
 
-/// White, and with normal, tangent and the way up in the texture right-handed. Its outline normal is still 0.
+/// White, and with normal, tangent and the way up in the texture right-handed. Its outline and corner normals are still 0.
 void add_vertex(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float u, float v, glm::vec3 tangent);
 /// Counter-clockwise from outside.
 void add_triangle(Mesh& mesh, int64_t a, int64_t b, int64_t c);
@@ -31,7 +31,8 @@ void make_lathe(const MeshShape& shape, Mesh& mesh);
 /// Gives every vertex the direction that its point moves in when the whole surface grows: the sum of the
 /// unit normals of all triangles that meet at exactly its position, each by its angle there, normalised.
 /// Where they cancel out, as on a sheet with two sides, the shading normal. Triangles without area count
-/// nothing.
+/// nothing. Gives it its corner normals, too: up to three shading normals of the vertices at its position, far apart
+/// from each other; where there is one, the outline normal.
 void add_outline_normals(Mesh& mesh);
 void find_box(Mesh& mesh);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
 
 #include "compiler/functions/inverse_trigonometric.h"
+#include "compiler/functions/octahedral.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/mesh_builder.h"
@@ -45,10 +47,51 @@ struct Sum {
   float angle = 0;
 };
 
+// Of unit vectors: those of surfaces that are one, and those of the two sides of a sheet.
+constexpr float alike = 0.999f, opposite = -0.99f;
+
+/// Up to three of the normals of the surfaces that meet at a position, far apart from each other; `smooth` where there is
+/// but one.
+std::array<glm::vec3, 3> corner_normals(const std::vector<glm::vec3>& normals, const glm::vec3& smooth) {
+  // The least alike to what is chosen already.
+  const auto next = [&](auto likeness) {
+    return *std::ranges::min_element(normals, {}, likeness);
+  };
+  const glm::vec3 first = next([&](const glm::vec3& n) { return dot(n, smooth); });
+  const auto to_first = [&](const glm::vec3& n) { return dot(n, first) < opposite ? 1.0f : dot(n, first); };
+  const glm::vec3 second = next(to_first);
+  if (to_first(second) > alike) return {smooth, smooth, smooth};
+  const auto to_both = [&](const glm::vec3& n) {
+    return dot(n, second) < opposite ? 1.0f : std::max(to_first(n), dot(n, second));
+  };
+  const glm::vec3 third = next(to_both);
+  return {first, second, to_both(third) > alike ? first : third};
+}
+
 /// Between unit vectors; also of nearly parallel ones, where the arc cosine would know little.
 float angle_between(const glm::vec3& a, const glm::vec3& b) {
   const glm::vec3 sine = cross(a, b);
   return functions::atan2(std::sqrt(dot(sine, sine)), dot(a, b));
+}
+
+/// After the outline normals are there; vertices are welded as for them.
+void add_corner_normals(Mesh& mesh, const std::vector<size_t>& weld_of, size_t welds) {
+  std::vector<std::vector<uint32_t>> vertices_of_weld(welds);
+  for (size_t v = 0; v < weld_of.size(); ++v) vertices_of_weld[weld_of[v]].push_back(static_cast<uint32_t>(v));
+  std::vector<glm::vec3> normals;
+  for (const std::vector<uint32_t>& vertices : vertices_of_weld) {
+    normals.clear();
+    for (const uint32_t v : vertices)
+      if (const glm::vec3 normal = vector_at(mesh, v, word::normal); normal != glm::vec3(0)) normals.push_back(normal);
+    const glm::vec3 outline = vector_at(mesh, vertices[0], word::outline_normal);
+    const glm::vec3 smooth = outline == glm::vec3(0) ? glm::vec3(0, 1, 0) : outline;
+    if (normals.empty()) normals.push_back(smooth);
+    const std::array<glm::vec3, 3> corners = corner_normals(normals, smooth);
+    for (const uint32_t v : vertices)
+      for (size_t i = 0; i < 3; ++i)
+        mesh.vertices[v * word::stride + word::corner_normals + i] =
+            functions::octahedral_encode({corners[i].x, corners[i].y, corners[i].z});
+  }
 }
 
 }  // namespace
@@ -86,6 +129,7 @@ void add_outline_normals(Mesh& mesh) {
     for (int i = 0; i < 3; ++i)
       mesh.vertices[v * word::stride + static_cast<size_t>(word::outline_normal + i)] = canonical(normal[i]);
   }
+  add_corner_normals(mesh, weld_of, welds.size());
 }
 
 }  // namespace isoshade::scene

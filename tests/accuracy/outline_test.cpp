@@ -148,6 +148,35 @@ TEST(Outline, IsSoManyPixelsWideAtAnyDistanceIfTheWidthIsOfTheScreen) {
   EXPECT_EQ(parts(seen, Seen::outline), 1);
 }
 
+TEST(Outline, IsSoManyPixelsWideAtEverySideOfMeshesWithEdges) {
+  const std::string parameters = R"("outline": 6, "outline_width_mode": "screen")";
+  const std::string camera =
+      R"("type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": 6, "far": 100)";
+  const std::string perspective = R"("position": [0, 0, 12], "target": [0, 0, 0], "fov": 30)";
+  const char* box = R"({"type": "box", "size": [2, 2, 2]})";
+  const char* places[] = {R"("scale": [1, 1, 1])",
+                          R"("scale": [0.25, 1.25, 0.25])",
+                          R"("scale": [1.25, 0.1, 2])",
+                          R"("scale": [-0.25, 1.25, 0.25])",
+                          R"("rotate": [0, 45, 0])",
+                          R"("rotate": [0, 30, 0], "scale": [0.25, 1.25, 1])",
+                          R"("rotate": [90, 0, 0], "scale": [1, 0.3, 1])"};
+  for (const std::string& seen_by : {camera, perspective}) {
+    for (const char* mesh : {box, R"({"type": "cylinder", "radius": 1, "height": 2})"}) {
+      for (const std::string place : places) {
+        const Picture seen = picture(scene_of(seen_by, mesh, "\"transform\": {" + place + "}, ", parameters));
+        for (const bool across : {true, false}) {
+          const auto [before, after] = widths(seen, across);
+          EXPECT_NEAR(before, 6, 1) << mesh << place << across << seen_by;
+          EXPECT_NEAR(after, 6, 1) << mesh << place << across << seen_by;
+        }
+        EXPECT_EQ(gaps(seen), 0) << mesh << place << seen_by;
+        EXPECT_EQ(parts(seen, Seen::outline), 1) << mesh << place << seen_by;
+      }
+    }
+  }
+}
+
 TEST(Outline, IsAsWideWithSeveralSamplesAPixel) {
   const std::string mesh = R"({"type": "icosphere", "radius": 1, "subdivisions": 6})";
   const std::string camera = R"("position": [0, 0, 4], "target": [0, 0, 0], "fov": 60)";

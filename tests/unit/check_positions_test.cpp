@@ -38,5 +38,17 @@ TEST(CheckPositions, DependOnNothingThatOnlyPixelsHave) {
   EXPECT_EQ(lit.find("light-outside-sum"), std::string::npos) << lit;
 }
 
+TEST(CheckPositions, HaveCornerNormalsThatColorsHaveNot) {
+  const std::string nodes = R"(, "c": {"type": "cornernormal2"}, "up": {"type": "add", "in1": "p", "in2": "c"})";
+  EXPECT_EQ(messages_of(nodes, "up"), "");
+  FrontEnd front_end;
+  const std::string text = front_end.messages(R"({"isoshade": 1, "effect": "e", "nodes": {
+    "c": {"type": "cornernormal1"}, "color": {"type": "convert", "in": "c", "to": "color3"}},
+    "passes": [{"name": "p", "color": "color"}]})");
+  EXPECT_NE(text.find("error[misplaced-node]: the \"color\" of a pass cannot depend on \"cornernormal1\""),
+            std::string::npos)
+      << text;
+}
+
 }  // namespace
 }  // namespace isoshade

@@ -66,7 +66,8 @@ TEST(LibraryGraphs, HullsMoveOutwardsAndAwayFromTheViewerWhereverTheNormalPoints
   Program hull = load("library/outline/hull_position");
   const auto moved = [&](std::vector<float> normal, int mode) {
     std::vector<float> arguments{1, 2, -10};
-    arguments.insert(arguments.end(), normal.begin(), normal.end());
+    // One surface: its normal, and three times that as those of a corner.
+    for (int i = 0; i < 4; ++i) arguments.insert(arguments.end(), normal.begin(), normal.end());
     const std::vector<float> rest{0, 0, 1, /* outline */ 4, /* pixel */ 0.5, std::bit_cast<float>(mode)};
     arguments.insert(arguments.end(), rest.begin(), rest.end());
     return hull(arguments);
@@ -86,6 +87,37 @@ TEST(LibraryGraphs, HullsMoveOutwardsAndAwayFromTheViewerWhereverTheNormalPoints
   EXPECT_FLOAT_EQ(on_screen[0], 1);
   EXPECT_FLOAT_EQ(on_screen[1], 4);
   EXPECT_FLOAT_EQ(on_screen[2], -12);
+}
+
+TEST(LibraryGraphs, HullsKeepTheWidthOnBothSidesOfACorner) {
+  Program hull = load("library/outline/hull_position");
+  const auto sideways = [&](std::array<std::vector<float>, 3> corners) {
+    std::vector<float> arguments{0, 0, -10, 0, 0, 1};
+    for (const std::vector<float>& corner : corners) arguments.insert(arguments.end(), corner.begin(), corner.end());
+    arguments.insert(arguments.end(), {0, 0, 1, /* outline */ 4, /* pixel */ 0.5, std::bit_cast<float>(1)});
+    std::vector<float> moved = hull(arguments);
+    moved.pop_back();
+    return moved;
+  };
+  const std::vector<float> x{1, 0, 0}, y{0, 1, 0}, front{0, 0, 1};
+  const float h = std::sqrt(0.5f), t = std::sqrt(1 / 3.0f), s = std::sqrt(1 / 6.0f);
+  // A box seen from the front, whichever of its sides comes first.
+  for (const auto& corners : {std::array{x, y, front}, std::array{front, x, y}, std::array{y, front, x}})
+    EXPECT_EQ(sideways(corners), (std::vector<float>{2, 2}));
+  // Turned by 45 degrees about y: still as wide to the right as upwards.
+  const std::vector<float> turned = sideways({std::vector{h, 0.0f, h}, std::vector{h, 0.0f, -h}, y});
+  EXPECT_FLOAT_EQ(turned[0], 2);
+  EXPECT_FLOAT_EQ(turned[1], 2);
+  // Seen along a diagonal: a corner of the hexagon, whose sides are 2 off along their normals.
+  const std::vector<float> corner =
+      sideways({std::vector{h, s, t}, std::vector{-h, s, t}, std::vector{0.0f, 2 * s, -t}});
+  EXPECT_NEAR(corner[0], 0, 1e-6f);
+  EXPECT_NEAR(corner[1], 4 * t, 1e-5f);
+  // A rim, of two surfaces; a spike is at most four times as wide.
+  EXPECT_EQ(sideways({x, front, x}), (std::vector<float>{2, 0}));
+  const std::vector<float> spike =
+      sideways({std::vector{0.0f, 1.0f, 0.0f}, std::vector{0.01f, -0.99995f, 0.0f}, front});
+  EXPECT_LE(std::hypot(spike[0], spike[1]), 8.01f);
 }
 
 TEST(LibraryGraphs, GgxIsWithin9UlpDownToAlpha1e_4) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
+#include "compiler/functions/octahedral.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/sha256.h"
 #include "runtime/scene/mesh.h"
@@ -193,7 +194,7 @@ TEST(Mesh, IsTheSameBitsOnEveryMachine) {
   for (const Recorded& expected : recorded) {
     const Mesh mesh = scene::make_mesh(expected.shape);
     EXPECT_EQ(hash_of(mesh, 0, word::outline_normal), expected.shading);
-    EXPECT_EQ(hash_of(mesh, word::outline_normal, word::stride), expected.outline);
+    EXPECT_EQ(hash_of(mesh, word::outline_normal, word::corner_normals), expected.outline);
   }
 }
 
@@ -229,6 +230,56 @@ TEST(OutlineNormals, AgreeWithTheNormalsOfSmoothMeshes) {
     for (size_t v = 0; v < mesh.vertices.size() / word::stride; ++v)
       ASSERT_GT(glm::dot(vector_at(mesh, v, word::outline_normal), vector_at(mesh, v, word::normal)),
                 0.9999f);
+  }
+}
+
+glm::vec3 corner_normal(const Mesh& mesh, size_t vertex, int which) {
+  const lanes::FpGuard guard;
+  const size_t at = vertex * word::stride + static_cast<size_t>(word::corner_normals + which);
+  const auto n = functions::octahedral_decode(mesh.vertices[at]);
+  return glm::normalize(glm::vec3(n[0], n[1], n[2]));
+}
+
+TEST(CornerNormals, AreThoseOfTheThreeSidesOfABox) {
+  const Mesh box = scene::make_mesh({MeshKind::box, glm::vec3(2, 3, 5), 1, 1});
+  for (size_t v = 0; v < box.vertices.size() / word::stride; ++v) {
+    const glm::vec3 corner = glm::sign(vector_at(box, v, word::position));
+    glm::vec3 sum(0);
+    for (int i = 0; i < 3; ++i) {
+      const glm::vec3 normal = corner_normal(box, v, i);
+      EXPECT_EQ(glm::abs(normal.x) + glm::abs(normal.y) + glm::abs(normal.z), 1.0f);
+      sum += normal;
+    }
+    EXPECT_EQ(sum, corner);
+  }
+}
+
+TEST(CornerNormals, AreOneForAllVerticesAtAPositionAndTheOutlineNormalWhereTheSurfaceIsSmooth) {
+  for (const MeshShape& shape : shapes) {
+    const Mesh mesh = scene::make_mesh(shape);
+    std::map<std::array<float, 3>, std::array<glm::vec3, 3>> known;
+    for (size_t v = 0; v < mesh.vertices.size() / word::stride; ++v) {
+      const glm::vec3 p = vector_at(mesh, v, word::position);
+      const std::array<glm::vec3, 3> corners{corner_normal(mesh, v, 0), corner_normal(mesh, v, 1),
+                                             corner_normal(mesh, v, 2)};
+      ASSERT_EQ(known.try_emplace({p.x, p.y, p.z}, corners).first->second, corners);
+      if (shape.kind != MeshKind::torus && shape.kind != MeshKind::icosphere) continue;
+      for (const glm::vec3& corner : corners)
+        ASSERT_GT(glm::dot(corner, vector_at(mesh, v, word::outline_normal)), 0.999f);
+    }
+  }
+}
+
+TEST(CornerNormals, ArePackedToWithinSevenTenThousandthsOfARadian) {
+  const lanes::FpGuard guard;
+  for (int i = 0; i < 20'000; ++i) {
+    const float z = std::sin(0.37f * static_cast<float>(i)), angle = 1.7f * static_cast<float>(i);
+    const float ring = std::sqrt(1 - z * z);
+    const glm::vec3 v(ring * std::cos(angle), ring * std::sin(angle), z);
+    const auto n = functions::octahedral_decode(functions::octahedral_encode({v.x, v.y, v.z}));
+    const glm::vec3 unpacked = glm::normalize(glm::vec3(n[0], n[1], n[2]));
+    ASSERT_LE(glm::length(glm::cross(unpacked, v)), 7e-4f) << v.x << " " << v.y << " " << v.z;
+    ASSERT_GT(glm::dot(unpacked, v), 0);
   }
 }
 
