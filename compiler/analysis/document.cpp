@@ -40,7 +40,10 @@ Range range_of(nodes::Surface attribute) {
     case view_direction:
     case tangent:
     case bitangent:
-    case outline_normal: return direction;
+    case outline_normal:
+    case corner_normal1:
+    case corner_normal2:
+    case corner_normal3: return direction;
   }
   return anything_at_all;
 }
