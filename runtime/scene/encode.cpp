@@ -17,11 +17,14 @@ uint8_t quantise(float x) {
 std::vector<uint8_t> encode(std::span<const float> rgba, Encoding encoding, float exposure) {
   std::vector<uint8_t> bytes(rgba.size());
   const lanes::FpGuard guard;
-  for (size_t i = 0; i < rgba.size(); ++i) {
-    const bool alpha = i % 4 == 3;
-    const float exposed = alpha ? rgba[i] : rgba[i] * exposure;
-    const bool curve = encoding == Encoding::srgb && !alpha;
-    bytes[i] = quantise(curve ? functions::srgb_encode(exposed) : exposed);
+  for (size_t i = 0; i + 3 < rgba.size(); i += 4) {
+    const float alpha = rgba[i + 3];
+    const float divisor = alpha > 0.0f && alpha < 1.0f ? alpha : 1.0f;
+    for (size_t c = i; c < i + 3; ++c) {
+      const float color = rgba[c] * exposure / divisor;
+      bytes[c] = quantise(encoding == Encoding::srgb ? functions::srgb_encode(color) : color);
+    }
+    bytes[i + 3] = quantise(alpha);
   }
   return bytes;
 }

@@ -110,7 +110,8 @@ TEST_F(ImageFile, PixelsThatAreNotFiniteAreClampedWithAWarningThatNamesTheFile) 
 TEST_F(ImageFile, PngKeepsEveryByte) {
   for (const int width : {1, 5, 300}) {
     FileImage image = special_image(width, 2);
-    for (size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<float>(i * 37 % 256) / 255.0f;
+    for (size_t i = 0; i < image.rgba.size(); ++i)
+      image.rgba[i] = i % 4 == 3 ? 1 : static_cast<float>(i * 37 % 256) / 255.0f;
     Diagnostics diagnostics;
     ASSERT_TRUE(scene::write_image(path("a.png"), image.view(), Encoding::linear, 1, diagnostics));
     const auto read = scene::read_image(path("a.png"), diagnostics);
@@ -200,21 +201,35 @@ TEST_F(ImageFile, ReportsWhatCannotBeWritten) {
 TEST(Encode, ClampsAndQuantises) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
-  const float values[] = {-1, 0, 0.5f / 255, 0.499f / 255, 1, 2, inf, nan, -inf, 254.5f / 255, 1, 1};
+  const float values[] = {-1, 0, 0.5f / 255, 1, 0.499f / 255, 2, inf, nan, -inf, 254.5f / 255, 1, 2};
   const auto bytes = scene::encode(values, Encoding::linear, 1);
-  EXPECT_EQ(bytes, (std::vector<uint8_t>{0, 0, 1, 0, 255, 255, 255, 0, 0, 255, 255, 255}));
+  EXPECT_EQ(bytes, (std::vector<uint8_t>{0, 0, 1, 255, 0, 255, 255, 0, 0, 255, 255, 255}));
 }
 
 TEST(Encode, FollowsTheSrgbCurveButForAlpha) {
-  const float values[] = {0.5f, 0.002f, 0.214f, 0.5f};
+  const float values[] = {0.25f, 0.001f, 0.107f, 0.5f};
   const auto bytes = scene::encode(values, Encoding::srgb, 1);
   EXPECT_EQ(bytes, (std::vector<uint8_t>{188, 7, 127, 128}));
 }
 
 TEST(Encode, ExposureScalesColoursButNotAlpha) {
-  const float values[] = {0.1f, 0.2f, 0.3f, 0.4f};
+  const float values[] = {0.025f, 0.05f, 0.075f, 0.25f};
   const auto bytes = scene::encode(values, Encoding::linear, 2);
-  EXPECT_EQ(bytes, (std::vector<uint8_t>{51, 102, 153, 102}));
+  EXPECT_EQ(bytes, (std::vector<uint8_t>{51, 102, 153, 64}));
+}
+
+TEST(Encode, DividesColoursByAlpha) {
+  // White, half and hardly covering; more colour than alpha; none of either; alpha that is none.
+  const float values[] = {0.5f, 0.5f,  0.5f, 0.5f, 1e-4f, 1e-4f, 1e-4f, 1e-4f, 0.4f, 0.1f,
+                          0,    0.25f, 0,    0,    0,     0,     0.2f,  0.4f,  0.6f, -1};
+  EXPECT_EQ(scene::encode(values, Encoding::srgb, 1)[0], 255);
+  EXPECT_EQ(scene::encode(values, Encoding::linear, 1),
+            (std::vector<uint8_t>{255, 255, 255, 128, 255, 255, 255, 0,   255, 102,
+                                  0,   64,  0,   0,   0,   0,   51,  102, 153, 0}));
+  // Where alpha is 0 or more than 1, colours stay.
+  const float whole[] = {0.2f, 0.4f, 0.6f, 0, 0.2f, 0.4f, 0.6f, 4};
+  EXPECT_EQ(scene::encode(whole, Encoding::linear, 1),
+            (std::vector<uint8_t>{51, 102, 153, 0, 51, 102, 153, 255}));
 }
 
 TEST(Encode, GivesBackEveryByteThatSrgbDecodes) {
