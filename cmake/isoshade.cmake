@@ -9,13 +9,14 @@ find_package(TBB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(OpenEXR 3.1 REQUIRED)
 find_package(ZLIB REQUIRED)
-find_package(TinyGLTF REQUIRED)
+find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 # glslang's package file names these three without finding them.
 find_package(SPIRV-Tools REQUIRED)
 find_package(SPIRV-Tools-opt REQUIRED)
 find_package(glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
-pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
+pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
+pkg_check_modules(jpeg REQUIRED IMPORTED_TARGET libjpeg)
 pkg_check_modules(mpfr REQUIRED IMPORTED_TARGET mpfr gmp)
 
 # What a float is (docs: "The contract"): no contraction, and no constant folded in another rounding or

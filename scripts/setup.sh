@@ -6,15 +6,15 @@ set -euo pipefail
 packages=(
   # building
   g++ cmake ninja-build pkg-config
-  nlohmann-json3-dev libfmt-dev libglm-dev libcli11-dev libstb-dev libopenexr-dev zlib1g-dev libtinygltf-dev libtbb-dev libssl-dev
-  libmpfr-dev
+  nlohmann-json3-dev libfmt-dev libglm-dev libcli11-dev libspng-dev libjpeg-dev libopenexr-dev zlib1g-dev libtinygltf-dev
+  libtbb-dev libssl-dev libmpfr-dev
   glslang-dev spirv-tools spirv-headers libvulkan-dev
   # running: Vulkan on the CPU, and the loader of whatever other devices there are
   mesa-vulkan-drivers libvulkan1
   # drawing graphs and plots
   graphviz gnuplot-nox
   # testing
-  libgtest-dev libbenchmark-dev glslang-tools clang vulkan-validationlayers python3-jsonschema
+  libgtest-dev libbenchmark-dev glslang-tools clang valgrind vulkan-validationlayers python3-jsonschema
 )
 
 missing=()

@@ -15,7 +15,6 @@
 
 namespace isoshade::scene {
 
-using graph::Json;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
@@ -25,17 +24,15 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What tinygltf may read: the files of buffers, in or below one folder, and of them so many bytes in all. Those of
-/// images, which come after all buffers, are read where a material needs them.
+/// images are read where a material needs them.
 struct Files {
   std::string folder;  ///< canonical
-  size_t count_left = 0;
   size_t bytes_left = max_gltf_bytes;
   std::string outside;  ///< a path that leads out of the folder
 
   static bool exists(const std::string& path, void* self) {
     Files& files = *static_cast<Files*>(self);
     std::error_code error;
-    if (files.count_left == 0) return false;
     if (path.find('\0') != std::string::npos || !fs::is_regular_file(path, error)) return false;
     if (graph::is_within(graph::canonical_path(path), files.folder)) return true;
     if (files.outside.empty()) files.outside = path;
@@ -50,7 +47,6 @@ struct Files {
       if (why != nullptr) *why = reason;
       return false;
     }
-    --files.count_left;
     files.bytes_left -= bytes->size();
     out->assign(bytes->begin(), bytes->end());
     return true;
@@ -68,17 +64,6 @@ bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, i
     static_cast<ImageBytes*>(kept)->by_index[index] =
         std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes), static_cast<size_t>(size));
   return true;
-}
-
-/// How many buffers have files of their own.
-size_t count_buffer_files(const graph::Document& document) {
-  const Json* buffers = document.root.find("buffers");
-  return buffers == nullptr
-             ? 0
-             : static_cast<size_t>(std::ranges::count_if(buffers->items, [](const Json& buffer) {
-                 const Json* uri = buffer.find("uri");
-                 return uri != nullptr && !tinygltf::IsDataURI(uri->string);
-               }));
 }
 
 /// tinygltf may throw: it looks into vectors with at().
@@ -155,7 +140,6 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
     const auto document =
         graph::parse_document(std::make_shared<support::SourceFile>(path, *std::move(json)), diagnostics);
     if (!document) return std::nullopt;
-    files.count_left = count_buffer_files(*document);
     const lanes::FpGuard guard;
     tinygltf::Model model;
     ImageBytes images{path, files.folder, {}, 0};

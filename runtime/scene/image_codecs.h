@@ -19,8 +19,11 @@ Read<FileImage> decode_exr(std::string_view bytes);
 bool is_hdr(std::string_view bytes);
 Read<ImageHeader> read_hdr_header(std::string_view bytes);
 Read<FileImage> decode_hdr(std::string_view bytes);
-/// PNG and JPEG; nothing else that stb would read.
-Read<ImageHeader> read_stb_header(std::string_view bytes);
-Read<FileImage> decode_by_stb(std::string_view bytes);
+bool is_png(std::string_view bytes);
+Read<ImageHeader> read_png_header(std::string_view bytes);
+Read<FileImage> decode_png(std::string_view bytes);
+bool is_jpeg(std::string_view bytes);
+Read<ImageHeader> read_jpeg_header(std::string_view bytes);
+Read<FileImage> decode_jpeg(std::string_view bytes);
 
 }  // namespace isoshade::scene

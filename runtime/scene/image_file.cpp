@@ -69,14 +69,31 @@ std::vector<float> numbers_of(const FileImage& image) {
   return numbers;
 }
 
+namespace {
+
+struct Codec {
+  bool (*is)(std::string_view);
+  Read<ImageHeader> (*read_header)(std::string_view);
+  Read<FileImage> (*decode)(std::string_view);
+};
+constexpr Codec codecs[] = {{is_png, read_png_header, decode_png},
+                            {is_jpeg, read_jpeg_header, decode_jpeg},
+                            {is_exr, read_exr_header, decode_exr},
+                            {is_hdr, read_hdr_header, decode_hdr}};
+constexpr const char* unknown_format = "it is no PNG, JPEG, HDR or EXR file";
+
+}  // namespace
+
 Read<ImageHeader> read_header(std::string_view bytes) {
-  if (is_exr(bytes)) return read_exr_header(bytes);
-  return is_hdr(bytes) ? read_hdr_header(bytes) : read_stb_header(bytes);
+  for (const Codec& codec : codecs)
+    if (codec.is(bytes)) return codec.read_header(bytes);
+  return {{}, unknown_format};
 }
 
 Read<FileImage> decode_image(std::string_view bytes) {
-  if (is_exr(bytes)) return decode_exr(bytes);
-  return is_hdr(bytes) ? decode_hdr(bytes) : decode_by_stb(bytes);
+  for (const Codec& codec : codecs)
+    if (codec.is(bytes)) return codec.decode(bytes);
+  return {{}, unknown_format};
 }
 
 std::string refuse_size(int64_t width, int64_t height) {
@@ -86,7 +103,7 @@ std::string refuse_size(int64_t width, int64_t height) {
 
 std::optional<std::string> read_image_file(const std::string& path, Diagnostics& diagnostics,
                                            const support::Span& where) {
-  constexpr uintmax_t most = uintmax_t{2} << 30;  // stb counts in int
+  constexpr uintmax_t most = uintmax_t{2} << 30;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     diagnostics.report(Id::missing_file, where, "there is no file " + quote(path));

@@ -23,8 +23,8 @@ struct ImageView {
 };
 
 /// An image as a file holds it, as encoded: in `bytes` or in `rgba`, the other of which is empty. Where a file is grey,
-/// its three colours are alike; where it has no alpha, it is 1; where it has no depth, `depth` is empty. All numbers of
-/// `rgba` are finite.
+/// its three colours are alike; where it has no alpha, it is 1; where it has no depth, `depth` is empty. Colours are not
+/// multiplied by alpha in a PNG, and are in an EXR: they stay as the file has them. All numbers of `rgba` are finite.
 struct FileImage {
   int width = 0;
   int height = 0;
@@ -46,7 +46,7 @@ void make_finite(FileImage& image);
 /// The bytes over 255, or `rgba` as it is: 4 floats a pixel.
 std::vector<float> numbers_of(const FileImage& image);
 
-/// The bytes of an 8-bit RGBA PNG; `rgba` has 4 bytes a pixel.
+/// The bytes of an 8-bit RGBA PNG; `rgba` has 4 bytes a pixel, the colours not multiplied by alpha.
 std::string png(int width, int height, std::span<const uint8_t> rgba);
 /// The bytes of an OpenEXR file: float32 channels R G B A, and Z for the depth, bit for bit.
 std::string exr(const ImageView& image);
@@ -65,6 +65,8 @@ struct ImageHeader {
   int width = 0;  ///< both from 1 to max_size
   int height = 0;
   bool bytes = false;  ///< the image will be in FileImage::bytes
+  /// Its numbers are whole ones, of 8 or 16 bits, and no floats.
+  bool integers = false;
 };
 
 /// What is in a file, or the reason why it is not: "it is tiled".

@@ -1,31 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG and JPEG through stb. Debian's libstb has the implementation; a copy of our own would clash with tinygltf's.
+// PNG through libspng.
+#include <bit>
+#include <cstdlib>
 #include <memory>
-#include <stb_image.h>
-#include <stb_image_write.h>
-#include <type_traits>
+#include <new>
+#include <spng.h>
 
 #include "compiler/support/check.h"
 #include "runtime/scene/image_codecs.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::scene {
+namespace {
+
+using Context = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
+
+Context new_context(int flags) {
+  Context context(spng_ctx_new(flags), spng_ctx_free);
+  if (context == nullptr) throw std::bad_alloc();
+  return context;
+}
+
+}  // namespace
 
 std::string png(int width, int height, std::span<const uint8_t> rgba) {
   support::check(rgba.size() == size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height),
                  "png: image of odd size");
-  std::string bytes;
-  const auto append = [](void* context, void* data, int size) {
-    static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<size_t>(size));
-  };
-  const int written = stbi_write_png_to_func(append, &bytes, width, height, 4, rgba.data(), 4 * width);
-  support::check(written != 0 && !bytes.empty(), "stb wrote no PNG");
-  return bytes;
+  const Context context = new_context(SPNG_CTX_ENCODER);
+  spng_ihdr header{};
+  header.width = static_cast<uint32_t>(width);
+  header.height = static_cast<uint32_t>(height);
+  header.bit_depth = 8;
+  header.color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
+  int error = spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1);
+  // Half the time of the defaults, and files a twentieth larger.
+  if (error == 0) error = spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, 4);
+  if (error == 0) error = spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_PAETH);
+  if (error == 0) error = spng_set_ihdr(context.get(), &header);
+  if (error == 0)
+    error = spng_encode_image(context.get(), rgba.data(), rgba.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
+  size_t size = 0;
+  const std::unique_ptr<void, void (*)(void*)> bytes(
+      error == 0 ? spng_get_png_buffer(context.get(), &size, &error) : nullptr, std::free);
+  if (error == SPNG_EMEM) throw std::bad_alloc();
+  if (bytes == nullptr) support::bug(std::string("libspng wrote no PNG: ") + spng_strerror(error));
+  return std::string(static_cast<const char*>(bytes.get()), size);
 }
 
 namespace {
 
-bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+constexpr size_t signature_bytes = 8;
 
 uint32_t big_endian(std::string_view bytes, size_t at) {
   uint32_t value = 0;
@@ -33,97 +57,149 @@ uint32_t big_endian(std::string_view bytes, size_t at) {
   return value;
 }
 
-/// The bytes of an image's rows, with the byte before each, of this size.
-size_t row_bytes(int64_t width, int64_t height, int64_t bits) {
-  return width == 0 ? 0 : static_cast<size_t>(height * ((width * bits + 7) / 8 + 1));
-}
+/// What stands in the chunks up to the first that is damaged.
+struct Chunks {
+  size_t data = 0;            ///< bytes of all IDAT
+  bool transparency = false;  ///< whether there is a tRNS before them
+  bool end = false;           ///< whether there is an IEND
+};
 
-/// Whether the data of a PNG unpack to no more than its rows have: stb would unpack gigabytes of zeros. The header was
-/// found good.
-bool unpacks_to_its_rows(std::string_view bytes, int width, int height) {
-  constexpr size_t signature = 8, around = 12, header = 13;
-  constexpr int channels[] = {1, 0, 3, 1, 2, 0, 4};
-  size_t most = 0;
-  std::string packed;
-  for (size_t at = signature; bytes.size() - at >= around;) {
+Chunks survey(std::string_view bytes) {
+  constexpr size_t around = 12;  // length and type before the data, CRC behind them
+  Chunks chunks;
+  for (size_t at = signature_bytes; bytes.size() - at >= around;) {
     const size_t length = big_endian(bytes, at);
     const std::string_view type = bytes.substr(at + 4, 4);
     if (length > bytes.size() - at - around) break;
-    if (type == "IHDR" && length == header && most == 0) {
-      const auto field = [&](size_t i) { return static_cast<unsigned char>(bytes[at + 8 + i]); };
-      const int64_t bits = int64_t{field(8)} * (field(9) < 7 ? channels[field(9)] : 4);
-      most = row_bytes(width, height, bits);
-      // Interlaced: seven images, each of every so many columns and rows.
-      constexpr int x0[] = {0, 4, 0, 2, 0, 1, 0}, y0[] = {0, 0, 4, 0, 2, 0, 1};
-      constexpr int dx[] = {8, 8, 4, 4, 2, 2, 1}, dy[] = {8, 8, 8, 4, 4, 2, 2};
-      if (field(12) != 0) most = 0;
-      for (int i = 0; i < 7 && field(12) != 0; ++i)
-        most += row_bytes((width - x0[i] + dx[i] - 1) / dx[i], (height - y0[i] + dy[i] - 1) / dy[i], bits);
-    }
-    if (type == "IDAT") packed.append(bytes.substr(at + 8, length));
+    if (type == "IDAT") chunks.data += length;
+    if (type == "IEND") chunks.end = true;
+    if (type == "tRNS" && chunks.data == 0) chunks.transparency = true;
     at += around + length;
   }
-  if (packed.empty() || most == 0) return false;
-  const std::unique_ptr<char[]> rows(new char[most]);
-  return stbi_zlib_decode_buffer(rows.get(), static_cast<int>(most), packed.data(),
-                                 static_cast<int>(packed.size())) >= 0;
+  return chunks;
 }
 
-std::string failure() {
-  const char* reason = stbi_failure_reason();
-  return reason == nullptr || *reason == '\0' ? "the file is damaged" : reason;
+std::string reason_of(int error) {
+  switch (error) {
+    case SPNG_IO_EOF:
+    case SPNG_EOF: return "the file ends early";
+    case SPNG_EMEM: return "there is no memory for it";
+    case SPNG_ECHUNK_LIMITS: return "its texts and profiles take more than 64 MiB";
+    default: return spng_strerror(error);
+  }
+}
+
+/// A file whose header was read.
+struct Opened {
+  Context context{nullptr, spng_ctx_free};
+  spng_ihdr header{};
+  std::string reason;  ///< why it is not read; else empty
+};
+
+Opened open(std::string_view bytes) {
+  constexpr size_t header_end = 24;
+  if (bytes.size() >= header_end && bytes.substr(12, 4) == "IHDR") {  // libspng would tell no size
+    std::string reason = refuse_size(big_endian(bytes, 16), big_endian(bytes, 20));
+    if (!reason.empty()) return {.reason = std::move(reason)};
+  }
+  Opened opened{new_context(0), {}, {}};
+  spng_ctx* context = opened.context.get();
+  // Texts and colour profiles are unpacked, though nobody asks for them.
+  constexpr size_t most_texts = size_t{64} << 20;
+  int error = spng_set_png_buffer(context, bytes.data(), bytes.size());
+  if (error == 0) error = spng_set_chunk_limits(context, most_texts, most_texts);
+  if (error == 0) error = spng_get_ihdr(context, &opened.header);
+  if (error == SPNG_IO_EOF || error == SPNG_EOF)
+    opened.reason = reason_of(error);
+  else if (error != 0)
+    opened.reason = std::string("its header is damaged: ") + spng_strerror(error);
+  return opened;
+}
+
+/// The colours of a picture whose pixels are numbers of its palette; libspng would make those beyond it black. `packed`
+/// has rows of whole bytes. Returns why there are none; empty if all are there.
+std::string look_up(spng_ctx* context, const spng_ihdr& header, std::span<const uint8_t> packed,
+                    std::vector<uint32_t>& colors) {
+  spng_plte palette{};
+  spng_trns alphas{};
+  if (const int error = spng_get_plte(context, &palette); error != 0) return reason_of(error);
+  if (spng_get_trns(context, &alphas) != 0) alphas.n_type3_entries = 0;
+  const size_t row_bytes = packed.size() / header.height;
+  const unsigned bits = header.bit_depth;
+  colors.reserve(size_t{header.width} * header.height);
+  for (size_t y = 0; y < header.height; ++y) {
+    for (size_t x = 0; x < header.width; ++x) {
+      const size_t bit = x * bits;
+      const unsigned shift = 8 - bits - static_cast<unsigned>(bit % 8);
+      const unsigned index = packed[y * row_bytes + bit / 8] >> shift & ((1u << bits) - 1);
+      if (index >= palette.n_entries) {
+        return "a pixel has the colour " + std::to_string(index) + " of a palette of " +
+               std::to_string(palette.n_entries);
+      }
+      const spng_plte_entry& color = palette.entries[index];
+      const uint32_t alpha = index < alphas.n_type3_entries ? alphas.type3_alpha[index] : 255;
+      colors.push_back(uint32_t{color.red} | uint32_t{color.green} << 8 | uint32_t{color.blue} << 16 |
+                       alpha << 24);
+    }
+  }
+  return {};
 }
 
 }  // namespace
 
-Read<ImageHeader> read_stb_header(std::string_view bytes) {
-  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  const int size = static_cast<int>(bytes.size());
-  ImageHeader header;
-  int channels = 0;
-  if (!is_png(bytes) && !bytes.starts_with("\xff\xd8\xff"))
-    return {{}, "it is no PNG, JPEG, HDR or EXR file"};
-  if (is_png(bytes) && bytes.size() >= 24 && bytes.substr(12, 4) == "IHDR") {  // stb would tell no size
-    std::string reason = refuse_size(big_endian(bytes, 16), big_endian(bytes, 20));
-    if (!reason.empty()) return {{}, std::move(reason)};
-  }
-  if (stbi_info_from_memory(data, size, &header.width, &header.height, &channels) == 0)
-    return {{}, "its header is damaged"};
-  if (std::string reason = refuse_size(header.width, header.height); !reason.empty())
-    return {{}, std::move(reason)};
-  header.bytes = stbi_is_16_bit_from_memory(data, size) == 0;
-  return {header, {}};
+bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+
+Read<ImageHeader> read_png_header(std::string_view bytes) {
+  Opened opened = open(bytes);
+  if (!opened.reason.empty()) return {{}, std::move(opened.reason)};
+  return {ImageHeader{static_cast<int>(opened.header.width), static_cast<int>(opened.header.height),
+                      opened.header.bit_depth <= 8, true},
+          {}};
 }
 
-Read<FileImage> decode_by_stb(std::string_view bytes) {
-  Read<ImageHeader> header = read_stb_header(bytes);
-  if (!header.found) return {{}, std::move(header.reason)};
+Read<FileImage> decode_png(std::string_view bytes) {
+  Opened opened = open(bytes);
+  if (!opened.reason.empty()) return {{}, std::move(opened.reason)};
+  spng_ctx* context = opened.context.get();
+  const spng_ihdr& header = opened.header;
+  const bool indexed = header.color_type == SPNG_COLOR_TYPE_INDEXED;
+  const bool wide = header.bit_depth == 16;
+
+  // Deflate packs 258 bytes into two bits at best: what has too few is refused before memory is taken.
+  constexpr size_t most_per_byte = 258 * 4;
+  const Chunks chunks = survey(bytes);
+  if (!chunks.end) return {{}, reason_of(SPNG_IO_EOF)};  // libspng lets one pass that is cut short
+  size_t size = 0;
+  if (const int error = spng_decoded_image_size(context, SPNG_FMT_PNG, &size); error != 0)
+    return {{}, reason_of(error)};
+  if (size / most_per_byte > chunks.data)
+    return {{}, "its " + std::to_string(chunks.data) + " bytes of data are too few for its size"};
+
   FileImage image;
-  image.width = header.found->width;
-  image.height = header.found->height;
-  if (is_png(bytes) && !unpacks_to_its_rows(bytes, image.width, image.height))
-    return {{}, "its data do not unpack to what its size needs"};
-  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  const int size = static_cast<int>(bytes.size());
-  int width = 0, height = 0, channels = 0;
-  const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  const auto owned = [](auto* loaded) {
-    return std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, void (*)(void*)>(loaded, stbi_image_free);
+  image.width = static_cast<int>(header.width);
+  image.height = static_cast<int>(header.height);
+  const size_t pixels = size_t{header.width} * header.height;
+  const auto decode = [&](auto& values, size_t count, int format) {
+    values.resize(count);
+    return spng_decode_image(context, values.data(), count * sizeof values[0], format, SPNG_DECODE_TRNS);
   };
-  if (header.found->bytes) {
-    const auto loaded = owned(stbi_load_from_memory(data, size, &width, &height, &channels, 4));
-    if (loaded == nullptr) return {{}, failure()};
-    image.bytes.resize(pixels);
-    for (size_t i = 0; i < pixels; ++i) {
-      const auto byte = [&](size_t channel) { return uint32_t{loaded.get()[4 * i + channel]}; };
-      image.bytes[i] = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
-    }
-  } else {
-    const auto loaded = owned(stbi_load_16_from_memory(data, size, &width, &height, &channels, 4));
-    if (loaded == nullptr) return {{}, failure()};
-    image.rgba.resize(4 * pixels);
-    for (size_t i = 0; i < 4 * pixels; ++i) image.rgba[i] = static_cast<float>(loaded.get()[i]) / 65535.0f;
-  }
+  std::vector<uint8_t> packed;
+  std::vector<uint16_t> numbers;
+  static_assert(std::endian::native == std::endian::little, "red is the lowest byte of a word");
+  int error = indexed ? decode(packed, size, SPNG_FMT_PNG)
+              : wide  ? decode(numbers, 4 * pixels, SPNG_FMT_RGBA16)
+                      : decode(image.bytes, pixels, SPNG_FMT_RGBA8);
+  if (error == 0) error = spng_decode_chunks(context);  // up to the end
+  if (error != 0) return {{}, reason_of(error)};
+  // libspng leaves out a tRNS that is damaged. With a channel for alpha it says nothing.
+  spng_trns transparency;
+  const bool has_alpha = (header.color_type & SPNG_COLOR_TYPE_GRAYSCALE_ALPHA) != 0;
+  if (chunks.transparency && !has_alpha && spng_get_trns(context, &transparency) != 0)
+    return {{}, "its tRNS chunk is damaged"};
+  if (std::string reason = indexed ? look_up(context, header, packed, image.bytes) : ""; !reason.empty())
+    return {{}, std::move(reason)};
+  image.rgba.reserve(numbers.size());
+  for (const uint16_t number : numbers) image.rgba.push_back(static_cast<float>(number) / 65535.0f);
   return {std::move(image), {}};
 }
 

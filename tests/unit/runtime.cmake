@@ -6,13 +6,16 @@ isoshade_test(scene_test
     unit/scene_hdr_test.cpp
     unit/scene_image_file_test.cpp
     unit/scene_image_formats_test.cpp
+    unit/scene_jpeg_test.cpp
     unit/scene_load_test.cpp
     unit/scene_mesh_test.cpp
     unit/scene_parse_test.cpp
+    unit/scene_png_test.cpp
     unit/scene_placement_test.cpp
     unit/scene_settings_test.cpp
     unit/scene_texture_test.cpp
-  LINKS isoshade_scene OpenEXR::OpenEXR PkgConfig::stb)
+  LINKS isoshade_scene OpenEXR::OpenEXR PkgConfig::jpeg)
+target_compile_definitions(scene_test PRIVATE ISOSHADE_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")
 
 isoshade_test(compare_test
   SOURCES
@@ -30,5 +33,5 @@ isoshade_test(render_test
     unit/render_samples_test.cpp
     unit/render_textures_test.cpp
     unit/render_visibility_test.cpp
-  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter PkgConfig::stb)
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter PkgConfig::jpeg)
 target_compile_definitions(render_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
