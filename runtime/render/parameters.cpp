@@ -171,7 +171,7 @@ bool ObjectParameters::resolve_image(const scene::Object& object, const driver::
   ImageSource source{image.file, nullptr, image.where};
   if (material != nullptr && material->textures.contains(name)) {
     const scene::GltfImage& own = material->textures.at(name);
-    source = {own.name, own.bytes, object.mesh_where};
+    source = {own.name, own.bytes, object.mesh_where, own.srgb};
   }
   for (const scene::Parameter& parameter : object.parameters) {
     if (name.empty() || parameter.name != name) continue;

@@ -26,8 +26,9 @@ int64_t bytes_of(const scene::ImageHeader& header, bool mips) {
   return texel_count(header, mips) * (header.bytes ? 4 : 16);
 }
 
-bool is_srgb(lower::Decoding decoding, bool bytes) {
-  return decoding == lower::Decoding::srgb || (decoding == lower::Decoding::srgb_if_bytes && bytes);
+bool is_srgb(lower::Decoding decoding, const ImageSource& source, const scene::ImageHeader& header) {
+  const bool by_itself = header.bytes || (source.srgb && header.integers);
+  return decoding == lower::Decoding::srgb || (decoding == lower::Decoding::srgb_if_bytes && by_itself);
 }
 
 }  // namespace
@@ -81,7 +82,7 @@ std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding
                                       support::Diagnostics& diagnostics) {
   const std::string canonical = graph::canonical_path(source.path);
   if (const auto read = headers_.find(canonical); read != headers_.end()) {
-    const auto known = numbers_.find({canonical, is_srgb(decoding, read->second.bytes)});
+    const auto known = numbers_.find({canonical, is_srgb(decoding, source, read->second)});
     if (known != numbers_.end()) {
       Texture& texture = textures_[static_cast<size_t>(known->second)];
       if (mips && !texture.mips) {
@@ -100,7 +101,7 @@ std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding
   if (!header || !fits(bytes_of(*header, mips), true, source, diagnostics)) return std::nullopt;
   auto image = scene::read_image(source.path, bytes, diagnostics, source.where);
   if (!image) return std::nullopt;
-  const bool srgb = is_srgb(decoding, header->bytes);
+  const bool srgb = is_srgb(decoding, source, *header);
   const auto number = static_cast<int>(textures_.size());
   headers_[canonical] = *header;
   numbers_[{canonical, srgb}] = number;

@@ -28,6 +28,8 @@ struct ImageSource {
   std::string path;                          ///< of its file, or what else it is called
   std::shared_ptr<const std::string> bytes;  ///< of the file, if it is none on the disk
   support::Span where;                       ///< what names it
+  /// Whether whole numbers that are read as a colour are sRGB, also those of 16 bits.
+  bool srgb = false;
 };
 
 /// The parameters of effects that name images which no pass reads.

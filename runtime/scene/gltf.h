@@ -24,6 +24,8 @@ inline constexpr size_t max_gltf_parts = 4096;
 struct GltfImage {
   std::string name;  ///< the file and which image of it: nothing else is called so
   std::shared_ptr<const std::string> bytes;
+  /// Whether it is of a texture that glTF has as sRGB whatever its depth: base colour and emission.
+  bool srgb = false;
 };
 
 /// glTF's metallic-roughness model.

@@ -71,7 +71,7 @@ std::optional<GltfImage> read_gltf_image(const tinygltf::Model& model, int image
         "the images of the materials have more than " + std::to_string(max_gltf_bytes >> 20) + " MiB");
     return std::nullopt;
   }
-  return GltfImage{std::move(name), kept};
+  return GltfImage{std::move(name), kept, false};
 }
 
 }  // namespace isoshade::scene

@@ -31,7 +31,7 @@ std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
                                                const tinygltf::Material& material, ImageBytes& images,
                                                Refusal& refusal) {
   std::map<std::string, GltfImage> found;
-  const auto read = [&](const char* parameter, int texture, int texcoord) {
+  const auto read = [&](const char* parameter, int texture, int texcoord, bool srgb = false) {
     if (texture < 0 || texcoord != 0 || refusal.refused()) return;
     const std::string name = "the texture " + std::to_string(texture);
     if (static_cast<size_t>(texture) >= model.textures.size()) {
@@ -45,15 +45,18 @@ std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
           source < 0 ? "it has no image" : "the image " + std::to_string(source) + " does not exist");
       return;
     }
-    if (auto image = read_gltf_image(model, source, images, refusal)) found[parameter] = *std::move(image);
+    if (auto image = read_gltf_image(model, source, images, refusal)) {
+      image->srgb = srgb;
+      found[parameter] = *std::move(image);
+    }
   };
   const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
-  read("base_color_texture", pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord);
+  read("base_color_texture", pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord, true);
   read("metallic_roughness_texture", pbr.metallicRoughnessTexture.index,
        pbr.metallicRoughnessTexture.texCoord);
   read("normal_texture", material.normalTexture.index, material.normalTexture.texCoord);
   read("occlusion_texture", material.occlusionTexture.index, material.occlusionTexture.texCoord);
-  read("emissive_texture", material.emissiveTexture.index, material.emissiveTexture.texCoord);
+  read("emissive_texture", material.emissiveTexture.index, material.emissiveTexture.texCoord, true);
   return found;
 }
 

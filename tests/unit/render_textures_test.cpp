@@ -161,6 +161,31 @@ TEST_F(Textures, OfAGltfAreThoseOfItsMaterial) {
   EXPECT_NE(draw(*other)[0], shown[0]);
 }
 
+TEST_F(Textures, OfAGltfsColoursAreSrgbAtAnyDepth) {
+  using testing::png_file;
+  folder_.write("pbr.json", R"({"isoshade": 1, "effect": "pbr", "parameters": {
+    "base_color_texture": {"type": "filename", "value": ""}},
+    "nodes": {"map": {"type": "image", "file": {"link": "base_color_texture"}}},
+    "passes": [{"name": "base", "color": "map", "cull": "none"}]})");
+  const auto shown = [&](const std::string& png, const std::string& parameters) {
+    folder_.write("m.glb", testing::textured_glb(png));
+    const auto made = plan(
+        R"("camera": {"type": "orthographic", "position": [0.5, 0.5, 5], "target": [0.5, 0.5, 0], "height": 1},
+        "objects": {"m": {"mesh": {"type": "gltf", "file": "m.glb"}, "effect": "pbr.json", "parameters": {)" +
+            parameters + "}}}",
+        2);
+    EXPECT_TRUE(made) << diagnostics_.text();
+    return made ? draw(*made) : std::vector<float>(4);
+  };
+  const std::string deep = png_file(1, 1, 16, 2, {std::string("\x80\x80\x33\x33\0\0", 6)});
+  const std::vector<float> bytes = shown(png_file(1, 1, 8, 2, {std::string("\x80\x33\0", 3)}), "");
+  EXPECT_NEAR(bytes[0], 0.2159, 1e-4);
+  EXPECT_EQ(shown(deep, ""), bytes);
+  // A file that the object names is read as such files are.
+  folder_.write("deep.png", deep);
+  EXPECT_EQ(shown(deep, R"("base_color_texture": "deep.png")")[0], static_cast<float>(0x8080) / 65535.0f);
+}
+
 TEST_F(Textures, WithoutAFileThereIsTheDefault) {
   const auto made = plan(square("shown", R"("map": "")"));
   ASSERT_TRUE(made) << diagnostics_.text();

@@ -50,6 +50,20 @@ TEST_F(GltfTextures, AreKeptAsTheyAre) {
   EXPECT_EQ(*textures.at("base_color_texture").bytes, "no image");
 }
 
+TEST_F(GltfTextures, OfBaseColourAndEmissionAreSrgb) {
+  folder_.write("m.bin", testing::square_data());
+  folder_.write("a.png", "no image");
+  const auto model = load(gltf(R"({"uri": "a.png"})", R"({"source": 0})",
+                               R"("baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0}},
+"emissiveTexture": {"index": 0}, "normalTexture": {"index": 0}, "occlusionTexture": {"index": 0}, "extras": {)"),
+                          "m.gltf");
+  ASSERT_TRUE(model && model->parts.at(0).material) << diagnostics_.text();
+  const auto& textures = model->parts[0].material->textures;
+  ASSERT_EQ(textures.size(), 5u);
+  for (const auto& [name, image] : textures)
+    EXPECT_EQ(image.srgb, name == "base_color_texture" || name == "emissive_texture") << name;
+}
+
 TEST_F(GltfTextures, ComeFromFilesBelowTheFolder) {
   folder_.write("m.bin", testing::square_data());
   const std::string file = folder_.write("maps/a b+c.png", "no image");
