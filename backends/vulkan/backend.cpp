@@ -148,7 +148,9 @@ bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>
       std::optional<PipelineIndex>& pipeline = pipelines[frame.draws[d].vertex_program];
       if (pipeline) continue;
       const Program& program = *frame.programs[frame.draws[d].vertex_program];
-      pipeline = device_->pipeline({Target::buffer, 0, options_.glsl(program, division_), {}}, diagnostics);
+      PipelineSource source{Target::buffer, 0, options_.glsl(program, division_), {}};
+      source.what = driver::description(program);
+      pipeline = device_->pipeline(source, diagnostics);
       if (!pipeline) return false;
     }
 
@@ -198,8 +200,9 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
         !upload(*device_, FrameBuffer::layers, pass.images, nullptr, diagnostics) ||
         !upload(*device_, FrameBuffer::layer_records, pass.image_records, nullptr, diagnostics))
       return false;
-    const auto pipeline = device_->pipeline(
-        {Target::color, 1, full_screen_vertex(), options_.glsl(*pass.program, division_)}, diagnostics);
+    PipelineSource source{Target::color, 1, full_screen_vertex(), options_.glsl(*pass.program, division_)};
+    source.what = driver::description(*pass.program);
+    const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
     device_->run_screen(*pipeline, pass.width, pass.height, rgba);
@@ -226,10 +229,11 @@ bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> in
   return guarded(diagnostics, [&] {
     const auto attachments = static_cast<uint32_t>((result_words + 3) / 4);
     std::string text = options_.glsl(program, division_);
-    const auto pipeline = device_->pipeline(
+    PipelineSource source =
         in_vertex ? PipelineSource{Target::buffer, 0, std::move(text), {}}
-                  : PipelineSource{Target::words, attachments, full_screen_vertex(), std::move(text)},
-        diagnostics);
+                  : PipelineSource{Target::words, attachments, full_screen_vertex(), std::move(text)};
+    source.what = driver::description(program);
+    const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;
 
     const size_t largest_record = std::max({input_words, result_words, size_t{1}}) * sizeof(int32_t);

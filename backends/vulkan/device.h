@@ -54,7 +54,8 @@ struct PipelineSource {
   uint32_t attachments = 1;
   std::string vertex_glsl;
   std::string fragment_glsl;
-  bool over = false;  ///< of Target::visibility: without the depth test
+  bool over = false;                          ///< of Target::visibility: without the depth test
+  std::string what = "a shader of isoshade";  ///< for messages, of the text that is not the same for all
 };
 
 using PipelineIndex = uint32_t;

@@ -115,9 +115,10 @@ class VulkanDrawing final : public backends::Drawing {
   }
 
   std::optional<PipelineIndex> pixel_pipeline(const driver::Program& program, Diagnostics& diagnostics) {
-    return backend_.device_->pipeline(
-        {Target::color, 1, full_screen_vertex(), backend_.options_.glsl(program, backend_.division_)},
-        diagnostics);
+    PipelineSource source{Target::color, 1, full_screen_vertex(),
+                          backend_.options_.glsl(program, backend_.division_)};
+    source.what = driver::description(program);
+    return backend_.device_->pipeline(source, diagnostics);
   }
 
   VulkanBackend& backend_;

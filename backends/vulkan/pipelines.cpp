@@ -152,11 +152,13 @@ std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
   if (const auto found = impl_->pipeline_of.find(source_key); found != impl_->pipeline_of.end())
     return found->second;
 
-  const auto vertex = emit::compile_spirv(source.vertex_glsl, emit::ShaderKind::vertex, diagnostics);
+  const auto vertex =
+      emit::compile_spirv(source.vertex_glsl, emit::ShaderKind::vertex, diagnostics, source.what);
   if (!vertex) return std::nullopt;
   std::optional<std::vector<uint32_t>> fragment{std::in_place};
   if (source.target != Target::buffer)
-    fragment = emit::compile_spirv(source.fragment_glsl, emit::ShaderKind::fragment, diagnostics);
+    fragment =
+        emit::compile_spirv(source.fragment_glsl, emit::ShaderKind::fragment, diagnostics, source.what);
   if (!fragment) return std::nullopt;
 
   impl_->pipelines.push_back(impl_->make_pipeline(source, *vertex, *fragment));

@@ -101,15 +101,17 @@ std::vector<Image> images_of(const check::TypedGraph& typed) {
 }
 
 /// Where each parameter of the emitted function lies in the object's record. A matrix is passed as its columns.
-lower::FieldOffsets offsets_of(const std::vector<Field>& parameters, const std::vector<Image>& images,
-                               int word = lower::object_word::parameters) {
+lower::FieldOffsets offsets_of(const check::TypedGraph& typed, const std::vector<Field>& parameters,
+                               const std::vector<Image>& images, int word = lower::object_word::parameters) {
   lower::FieldOffsets offsets;
-  for (const Field& parameter : parameters) {
-    const int columns = parameter.type == "matrix33" ? 3 : parameter.type == "matrix44" ? 4 : 0;
-    if (columns == 0 && parameter.words > 0) offsets.emplace_back(parameter.name, word);
-    for (int i = 0; i < columns; ++i)
-      offsets.emplace_back(parameter.name + "_" + std::to_string(i), word + columns * i);
-    word += parameter.words;
+  const std::vector<std::vector<std::string>> names = lower::parameter_names(typed);
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const int words = parameters[i].words;
+    if (words == 0) continue;  // a file's name
+    const int columns = static_cast<int>(names[i].size());
+    for (int c = 0; c < columns; ++c)
+      offsets.emplace_back(names[i][static_cast<size_t>(c)], word + words / columns * c);
+    word += words;
   }
   for (const Image& image : images) offsets.emplace_back(image.slot.name, word++);
   return offsets;
@@ -124,8 +126,9 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
   } else {
     program.module = lower::lower(typed, {pass, lower::PassPart::position});
     program.module.buffers = lower::frame_module().buffers;
-    kernel = lower::add_moving_vertex_kernel(program.module, offsets_of(effect.parameters, effect.images),
-                                             typed.graph.passes[pass].position_space);
+    kernel =
+        lower::add_moving_vertex_kernel(program.module, offsets_of(typed, effect.parameters, effect.images),
+                                        typed.graph.passes[pass].position_space);
   }
   finish(program, kernel, options);
   return program;
@@ -136,8 +139,8 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect&
   Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}, options.tier};
   program.module = lower::lower(typed, {pass});
   program.module.buffers = lower::frame_module().buffers;
-  const uint32_t kernel =
-      lower::add_pixel_kernel(program.module, offsets_of(effect.parameters, effect.images), options.lights);
+  const uint32_t kernel = lower::add_pixel_kernel(
+      program.module, offsets_of(typed, effect.parameters, effect.images), options.lights);
   finish(program, kernel, options);
   return program;
 }
@@ -185,7 +188,7 @@ std::optional<Post> compile_post(const support::Source& source, const Options& o
   };
   for (const std::string& prefix : prefixes) post.reads.push_back(reads(prefix));
   post.reads_depth = reads(lower::depth_prefix);
-  lower::FieldOffsets record = offsets_of(post.parameters, {}, 0);
+  lower::FieldOffsets record = offsets_of(*typed, post.parameters, {}, 0);
   int word = 0;
   for (const Field& parameter : post.parameters) word += parameter.words;
   for (const auto& [node, count] : lower::tap_counts(*typed)) {

@@ -3,6 +3,7 @@
 
 #include "compiler/emit/stages.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/support/visible.h"
 
 namespace isoshade::driver {
 
@@ -19,6 +20,11 @@ std::string glsl_of(const Program& program, Division division, emit::EvalIn eval
 }
 
 }  // namespace
+
+std::string description(const Program& program) {
+  return "the " + std::string(lower::name(program.stage)) + " stage of " + support::quote(program.name) +
+         (program.document.empty() ? "" : " (" + support::visible(program.document) + ")");
+}
 
 std::string glsl(const Program& program, Division division) {
   return glsl_of(program, division, emit::EvalIn::fragment_shader);

@@ -40,6 +40,9 @@ struct Program {
 /// How `/` and `sqrt` are computed: by the device, or by Newton steps and an exact integer residual.
 enum class Division : uint8_t { native, exact };
 
+/// What it is, for messages: `the pixel stage of "fur" (fur.json)`.
+std::string description(const Program& program);
+
 /// The program as a Vulkan shader of its stage; emit/stages.h tells the interface.
 std::string glsl(const Program& program, Division division);
 /// The same, but an eval program becomes a vertex shader.

@@ -124,6 +124,10 @@ constexpr std::string_view zero_head =
 
 std::string cpp_functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
+  return cpp_functions(module, entry, texts);
+}
+
+std::string cpp_functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
   return std::string(uses_hidden_zero(module, entry) ? zero_head : "") +
          print_functions(module, entry, Cpp(), texts);
 }

@@ -21,7 +21,7 @@ class FunctionPrinter {
         text_(text),
         language_(language),
         texts_(texts),
-        names_(&globals, function.values.size()),
+        names_(Scope::local, &globals, function.values.size()),
         values_(function.values.size()) {}
 
   void print() {
@@ -93,7 +93,6 @@ class FunctionPrinter {
   }
 
   void declare_parameters() {
-    Names fields;
     for (size_t i = 0; i < function_.parameters.size(); ++i) {
       const ir::Parameter& parameter = function_.parameters[i];
       std::string name;
@@ -104,13 +103,12 @@ class FunctionPrinter {
         language_.parameter(out_, parameter.type, parameter.uniform, name, used);
       } else {
         if (i == 0 || function_.parameters[i - 1].group != parameter.group) {
-          fields = Names();
           group_ = names_.take(parameter.group);
           separate();
           language_.group_type(out_, text_.groups[i], parameter.uniform);
           out_.append(" ").append(group_);
         }
-        name = group_ + "." + fields.take(parameter.name);
+        name = group_ + "." + text_.fields[i];
       }
       if (!function_.is_declaration()) values_[function_.blocks[0].parameters[i]] = name;
     }
@@ -184,6 +182,32 @@ class FunctionPrinter {
     }
   }
 
+  /// Names for what the text of an op declares beside its result, `$=_low`. They are taken for all languages, so that
+  /// what follows is called alike in each.
+  void take_temporaries(const ir::OpInfo& row, ir::ValueId result) {
+    temporaries_.clear();
+    for (std::string_view rest : {row.glsl, row.cpp}) {
+      for (size_t hole; (hole = rest.find("$=_")) != std::string_view::npos;) {
+        rest.remove_prefix(hole + 2);
+        const std::string_view suffix = suffix_of(rest);
+        if (name_of(suffix).empty())
+          temporaries_.push_back({suffix, names_.take(values_[result] + std::string(suffix))});
+      }
+    }
+  }
+
+  std::string_view name_of(std::string_view suffix) const {
+    for (const auto& [of, name] : temporaries_)
+      if (of == suffix) return name;
+    return {};
+  }
+
+  /// The rest of the name that begins with `$=`.
+  static std::string_view suffix_of(std::string_view text) {
+    const size_t end = text.find_first_not_of("_abcdefghijklmnopqrstuvwxyz");
+    return text.starts_with('_') ? text.substr(0, end) : std::string_view();
+  }
+
   /// What stands in an op's text for `$=`, the result, or `$0`, an operand.
   void fill(char hole, const ir::Instruction& instruction, std::string_view pattern) {
     const ir::ValueId result = instruction.first_result;
@@ -208,10 +232,15 @@ class FunctionPrinter {
     } else {
       begin_definition(instruction);
     }
+    take_temporaries(ir::info(instruction.op), result);
     std::string_view rest = pattern.substr(statement ? 1 : 0);
-    for (size_t hole; (hole = rest.find('$')) != std::string_view::npos; rest.remove_prefix(hole + 2)) {
+    for (size_t hole; (hole = rest.find('$')) != std::string_view::npos;) {
       out_ += rest.substr(0, hole);
-      fill(rest[hole + 1], instruction, pattern);
+      const char what = rest[hole + 1];
+      rest.remove_prefix(hole + 2);
+      const std::string_view suffix = suffix_of(rest);
+      suffix.empty() ? fill(what, instruction, pattern) : void(out_ += name_of(suffix));
+      rest.remove_prefix(suffix.size());
     }
     out_ += rest;
     statement ? end_line(result) : end_statement(result);
@@ -225,19 +254,17 @@ class FunctionPrinter {
     const FunctionText& called = texts_[instruction.imm];
     const auto operands = function_.operands_of(instruction);
     std::vector<std::string> names(operands.size());
-    Names fields;
     size_t first = 0;
     for (size_t i = 0; i < operands.size(); ++i) {
       const ir::Parameter& parameter = parameters[i];
       if (parameter.group.empty()) continue;
       if (i == 0 || parameter.group != parameters[i - 1].group) {
         first = i;
-        fields = Names();
         names[i] = names_.take(parameter.group);
         language_.group_value(indent(), called.groups[i], parameter.uniform);
         out_.append(" ").append(names[i]).append(";\n");
       }
-      indent().append(names[first]).append(".").append(fields.take(parameter.name)).append(" = ");
+      indent().append(names[first]).append(".").append(called.fields[i]).append(" = ");
       language_.exactly(out_, operand(operands[i]), parameter.uniform);
       out_ += ";\n";
     }
@@ -359,6 +386,8 @@ class FunctionPrinter {
   std::vector<bool> literals_;
   std::vector<bool> used_;
   std::vector<bool> nested_;
+  std::vector<std::pair<std::string_view, std::string>>
+      temporaries_;  ///< of the op that is printed, by suffix
   std::string group_;
   size_t indent_ = 0;
 };

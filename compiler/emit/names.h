@@ -7,29 +7,31 @@
 #include <string_view>
 
 #include "compiler/emit/name_table.h"
+#include "compiler/emit/words.h"
 
 namespace isoshade::emit {
 
-/// Names of one scope, unique in it and good in GLSL and C++ alike.
+/// Names of one scope, unique in it and good in every target alike.
 class Names {
  public:
-  Names() = default;
-  /// A scope inside another: names of the outer one are not taken again.
-  explicit Names(const Names* outer, size_t expected = 0) : outer_(outer), used_(expected) {}
+  /// `outer`: a scope around it, of which no name is taken again.
+  explicit Names(Scope scope, const Names* outer = nullptr, size_t expected = 0)
+      : scope_(scope), outer_(outer), used_(expected) {}
 
-  /// `wanted`, or the nearest name that is free: letters, digits and single underscores, no keyword or name
-  /// of either language or of the code around it, not beginning with a digit, "gl_" or (unless ours) "iso_".
-  std::string take(std::string_view wanted);
-  /// The same for a function, which must not redefine one of GLSL's own.
-  std::string take_function(std::string_view wanted);
+  /// `wanted`, or the nearest name that is free: letters, digits and single underscores, no word (words.h), not
+  /// beginning with a digit or with what GLSL keeps for itself. No name is given twice.
+  std::string take(std::string_view wanted) { return take(wanted, Avoid::all); }
+  /// The same for a function of our own, which own_words.def may list.
+  std::string take_own(std::string_view wanted) { return take(wanted, Avoid::languages); }
   /// Keeps a name of our own from being taken.
   void hold(std::string_view name) { used_.add(name); }
 
  private:
-  std::string take(std::string_view wanted, bool function);
+  std::string take(std::string_view wanted, Avoid avoid);
   bool taken(const std::string& name) const;
 
-  const Names* outer_ = nullptr;
+  Scope scope_;
+  const Names* outer_;
   NameTable used_;  ///< with the last number tried behind each
 };
 

@@ -7,6 +7,7 @@
 
 #include "compiler/emit/function_printer.h"
 #include "compiler/ir/call_graph.h"
+#include "compiler/lower/lower.h"
 #include "compiler/support/check.h"
 
 namespace isoshade::emit {
@@ -41,17 +42,21 @@ class GroupRecords {
  public:
   GroupRecords(const Language& language, Names& globals) : language_(language), globals_(globals) {}
 
-  /// Names the structs of a function's groups, and prints those that are new.
+  /// Names the structs of a function's groups and their fields, and prints those that are new.
   void print(std::string& out, const ir::Function& function, FunctionText& text) {
     text.groups.resize(function.parameters.size());
+    text.fields.resize(function.parameters.size());
     for (size_t i = 0; i < function.parameters.size();) {
       const size_t begin = i;
       const std::string& group = function.parameters[begin].group;
       do ++i;
       while (i < function.parameters.size() && !group.empty() && function.parameters[i].group == group);
-      if (!group.empty())
-        std::fill_n(text.groups.begin() + static_cast<ptrdiff_t>(begin), i - begin,
-                    name(out, std::span(function.parameters).subspan(begin, i - begin)));
+      if (group.empty()) continue;
+      const Record& record = find(out, std::span(function.parameters).subspan(begin, i - begin));
+      for (size_t k = begin; k < i; ++k) {
+        text.groups[k] = record.name;
+        text.fields[k] = record.names[k - begin];
+      }
     }
   }
 
@@ -59,19 +64,24 @@ class GroupRecords {
   struct Record {
     std::string name;
     std::vector<ir::Parameter> fields;
+    std::vector<std::string> names;  ///< of the fields, in the text
   };
 
-  std::string name(std::string& out, std::span<const ir::Parameter> fields) {
+  const Record& find(std::string& out, std::span<const ir::Parameter> fields) {
     for (const Record& record : records_)
-      if (std::equal(fields.begin(), fields.end(), record.fields.begin(), record.fields.end()))
-        return record.name;
-    records_.push_back({globals_.take(record_name(fields[0].group)), {fields.begin(), fields.end()}});
-    Names names;
+      if (std::equal(fields.begin(), fields.end(), record.fields.begin(), record.fields.end())) return record;
+    Record& made = records_.emplace_back();
+    made.name = globals_.take(record_name(fields[0].group));
+    made.fields.assign(fields.begin(), fields.end());
+    Names names(Scope::field);
     std::vector<std::pair<ir::Type, std::string>> printed;
-    for (const ir::Parameter& field : fields) printed.emplace_back(field.type, names.take(field.name));
-    language_.record(out, records_.back().name, printed, fields[0].uniform);
+    for (const ir::Parameter& field : fields) {
+      made.names.push_back(names.take(field.name));
+      printed.emplace_back(field.type, made.names.back());
+    }
+    language_.record(out, made.name, printed, fields[0].uniform);
     out += "\n";
-    return records_.back().name;
+    return made;
   }
 
   const Language& language_;
@@ -96,25 +106,26 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   const auto order = ir::callees_first(module, entries);
   support::check(order.has_value(), "calls are cyclic");
   texts.assign(module.functions.size(), {});
-  Names globals;
+  Names globals(Scope::global);
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
-  // Library functions and stages are named by us; lowering keeps authors' names off `shade`.
+  // Library functions and stages are named by us, and first.
   const auto is_ours = [](const ir::Function& function) {
-    return (function.document.empty() && function.name != "main") || function.name == "shade" ||
-           function.name == "post_process";
+    return function.document.empty() || function.name == lower::shade_name ||
+           function.name == lower::move_vertex_name || function.name == lower::post_name;
   };
-  for (uint32_t index : *order)
-    if (is_ours(module.functions[index])) globals.hold(module.functions[index].name);
-  for (uint32_t index : *order) {
+  for (const uint32_t index : *order)
+    if (is_ours(module.functions[index])) texts[index].name = globals.take_own(module.functions[index].name);
+  for (const uint32_t index : *order)
+    if (!is_ours(module.functions[index])) texts[index].name = globals.take(module.functions[index].name);
+  for (const uint32_t index : *order) {
     const ir::Function& function = module.functions[index];
     FunctionText& text = texts[index];
-    text.name = is_ours(function) ? function.name : globals.take_function(function.name);
     text.loads = loads_directly(function);
     for (const ir::Instruction& instruction : function.instructions)
       if (instruction.op == ir::Opcode::call) text.loads |= texts[instruction.imm].loads;
     if (function.results.size() <= 1) continue;
     text.result_type = globals.take(record_name(text.name) + "Result");
-    Names fields;
+    Names fields(Scope::field);
     for (const ir::Result& result : function.results) text.result_fields.push_back(fields.take(result.name));
   }
   std::string out;

@@ -18,6 +18,7 @@ struct FunctionText {
   std::string result_type;  ///< the name of its result struct if it has several results, else empty
   std::vector<std::string> result_fields;
   std::vector<std::string> groups;  ///< the name of the struct of each parameter; empty: a plain parameter
+  std::vector<std::string> fields;  ///< the name of each parameter in its struct
   bool loads = false;               ///< it, or one it calls, loads from a buffer
 };
 

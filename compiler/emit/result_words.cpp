@@ -3,19 +3,19 @@
 
 #include <array>
 
-#include "compiler/emit/names.h"
 #include "compiler/ir/call_graph.h"
 
 namespace isoshade::emit {
 
-std::vector<ResultWord> result_words(const ir::Function& kernel, const std::string& value) {
+std::vector<ResultWord> result_words(const ir::Function& kernel, const FunctionText& text,
+                                     const std::string& value) {
   std::vector<ResultWord> words;
-  Names fields;
-  for (const ir::Result& result : kernel.results) {
+  for (size_t k = 0; k < kernel.results.size(); ++k) {
     // A kernel with several results returns a struct.
-    const std::string text = kernel.results.size() == 1 ? value : value + "." + fields.take(result.name);
-    for (int i = 0; i < result.type.width; ++i)
-      words.push_back({result.type.width == 1 ? text : text + "." + "xyzw"[i], result.type.scalar});
+    const std::string result = text.result_fields.empty() ? value : value + "." + text.result_fields[k];
+    const ir::Type type = kernel.results[k].type;
+    for (int i = 0; i < type.width; ++i)
+      words.push_back({type.width == 1 ? result : result + "." + "xyzw"[i], type.scalar});
   }
   return words;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/emit/printer.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::emit {
@@ -14,7 +15,8 @@ struct ResultWord {
   ir::Scalar scalar;
 };
 
-std::vector<ResultWord> result_words(const ir::Function& kernel, const std::string& value);
+std::vector<ResultWord> result_words(const ir::Function& kernel, const FunctionText& text,
+                                     const std::string& value);
 
 /// The buffers that a function and those it calls load from.
 std::vector<bool> used_buffers(const ir::Module& module, uint32_t entry);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "compiler/support/check.h"
+#include "compiler/support/visible.h"
 
 namespace isoshade::emit {
 
@@ -89,10 +90,16 @@ std::string validate(const std::vector<uint32_t>& spirv) {
 }  // namespace
 
 std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
-                                                   support::Diagnostics& diagnostics) {
+                                                   support::Diagnostics& diagnostics,
+                                                   const std::string& what) {
   static const Process process;
-  const auto refuse = [&](std::string message) {
-    diagnostics.report(support::Id::bad_shader, std::move(message));
+  const auto refuse = [&](const std::string& reason) {
+    diagnostics
+        .report(support::Id::bad_shader,
+                "the GLSL of " + what + " does not compile: " + support::visible(reason))
+        .note(
+            "isoshade made this text: unless the graph is larger than glslang takes, please report the "
+            "document");
     return std::nullopt;
   };
 

@@ -19,7 +19,9 @@ enum class ShaderKind : uint8_t { vertex, fragment };
 ///
 /// `glsl` begins with glsl_head(); a module without SignedZeroInfNanPreserve 32 would be a bug of ours, so it
 /// aborts. A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.
+/// `what` names the text in that report: `the pixel stage of "fur" (fur.json)`.
 std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
-                                                   support::Diagnostics& diagnostics);
+                                                   support::Diagnostics& diagnostics,
+                                                   const std::string& what = "a shader");
 
 }  // namespace isoshade::emit

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_set>
 
 #include "compiler/lower/body.h"
+#include "compiler/lower/lower.h"
 
 namespace isoshade::lower {
 namespace {
@@ -55,6 +57,10 @@ ImageSlots image_slots(const check::TypedGraph& graph) {
   ImageSlots result;
   result.of_node.resize(graph.nodes.size());
   const Needs needs(graph, graph.outputs);
+  std::unordered_set<std::string> parameters;
+  for (const std::vector<std::string>& names : parameter_names(graph))
+    parameters.insert(names.begin(), names.end());
+  for (const graph::Input& input : graph.graph.inputs) parameters.insert(input.name);
   const auto same = [](const ImageSlot& a, const ImageSlot& b) {
     return std::tie(a.parameter, a.path, a.decoding) == std::tie(b.parameter, b.path, b.decoding);
   };
@@ -68,12 +74,10 @@ ImageSlots image_slots(const check::TypedGraph& graph) {
       found->mips |= slot.mips;
       continue;
     }
-    // A parameter that is read in two ways has two slots.
+    // A parameter that is read in two ways has two slots; none is called as a parameter or a column of one.
     const auto taken = [&] {
-      const auto named = graph.graph.names.find(slot.name);
-      const bool by_other =
-          named != graph.graph.names.end() && named->second.is_input && slot.name != slot.parameter;
-      return by_other || std::ranges::find(result.slots, slot.name, &ImageSlot::name) != result.slots.end();
+      return (slot.name != slot.parameter && parameters.contains(slot.name)) ||
+             std::ranges::find(result.slots, slot.name, &ImageSlot::name) != result.slots.end();
     };
     while (taken()) slot.name += "_";
     result.slots.push_back(std::move(slot));

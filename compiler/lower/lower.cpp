@@ -47,10 +47,10 @@ class ModuleLowering {
  private:
   struct Parameters {
     ir::Function& function;
-    /// Adds one value's parameters; returns the index of the first.
-    size_t add(const std::string& name, Type type, const std::string& group, bool uniform);
+    /// Adds one value's parameters, called `names`; returns the index of the first.
+    size_t add(const std::vector<std::string>& names, Type type, const std::string& group, bool uniform);
     /// An effect's or post's own parameter, which is known to be within its range.
-    size_t add(const graph::Input& input);
+    size_t add(const graph::Input& input, const std::vector<std::string>& names);
   };
 
   /// Lowers the documents that the needed nodes call.
@@ -73,13 +73,30 @@ std::string ModuleLowering::unique_name(const std::string& wanted) {
   return name;
 }
 
-/// The parameter or result names of a value: itself, or one a column.
-std::vector<std::string> column_names(const std::string& name, Type type) {
-  const int count = nodes::column_count(type);
-  if (count == 1) return {name};
-  std::vector<std::string> names;
-  for (int i = 0; i < count; ++i) names.push_back(name + "_" + std::to_string(i));
-  return names;
+/// The names of some values beside each other: of each its own, or one a column of a matrix, "m_0", "m_1". No two are
+/// alike: columns get out of the way of what is called so itself.
+std::vector<std::vector<std::string>> names_of_columns(
+    const std::vector<std::pair<std::string, Type>>& values) {
+  std::unordered_set<std::string> taken;
+  for (const auto& [name, type] : values)
+    if (nodes::column_count(type) == 1) taken.insert(name);
+  std::vector<std::vector<std::string>> all;
+  for (const auto& [name, type] : values) {
+    std::vector<std::string>& names = all.emplace_back();
+    const int count = nodes::column_count(type);
+    if (count == 1) names.push_back(name);
+    for (int i = 0; count > 1 && i < count; ++i) {
+      std::string column = name + "_" + std::to_string(i);
+      while (!taken.insert(column).second) column += "_";
+      names.push_back(std::move(column));
+    }
+  }
+  return all;
+}
+
+/// The text behind a function says where it comes from; that of a document that has no file says so.
+std::string document_of(const TypedGraph& graph) {
+  return graph.document.empty() ? "a document without a file" : graph.document;
 }
 
 /// Takes a value's parameters from the function's, beginning with `first`.
@@ -97,28 +114,16 @@ ir::ValueId with_alpha(ir::Builder& b, ir::ValueId color) {
       std::array{b.extract(color, 0), b.extract(color, 1), b.extract(color, 2), b.constant(1.0f)});
 }
 
-/// Keeps names apart where the columns of a matrix are called as another input is.
-class SideBySide {
- public:
-  std::string take(std::string name) {
-    while (!taken_.insert(name).second) name += "_";
-    return name;
-  }
-
- private:
-  std::unordered_set<std::string> taken_;
-};
-
-size_t ModuleLowering::Parameters::add(const std::string& name, Type type, const std::string& group,
-                                       bool uniform) {
+size_t ModuleLowering::Parameters::add(const std::vector<std::string>& names, Type type,
+                                       const std::string& group, bool uniform) {
   const size_t first = function.parameters.size();
-  for (const std::string& column : column_names(name, type))
-    function.parameters.push_back({column, nodes::ir_type(type), group, uniform});
+  for (const std::string& name : names)
+    function.parameters.push_back({name, nodes::ir_type(type), group, uniform});
   return first;
 }
 
-size_t ModuleLowering::Parameters::add(const graph::Input& input) {
-  const size_t first = add(input.name, input.type, "parameters", true);
+size_t ModuleLowering::Parameters::add(const graph::Input& input, const std::vector<std::string>& names) {
+  const size_t first = add(names, input.type, "parameters", true);
   const bool is_integer = input.type == Type::integer;
   constexpr float most_exact = 0x1p24f, largest = std::numeric_limits<float>::max();
   float least = input.min.value_or(-largest), most = input.max.value_or(largest);
@@ -148,19 +153,19 @@ void ModuleLowering::add_function(const TypedGraph& graph, std::string name) {
   functions_[&graph] = index;
   ir::Function& function = module_.functions.emplace_back();
   function.name = std::move(name);
-  function.document = graph.document;
+  function.document = document_of(graph);
   Parameters parameters{function};
   std::vector<size_t> first;
-  for (const graph::Input& input : graph.graph.inputs)
-    first.push_back(parameters.add(input.name, input.type, "", false));
-  SideBySide parameter_names;
-  for (ir::Parameter& parameter : function.parameters) parameter.name = parameter_names.take(parameter.name);
-  SideBySide result_names;
-  for (size_t i = 0; i < graph.outputs.size(); ++i) {
-    const Type type = graph.outputs[i].needed;
-    for (const std::string& column : column_names(graph.graph.outputs[i].name, type))
-      function.results.push_back({result_names.take(column), nodes::ir_type(type)});
-  }
+  const std::vector<std::vector<std::string>> names = parameter_names(graph);
+  for (size_t i = 0; i < names.size(); ++i)
+    first.push_back(parameters.add(names[i], graph.graph.inputs[i].type, "", false));
+  std::vector<std::pair<std::string, Type>> outputs;
+  for (size_t i = 0; i < graph.outputs.size(); ++i)
+    outputs.emplace_back(graph.graph.outputs[i].name, graph.outputs[i].needed);
+  const std::vector<std::vector<std::string>> results_of = names_of_columns(outputs);
+  for (size_t i = 0; i < outputs.size(); ++i)
+    for (const std::string& column : results_of[i])
+      function.results.push_back({column, nodes::ir_type(outputs[i].second)});
 
   ir::Builder b(module_, index);
   Environment environment;
@@ -194,7 +199,7 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
   const auto index = static_cast<uint32_t>(module_.functions.size());
   ir::Function& function = module_.functions.emplace_back();
   function.name = name;
-  function.document = graph.document;
+  function.document = document_of(graph);
   function.results = {wanted};
   for (const SurfaceField& field : surface_fields())
     if (needs.surface[field.value.index()])
@@ -207,10 +212,9 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
   if (needs.time) function.parameters.push_back({"time", ir::float_type, "frame", true});
   Parameters parameters{function};
   std::vector<size_t> first(graph.graph.inputs.size());
-  for (size_t i = 0; i < first.size(); ++i) {
-    const graph::Input& input = graph.graph.inputs[i];
-    if (needs.inputs[i]) first[i] = parameters.add(input);
-  }
+  const std::vector<std::vector<std::string>> names = parameter_names(graph);
+  for (size_t i = 0; i < first.size(); ++i)
+    if (needs.inputs[i]) first[i] = parameters.add(graph.graph.inputs[i], names[i]);
   const ImageSlots images = image_slots(graph);
   std::vector<bool> reads(images.slots.size());
   for (size_t i = 0; i < graph.nodes.size(); ++i)
@@ -250,17 +254,16 @@ ir::Module ModuleLowering::lower_post(const TypedGraph& graph) {
   const auto index = static_cast<uint32_t>(module_.functions.size());
   ir::Function function;
   function.name = post_name;
-  function.document = graph.document;
+  function.document = document_of(graph);
   function.results = {{"color", ir::vector_type(4)}};
   add_screen_parameters(function, graph, needs.screen);
   const size_t time = function.parameters.size();
   if (needs.time) function.parameters.push_back({"time", ir::float_type, "frame", true});
   Parameters parameters{function};
   std::vector<size_t> first(graph.graph.inputs.size());
-  for (size_t i = 0; i < first.size(); ++i) {
-    const graph::Input& input = graph.graph.inputs[i];
-    if (needs.inputs[i]) first[i] = parameters.add(input);
-  }
+  const std::vector<std::vector<std::string>> names = parameter_names(graph);
+  for (size_t i = 0; i < first.size(); ++i)
+    if (needs.inputs[i]) first[i] = parameters.add(graph.graph.inputs[i], names[i]);
   add_tap_parameters(function, graph, needs.screen);
   module_.functions.push_back(std::move(function));
 
@@ -313,6 +316,12 @@ const std::vector<SurfaceField>& surface_fields() {
     return all;
   }();
   return fields;
+}
+
+std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
+  std::vector<std::pair<std::string, Type>> inputs;
+  for (const graph::Input& input : graph.graph.inputs) inputs.emplace_back(input.name, input.type);
+  return names_of_columns(inputs);
 }
 
 std::string entry_name(const TypedGraph& graph) {

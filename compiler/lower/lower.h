@@ -79,6 +79,9 @@ inline constexpr std::string_view space_matrix_names[] = {"world_from_object", "
                                                           "view_from_world", "world_from_view"};
 inline constexpr size_t space_matrix_count = std::size(space_matrix_names);
 
+/// What the parameters of each input are called, by Graph::inputs: one, or one a column of a matrix. No two are alike.
+std::vector<std::vector<std::string>> parameter_names(const check::TypedGraph& graph);
+
 /// The name of the function that lower() makes of a document.
 std::string entry_name(const check::TypedGraph& graph);
 

@@ -33,7 +33,7 @@ class Writer {
       const std::string text = driver::glsl(program, division);
       const std::string name = stem + (vertex ? ".vert" : ".frag");
       if (wants("glsl") && !write(name, text)) return false;
-      if (wants("spirv") && !spirv(name, text, vertex)) return false;
+      if (wants("spirv") && !spirv(name, text, program)) return false;
     }
     return !wants("cpp") || write(stem + ".cpp", driver::cpp(program));
   }
@@ -80,9 +80,10 @@ class Writer {
     return std::ranges::find(arguments_.targets, target) != arguments_.targets.end();
   }
 
-  bool spirv(const std::string& name, const std::string& text, bool vertex) {
+  bool spirv(const std::string& name, const std::string& text, const driver::Program& program) {
+    const bool vertex = program.stage == driver::Stage::vertex;
     const auto kind = vertex ? emit::ShaderKind::vertex : emit::ShaderKind::fragment;
-    const auto words = emit::compile_spirv(text, kind, diagnostics_);
+    const auto words = emit::compile_spirv(text, kind, diagnostics_, driver::description(program));
     if (!words) return false;
     return write(name + ".spv", {reinterpret_cast<const char*>(words->data()), 4 * words->size()});
   }
@@ -105,6 +106,16 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
   return list;
 }
 
+/// What the files of a pass begin with. Two names of 128 characters and an ending would be longer than the name of a
+/// file may be: then the names are cut, and the pass's number keeps files apart ("." is in no name).
+std::string pass_stem(const driver::Effect& effect, size_t pass) {
+  constexpr size_t most = 200;
+  const std::string stem = effect.name + "." + effect.passes[pass].name;
+  if (stem.size() <= most) return stem;
+  return effect.name.substr(0, 96) + "." + effect.passes[pass].name.substr(0, 96) + "." +
+         std::to_string(pass);
+}
+
 // Reflection comes first: where it would replace a document, nothing else is written either.
 bool write_effect(const driver::Effect& effect, std::string_view precision, Writer& writer) {
   ordered_json reflection{{"effect", effect.name}, {"document", effect.document}, {"precision", precision}};
@@ -118,8 +129,9 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
     row["mips"] = image.slot.mips;
     reflection["images"].push_back(row);
   }
-  for (const driver::Pass& pass : effect.passes) {
-    const std::string stem = effect.name + "." + pass.name;
+  for (size_t i = 0; i < effect.passes.size(); ++i) {
+    const driver::Pass& pass = effect.passes[i];
+    const std::string stem = pass_stem(effect, i);
     constexpr const char* culls[] = {"none", "back", "front"};
     ordered_json row{{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}};
     row["cull"] = culls[static_cast<size_t>(pass.cull)];
@@ -128,10 +140,13 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
     reflection["passes"].push_back(row);
   }
   if (!writer.write(effect.name + ".json", reflection.dump(2) + "\n")) return false;
-  return std::ranges::all_of(effect.passes, [&](const driver::Pass& pass) {
-    const std::string stem = effect.name + "." + pass.name;
-    return writer.program(stem + ".vertex", pass.vertex) && writer.program(stem + ".pixel", pass.pixel);
-  });
+  for (size_t i = 0; i < effect.passes.size(); ++i) {
+    const std::string stem = pass_stem(effect, i);
+    if (!writer.program(stem + ".vertex", effect.passes[i].vertex) ||
+        !writer.program(stem + ".pixel", effect.passes[i].pixel))
+      return false;
+  }
+  return true;
 }
 
 bool write_post(const driver::Post& post, std::string_view precision, Writer& writer) {

@@ -48,7 +48,8 @@ int write_directly(const char* path, std::string_view bytes) {
 }
 
 int write_through_temporary(const fs::path& target, std::string_view bytes) {
-  std::string temporary = target.string() + ".XXXXXX";
+  // Not the target's name and an ending: that may be too long for a name, or for a path.
+  std::string temporary = (target.parent_path() / ".isoshade-XXXXXX").string();
   const int descriptor = ::mkstemp(temporary.data());
   if (descriptor < 0) return errno;
   int failure = write_all(descriptor, bytes) ? 0 : errno;

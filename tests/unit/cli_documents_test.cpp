@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subcommands that work with documents: compile, eval, check, fmt, draw, nodes; and how diagnostics are told.
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "tests/unit/command.h"
@@ -44,6 +45,26 @@ TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   const std::string compiler = "c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " + file("out") + " ";
   EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
+}
+
+TEST_F(Cli, CompilesAnEffectWhoseNamesAreAsLongAsMayBe) {
+  const std::string effect(128, 'e'), pass(127, 'p');
+  std::string passes;
+  for (const char* digit : {"1", "2"})
+    passes +=
+        std::string(passes.empty() ? "" : ", ") + R"({"name": ")" + pass + digit + R"(", "color": "c"})";
+  const std::string document =
+      R"({"isoshade": 1, "effect": ")" + effect +
+      R"(", "nodes": {"c": {"type": "constant", "value": [1, 2, 3], "to": "color3"}}, "passes": [)" + passes +
+      "]}";
+  const Outcome outcome =
+      run("compile " + file("long.json", document) + " --target glsl,cpp,spirv -o " + file("out"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  // The reflection, and of two passes two stages of three files.
+  const auto files = fs::directory_iterator(folder_ / "out");
+  EXPECT_EQ(
+      std::count_if(begin(files), end(files), [](const auto& entry) { return entry.is_regular_file(); }),
+      1 + 2 * 2 * 3);
 }
 
 TEST_F(Cli, CompilesAPostToFiles) {

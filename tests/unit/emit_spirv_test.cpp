@@ -102,6 +102,15 @@ TEST(CompileSpirv, ReportsTheFirstErrorOfATextThatDoesNotCompile) {
   EXPECT_NE(diagnostics.text().find("roughnes"), std::string::npos) << diagnostics.text();
 }
 
+TEST(CompileSpirv, SaysWhatDoesNotCompile) {
+  support::Diagnostics diagnostics;
+  EXPECT_FALSE(compile_spirv(fragment("  color = length;\n"), ShaderKind::fragment, diagnostics,
+                             "the pixel stage of \"fur\" (fur.json)"));
+  EXPECT_NE(diagnostics.text().find("the pixel stage of \"fur\" (fur.json) does not compile"),
+            std::string::npos)
+      << diagnostics.text();
+}
+
 TEST(CompileSpirv, ReportsATextOfTheWrongKind) {
   support::Diagnostics diagnostics;
   EXPECT_FALSE(compile_spirv(fragment("  gl_FragDepth = a;\n"), ShaderKind::vertex, diagnostics));

@@ -9,6 +9,7 @@ isoshade_test(scene_test
     unit/scene_jpeg_test.cpp
     unit/scene_load_test.cpp
     unit/scene_mesh_test.cpp
+    unit/scene_output_file_test.cpp
     unit/scene_parse_test.cpp
     unit/scene_png_test.cpp
     unit/scene_placement_test.cpp

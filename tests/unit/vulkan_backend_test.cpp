@@ -219,6 +219,7 @@ TEST_F(VulkanDraw, ReportsAShaderThatDoesNotCompileAndGoesOn) {
   EXPECT_FALSE(hand.backend->draw(scene.frame, {}, scene.triangles, image, hand.diagnostics));
   ASSERT_EQ(hand.diagnostics.all().size(), 1u);
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::bad_shader);
+  EXPECT_NE(hand.diagnostics.text().find("the pixel stage of \"red\""), std::string::npos);
   hand.texts["red"] = pixel_glsl("0.25");
   expect_identical(scene);
 }
