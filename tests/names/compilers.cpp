@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/names/compilers.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+
+#include "compiler/emit/spirv.h"
+#include "compiler/graph/graph.h"
+
+namespace isoshade::names {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Headers whose macros are names of lower case or common ones; complex.h last, for it defines I.
+constexpr const char* headers[] = {"cassert",    "cctype",      "cerrno",          "cfenv",      "cfloat",
+                                   "cinttypes",  "climits",     "clocale",         "cmath",      "csetjmp",
+                                   "csignal",    "cstdarg",     "cstddef",         "cstdio",     "cstdlib",
+                                   "cstring",    "ctime",       "cwchar",          "alloca.h",   "endian.h",
+                                   "fcntl.h",    "pthread.h",   "sched.h",         "unistd.h",   "stdint.h",
+                                   "sys/time.h", "sys/types.h", "sys/sysmacros.h", "sys/wait.h", "complex.h"};
+
+std::string includes() {
+  std::string text;
+  for (const char* header : headers) text += "#include <" + std::string(header) + ">\n";
+  return text;
+}
+
+/// A folder of this test's own, removed at its end.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (fs::temp_directory_path() / "isoshade-names-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~Folder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+void replace(std::string& text, std::string_view from, std::string_view to) {
+  const size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+/// Runs a command and returns what it says; empty where it succeeds.
+std::string said(const std::string& command) {
+  std::string text;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  char buffer[4096];
+  while (std::fgets(buffer, sizeof(buffer), pipe) != nullptr)
+    if (text.size() < 8000) text += buffer;
+  const int status = pclose(pipe);
+  return status == 0 ? "" : "exit " + std::to_string(status) + "\n" + text;
+}
+
+}  // namespace
+
+bool is_full() { return std::getenv("ISOSHADE_FULL") != nullptr; }
+
+void Texts::add(const driver::Program& program) {
+  const bool vertex = program.stage == driver::Stage::vertex;
+  support::Diagnostics diagnostics;
+  const std::string glsl = driver::glsl(program, driver::Division::native);
+  EXPECT_TRUE(
+      emit::compile_spirv(glsl, vertex ? emit::ShaderKind::vertex : emit::ShaderKind::fragment, diagnostics))
+      << diagnostics.text() << glsl.substr(0, 20000);
+  ++glsl_;
+  if (program.stage == driver::Stage::eval) {
+    const std::string other = driver::glsl_with_vertex_eval(program, driver::Division::exact);
+    EXPECT_TRUE(emit::compile_spirv(other, emit::ShaderKind::vertex, diagnostics)) << diagnostics.text();
+    ++glsl_;
+  }
+  cpp_.push_back(driver::cpp(program));
+}
+
+void Texts::compile() {
+  const Folder folder;
+  const auto compile = [&](const std::string& compiler, size_t every) {
+    constexpr size_t most_bytes = 1'500'000;
+    size_t count = 0;
+    for (size_t i = 0; i < cpp_.size();) {
+      // Each text in a namespace of its own, where its function is not exported.
+      std::string file = "#include \"runtime/lanes/lanes.h\"\n" + includes();
+      for (; i < cpp_.size() && file.size() < most_bytes; i += every, ++count) {
+        std::string text = cpp_[i];
+        replace(text, "extern \"C\" __attribute__((visibility(\"default\"))) void", "void");
+        file += "namespace text_" + std::to_string(i) + " {\n" + text + "}\n";
+      }
+      const std::string path = folder.file("texts.cpp");
+      std::ofstream(path) << file;
+      EXPECT_EQ(
+          said(compiler +
+               " -std=gnu++20 -Wall -Wextra -Werror -Wno-unused-function -fsyntax-only -I " ISOSHADE_ROOT
+               " " +
+               path),
+          "")
+          << compiler;
+    }
+    return count;
+  };
+  compile("g++ -Wno-restrict", 1);
+  clang_ = compile("clang++", is_full() ? 1 : 16);
+}
+
+std::set<std::string> macros_of_headers() {
+  const Folder folder;
+  const std::string path = folder.file("headers.cpp");
+  std::ofstream(path) << "#include <bits/stdc++.h>\n" << includes();
+  const std::string list = folder.file("macros");
+  EXPECT_EQ(std::system(("g++ -std=gnu++20 -dM -E " + path + " >" + list).c_str()), 0);
+  std::ifstream lines(list);
+  std::set<std::string> found;
+  for (std::string define, word, line; lines >> define >> word && std::getline(lines, line);) {
+    word = word.substr(0, word.find('('));
+    if (graph::is_id(word)) found.insert(word);
+  }
+  EXPECT_GT(found.size(), 1000u);
+  return found;
+}
+
+}  // namespace isoshade::names

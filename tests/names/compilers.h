@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The compilers that take the texts.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiler/driver/program.h"
+
+namespace isoshade::names {
+
+/// With ISOSHADE_FULL set: clang++ takes all texts, not some, and macros_of_headers() are words.
+bool is_full();
+
+/// Texts of programs. GLSL is compiled when it is added, C++ all at once.
+class Texts {
+ public:
+  void add(const driver::Program& program);
+  /// g++ over every text of C++, many in each file, after the headers of the standard libraries; and clang++.
+  void compile();
+
+  size_t glsl_count() const { return glsl_; }
+  size_t cpp_count() const { return cpp_.size(); }
+  size_t clang_count() const { return clang_; }
+
+ private:
+  size_t glsl_ = 0, clang_ = 0;
+  std::vector<std::string> cpp_;
+};
+
+/// Every macro that g++ has after those headers.
+std::set<std::string> macros_of_headers();
+
+}  // namespace isoshade::names
