@@ -12,7 +12,7 @@
 namespace isoshade::reference {
 
 // Of built-in numbers; those of Real are beside it.
-using std::abs, std::ceil, std::floor, std::sqrt;
+using std::abs, std::ceil, std::floor, std::fmod, std::sqrt;
 using std::acos, std::asin, std::atan, std::atan2, std::cos, std::sin, std::tan;
 using std::exp, std::exp2, std::log, std::log2, std::pow;
 
@@ -49,6 +49,11 @@ R saturate(R x) {
   return x > 0 ? (x < 1 ? x : R(1)) : R(0);
 }
 template <class R>
+R remap(R x, R in_low, R in_high, R out_low, R out_high) {
+  if (in_high == in_low) return out_low;
+  return out_low + (out_high - out_low) * ((x - in_low) / (in_high - in_low));
+}
+template <class R>
 R smoothstep(R low, R high, R x) {
   const R t = saturate((x - low) / (high - low));
   return t * t * (3 - 2 * t);
@@ -81,6 +86,13 @@ R safe_power(R x, R y) {
   return x < 0 ? -power(-x, y) : power(x, y);
 }
 
+/// With the sign of y. NaN for infinities.
+template <class R>
+R modulo(R x, R y) {
+  if (y - y != 0) return not_a_number<R>();
+  const R rest = fmod(x, y);
+  return (rest < 0 && y > 0) || (rest > 0 && y < 0) ? rest + y : rest;
+}
 /// NaN, for "not defined", where the quotient is nearly whole: 0 and y are taken for each other there.
 template <class R>
 R mod_magnitude(R x, R y) {
@@ -291,7 +303,7 @@ Matrix<R, N> inverse_magnitude(Matrix<R, N> m) {
 
 template <class R>
 Vector<R, 2> rotate2d(Vector<R, 2> v, R degrees) {
-  const R angle = (degrees - 360 * round_half_even(degrees / 360)) * pi<R>() / 180;
+  const R angle = fmod(degrees, R(360)) * pi<R>() / 180;
   return {{cos(angle) * v[0] + sin(angle) * v[1], cos(angle) * v[1] - sin(angle) * v[0]}};
 }
 template <class R>

@@ -67,23 +67,28 @@ Outcome bounded(double least, double most, Arguments in, double error) {
   return settled(r);
 }
 
-/// Of sine (phase 0) or cosine (phase pi / 2).
-Outcome wave(const Bound& x, double phase, double error) {
-  if (x.magnitude() > 8192) return bounded(-1.01, 1.01, Arguments(&x, 1), 2.02);
-  const double from = x.lo + phase, to = x.hi + phase;
+/// Angles of at most this magnitude are reduced in double to within 1e-9.
+constexpr double near_angle = 0x1p20;
+
+/// Of sine or cosine, which is 1 at `top` and -1 half a turn from it.
+Outcome wave(const Bound& x, double (*value)(double), double top, double error) {
+  const bool near = x.magnitude() <= near_angle;
   const auto meets = [&](double extreme) {
+    if (!near) return !x.is_point();
     const double turn = 2 * pi;
-    const double first = extreme + turn * std::ceil((from - 1e-9 - extreme) / turn);
-    return first <= to + 1e-9;
+    const double first = extreme + turn * std::ceil((x.lo - 1e-9 - extreme) / turn);
+    return first <= x.hi + 1e-9;
   };
-  const double lo = meets(-pi / 2) ? -1 : std::min(std::sin(from), std::sin(to));
-  const double hi = meets(pi / 2) ? 1 : std::max(std::sin(from), std::sin(to));
-  return approximate(lo, hi, error, x.absolute);
+  const double lo = meets(top - pi) ? -1 : std::min(value(x.lo), value(x.hi));
+  const double hi = meets(top) ? 1 : std::max(value(x.lo), value(x.hi));
+  return approximate(lo, hi, error, std::min(x.absolute, 2.0));
 }
 
-Outcome rule_sin(Arguments in, uint32_t, const Accuracy& accuracy) { return wave(in[0], 0, accuracy.error); }
+Outcome rule_sin(Arguments in, uint32_t, const Accuracy& accuracy) {
+  return wave(in[0], [](double x) { return std::sin(x); }, pi / 2, accuracy.error);
+}
 Outcome rule_cos(Arguments in, uint32_t, const Accuracy& accuracy) {
-  return wave(in[0], pi / 2, accuracy.error);
+  return wave(in[0], [](double x) { return std::cos(x); }, 0, accuracy.error);
 }
 
 Outcome rule_tan(Arguments in, uint32_t, const Accuracy& accuracy) {
@@ -91,9 +96,9 @@ Outcome rule_tan(Arguments in, uint32_t, const Accuracy& accuracy) {
   // Both arguments, the computed and the exact one, lie here.
   const double from = std::min(x.lo, x.exact_lo()), to = std::max(x.hi, x.exact_hi());
   const double pole = pi * (std::ceil((from - 1e-9) / pi - 0.5) + 0.5);
-  // No float of magnitude up to 8192 is nearer to a pole than 1e-9.
-  if (x.magnitude() > 8192) return {anything(), Breach::unknown};
-  if (pole <= to + 1e-9) {
+  const bool near = std::max(-from, to) <= near_angle;
+  // No float is nearer to a pole than 1e-9.
+  if (near ? pole <= to + 1e-9 : from < to) {
     Bound r{-1e9, 1e9, x.absolute > 0 ? infinity : accuracy.error * 1e9, infinity, infinity};
     return settled(r);
   }
@@ -118,19 +123,11 @@ Outcome rule_fract(Arguments in, uint32_t, const Accuracy&) {
 }
 
 Outcome rule_mod(Arguments in, uint32_t, const Accuracy&) {
-  const Bound &x = in[0], &y = in[1];
+  const Bound& y = in[1];
   if (y.lo <= 0 && y.hi >= 0) return {anything(), Breach::division_by_zero};
-  const double size = x.magnitude() + y.magnitude();
-  // The quotient, and what is taken away: where they are too large for floats, infinity less infinity is left.
-  const double quotient = x.magnitude() / y.least_magnitude();
-  if (quotient > largest || 1.001 * size > largest) return {anything(), Breach::overflow};
   Bound r{y.hi > 0 ? 0 : y.lo, y.hi > 0 ? y.hi : 0};
-  if (quotient >= 0x1p22) {
-    r.lo = -2.01 * size;
-    r.hi = 2.01 * size;
-  }
-  const bool jumps = x.absolute > 0 || y.absolute > 0;
-  r.absolute = jumps ? 2.01 * size : y.magnitude() + size * ulp + smallest;
+  // It lies between 0 and the computed divisor, and exactly between 0 and the exact one.
+  r.absolute = 2 * y.magnitude() + y.absolute + smallest;
   r.relative = r.slack = infinity;
   return settled(r);
 }
@@ -232,7 +229,6 @@ Outcome rule_rotate2d(Arguments in, uint32_t, const Accuracy&) {
   const double turned = std::min(2 * size, size * 0.01745330 * in[2].absolute);
   Bound r{-reach, reach, in[0].absolute + in[1].absolute + turned + 2.5 * ulp * size + 4 * smallest, infinity,
           infinity};
-  if (in[2].magnitude() > 0x1p22) r.absolute = 2 * reach;
   return settled(r);
 }
 

@@ -8,6 +8,13 @@ isoshade_test(functions_accuracy_test
   LABEL accuracy
   TIMEOUT 7200)
 
+# Also long with ISOSHADE_FULL=1.
+isoshade_test(angles_test
+  SOURCES accuracy/angles_test.cpp
+  LINKS isoshade_functions
+  LABEL accuracy
+  TIMEOUT 7200)
+
 isoshade_test(derivatives_accuracy_test
   SOURCES accuracy/derivatives_accuracy_test.cpp
   LINKS isoshade_passes isoshade_reference

@@ -31,8 +31,11 @@ TEST(FunctionErrorIsWithinItsBound, AndTheBoundIsWhatUsersCountOn) {
   holds_over(rows::exp2_row::domain()[0], -126, 127.999);
   holds_over(rows::pow_row::domain()[0], 1e-6, 1e6);
   holds_over(rows::pow_row::domain()[1], -8, 8);
-  holds_over(rows::sin_row::domain()[0], -8192, 8192);
-  holds_over(rows::cos_row::domain()[0], -8192, 8192);
+  constexpr double largest = 0x1.fffffep127;
+  holds_over(rows::sin_row::domain()[0], -largest, largest);
+  holds_over(rows::cos_row::domain()[0], -largest, largest);
+  holds_over(rows::tan_row::domain()[0], -largest, largest);
+  holds_over(rows::rotate2d_row::domain()[1], -largest, largest);
   holds_over(rows::srgb_encode_row::domain()[0], 0, 1);
   holds_over(rows::srgb_decode_row::domain()[0], 0, 1);
 }

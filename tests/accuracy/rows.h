@@ -100,6 +100,7 @@ template <class Row, class First, class... Rest>
 void expect_all_floats_within(std::string_view row, functions::Types<First, Rest...>) {
   if constexpr (std::is_same_v<First, functions::Types<float>>) {
     if (const char* only = std::getenv("ISOSHADE_FUNCTION"); only && row != only) return;
+    if (row == "sin" || row == "cos" || row == "tan") return;  // angles_test, of all tiers at once
     const Range range = Row::domain()[0];
     int64_t first = order(static_cast<float>(range.low));
     int64_t last = order(static_cast<float>(range.high));
