@@ -6,11 +6,11 @@
 
 namespace isoshade::reference {
 
-/// IEC 61966-2-1. What lies outside of 0 and 1 counts as the end.
+/// IEC 61966-2-1; the pieces meet at the float nearest to 0.0031308. What lies outside of 0 and 1 counts as the end.
 template <class R>
 R srgb_encode(R x) {
   x = saturate(x);
-  if (x <= R(31308) / 10000000) return x * 1292 / 100;
+  if (x <= R(0.0031308f)) return x * 1292 / 100;
   return R(1055) / 1000 * pow(x, R(10) / 24) - R(55) / 1000;
 }
 template <class R>
@@ -48,7 +48,7 @@ Vector<R, 3> hsv_magnitude(Vector<R, 3> hsv) {
 template <class R>
 Vector<R, 3> rgb_to_hsv(Vector<R, 3> c) {
   const R most = std::max({c[0], c[1], c[2]}), least = std::min({c[0], c[1], c[2]});
-  if (most == least) return {{0, 0, most}};
+  if (most == least || most <= 0) return {{0, 0, most}};
   const int k = c[0] == most ? 0 : c[1] == most ? 1 : 2;
   const R h = (2 * k + (c[(k + 1) % 3] - c[(k + 2) % 3]) / (most - least)) / 6;
   return {{h < 0 ? h + 1 : h, (most - least) / most, most}};

@@ -18,11 +18,12 @@ F polynomial_of_two(F x, Condition first, const float (&a)[n], const float (&b)[
 
 /// Linear light to sRGB.
 /// Domain: all floats; below 0 and NaN give 0, above 1 gives 1. Exact at 0 and 1.
-/// Error: 4 ULP. Where the standard's pieces meet it falls by 8 ULP; here both stop half-way.
+/// Error: 4 ULP. Where the standard's pieces meet, at the float nearest to 0.0031308, it falls by 8 ULP; here both stop
+/// half-way.
 /// Source: of the fourth root of 8x, which costs least accuracy in float; polynomials by Sollya's fpminimax.
 template <class F>
 F srgb_encode(F x) {
-  constexpr float joint = 0x1.4b5da2p-5f;
+  constexpr float joint = 0x1.4b5da4p-5f;
   constexpr float piece_0 = 0x1.973dfp-2f;
   constexpr float piece_1 = 0x1.999b42p-1f;
   const F root = sqrt(sqrt(x * 8.0f));
@@ -32,7 +33,7 @@ F srgb_encode(F x) {
                                      -0x1.7ed002p-4f, 0x1.57230cp-2f, 0x1.9966ap-2f, 0x1.4af6dcp-5f},
                                     {-0x1.39117p-11f, 0x1.78cf14p-9f, -0x1.d87be2p-8f, 0x1.e523f6p-7f,
                                      -0x1.2d3864p-5f, 0x1.0fd1acp-2f, 0x1.4632c6p-1f, 0x1.00d5d2p-2f});
-  const F within = select(x < 0.0031308f, min(x * 12.92f, F(joint)), max(curve, F(joint)));
+  const F within = select(x <= 0.0031308f, min(x * 12.92f, F(joint)), max(curve, F(joint)));
   const F below_one = select(x < 1.0f, within, F(1.0f));
   return select(x > 0.0f, below_one, F(0.0f));
 }
@@ -58,7 +59,7 @@ F srgb_decode(F x) {
 }
 
 /// The luminance of a linear colour with the primaries of Rec. 709 and sRGB. For other primaries take `dot`.
-/// Domain: all floats. White gives exactly 1.
+/// Domain: all floats; infinities of different signs and NaN give NaN. White gives exactly 1.
 /// Error: 2 ULP of the sum of the terms' magnitudes.
 template <class F>
 F luminance(vec<F, 3> color) {
@@ -81,8 +82,8 @@ vec<F, 3> hsv_to_rgb(vec<F, 3> hsv) {
 }
 
 /// Red, green and blue to hue (in [0, 1]; a whole turn is 1), saturation and value.
-/// Domain: all floats whose differences do not overflow. Greys have hue and saturation 0, and so have colours
-/// without a positive component.
+/// Domain: all floats. Greys have hue and saturation 0, and so have colours without a positive component. Hue and
+/// saturation may be infinite or NaN where a difference of components overflows and where one is infinite or NaN.
 /// Error: 3 ULP.
 /// Source: Smith, "Color gamut transform pairs", 1978.
 template <class F>

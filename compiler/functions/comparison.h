@@ -7,7 +7,7 @@
 namespace isoshade::functions {
 
 /// The lesser.
-/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is `a`.
+/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is the first.
 /// Error: 0 ULP.
 template <class F>
 F min(F a, F b) {
@@ -15,7 +15,7 @@ F min(F a, F b) {
 }
 
 /// The greater.
-/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is `a`.
+/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is the first.
 /// Error: 0 ULP.
 template <class F>
 F max(F a, F b) {
@@ -23,7 +23,7 @@ F max(F a, F b) {
 }
 
 /// The nearest value to `x` in [low, high].
-/// Domain: all floats with low <= high, else `high`. NaN gives NaN.
+/// Domain: all floats. With `low` above `high` it is `high`. NaN gives NaN; as an end it counts as none.
 /// Error: 0 ULP.
 template <class F>
 F clamp(F x, F low, F high) {

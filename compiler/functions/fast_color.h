@@ -14,11 +14,11 @@ namespace isoshade::functions::fast {
 /// Source: of the fourth root; polynomial by Sollya's fpminimax.
 template <class F>
 F srgb_encode(F x) {
-  constexpr float joint = 0x1.4b5da2p-5f;
+  constexpr float joint = 0x1.4b5da4p-5f;
   const F curve = polynomial(sqrt(sqrt(x)) - 0x1.e4p-3f,
                              {0x1.85f5c2p-4f, -0x1.1e6a86p-2f, 0x1.894b7ep-2f, -0x1.a1c73cp-2f,
                               0x1.e3eaf2p-1f, 0x1.58298ep-1f, 0x1.4a2b3p-5f});
-  const F within = select(x < 0.0031308f, min(x * 12.92f, F(joint)), max(curve, F(joint)));
+  const F within = select(x <= 0.0031308f, min(x * 12.92f, F(joint)), max(curve, F(joint)));
   const F below_one = select(x < 1.0f, min(within, F(1.0f)), F(1.0f));
   return select(x > 0.0f, below_one, F(0.0f));
 }

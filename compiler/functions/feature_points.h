@@ -37,7 +37,7 @@ std::tuple<Nearest...> visit_feature_points(vec<F, 2> p, F jitter, Nearer nearer
 /// The distance to the nearest of random points in the plane, one in each unit square: anywhere in it for a jitter
 /// of 1, in its middle for 0.
 /// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0. Only the point's square
-/// and its neighbours are searched. A NaN jitter gives +inf.
+/// and its neighbours are searched, which a jitter outside [0, 1] leads out of. A NaN jitter gives +inf.
 /// Error: 2 ULP of 1, for a jitter in [0, 1].
 template <class F>
 F worleynoise2d(vec<F, 2> p, F jitter) {
@@ -47,7 +47,7 @@ F worleynoise2d(vec<F, 2> p, F jitter) {
 
 /// The distances to the nearest, second and third of the points of worleynoise2d.
 /// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0. Only the point's square
-/// and its neighbours are searched. A NaN jitter gives +inf.
+/// and its neighbours are searched, which a jitter outside [0, 1] leads out of. A NaN jitter gives +inf.
 /// Error: 2 ULP of 1, for a jitter in [0, 1], in each component.
 template <class F>
 vec<F, 3> worleynoise2d_vector3(vec<F, 2> p, F jitter) {

@@ -149,33 +149,35 @@ vec<F, 3> noise3d_vector3(vec<F, 3> p) {
 inline constexpr int most_octaves = 16;
 
 /// noise3d(p) + diminish * noise3d(lacunarity * p) + diminish^2 * noise3d(lacunarity^2 * p) + ..., so many terms.
-/// Domain: all floats. Octaves are rounded up, to 1 at least and 16 at most; NaN counts as 1.
+/// Domain: all floats. Octaves are rounded up, and are 16 at most; of none, which NaN counts as, the sum is 0. Points
+/// and amplitudes grow as floats do: a point from 2^31 on counts as 0, an infinite or NaN amplitude gives NaN.
 /// Error: 2 ULP of the sum of |diminish^i| (1 + i |p_i|), where p_i is the i-th octave's point.
 template <class F>
 F fractal3d(vec<F, 3> p, F octaves, F lacunarity, F diminish) {
   using Int = int_of<F>;
-  const F count = max(F(1.0f), octaves);
   const auto octave = [&](Int i, F sum, F amplitude, vec<F, 3> at) {
     return branch(
-        to_float(i) < count,
+        to_float(i) < octaves,
         [&] {
           return std::tuple(sum + noise3d(at) * amplitude, amplitude * diminish, at * splat<3>(lacunarity));
         },
         [&] { return std::tuple(sum, amplitude, at); });
   };
-  return std::get<0>(loop(Int(most_octaves), octave, F(-0.0f), F(1.0f), p));  // -0 + x is x, for every x
+  // -0 + x is x, for every x.
+  const F sum = std::get<0>(loop(Int(most_octaves), octave, F(-0.0f), F(1.0f), p));
+  return select(octaves > 0.0f, sum, F(0.0f));
 }
 
 /// fractal3d with three channels.
-/// Domain: all floats. Octaves are rounded up, to 1 at least and 16 at most; NaN counts as 1.
+/// Domain: all floats. Octaves are rounded up, and are 16 at most; of none, which NaN counts as, the sum is 0. Points
+/// and amplitudes grow as floats do: a point from 2^31 on counts as 0, an infinite or NaN amplitude gives NaN.
 /// Error: 2 ULP of the sum of |diminish^i| (1 + i |p_i|), where p_i is the i-th octave's point.
 template <class F>
 vec<F, 3> fractal3d_vector3(vec<F, 3> p, F octaves, F lacunarity, F diminish) {
   using Int = int_of<F>;
-  const F count = max(F(1.0f), octaves);
   const auto octave = [&](Int i, F x, F y, F z, F amplitude, vec<F, 3> at) {
     return branch(
-        to_float(i) < count,
+        to_float(i) < octaves,
         [&] {
           const vec<F, 3> noise = noise3d_vector3(at);
           return std::tuple(x + noise[0] * amplitude, y + noise[1] * amplitude, z + noise[2] * amplitude,
@@ -184,7 +186,8 @@ vec<F, 3> fractal3d_vector3(vec<F, 3> p, F octaves, F lacunarity, F diminish) {
         [&] { return std::tuple(x, y, z, amplitude, at); });
   };
   const auto sums = loop(Int(most_octaves), octave, F(-0.0f), F(-0.0f), F(-0.0f), F(1.0f), p);
-  return {std::get<0>(sums), std::get<1>(sums), std::get<2>(sums)};
+  const auto some = [&](F sum) { return select(octaves > 0.0f, sum, F(0.0f)); };
+  return {some(std::get<0>(sums)), some(std::get<1>(sums)), some(std::get<2>(sums))};
 }
 
 }  // namespace isoshade::functions

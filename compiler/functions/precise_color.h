@@ -14,7 +14,7 @@ namespace isoshade::functions::precise {
 /// 0.0031308.
 template <class F>
 F srgb_encode(F x) {
-  constexpr float joint = 0x1.4b5da2p-5f;
+  constexpr float joint = 0x1.4b5da4p-5f;
   // 1.055 x^(1/2.4) - 0.055, the constants in 24 + 24 bits
   const F within = min(max(F(1e-3f), x), F(1.0f));
   const Sum<F> l = log2_sum(within);
@@ -30,7 +30,7 @@ F srgb_encode(F x) {
   const F rest = product.low + ((low * 0x1.0e147ap0f + high * 0x1.c28f5cp-25f) + -0x1.47ae14p-32f);
   const F curve = sum.high + (sum.low + rest);
 
-  const F value = select(x < 0.0031308f, min(x * 12.92f, F(joint)), max(curve, F(joint)));
+  const F value = select(x <= 0.0031308f, min(x * 12.92f, F(joint)), max(curve, F(joint)));
   const F below_one = select(x < 1.0f, min(value, F(1.0f)), F(1.0f));
   return select(x > 0.0f, below_one, F(0.0f));
 }

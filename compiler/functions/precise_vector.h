@@ -50,7 +50,7 @@ Sum<F> square_sum(vec<F, N> v) {
 }
 
 /// v / |v|. The same for v times any power of two.
-/// Domain: all floats; zeros give zeros (of their signs). Infinite and NaN components give NaN.
+/// Domain: all floats; zeros give zeros (of their signs). Infinite and NaN components are NaN, others then any number.
 /// Error: 0.51 ULP in each component.
 template <class F, int N>
 vec<F, N> normalize(vec<F, N> v) {

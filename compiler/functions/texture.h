@@ -29,7 +29,7 @@ F mirror(F x) {
 
 /// The mip level whose texels are as large as a pixel: the logarithm to base 2 of the longer of two gradients, each
 /// what the place in the texture changes by along one side of a pixel, in texels.
-/// Domain: all floats. Where both gradients are 0 it is -infinity; where one is NaN, NaN or by the other.
+/// Domain: all floats. +inf where squares overflow, -inf where both gradients are 0; NaN or by the other where one is.
 /// Error: 2 ULP of 1 + |result|.
 template <class F, int N>
 F mip_level(vec<F, N> along_x, vec<F, N> along_y) {

@@ -44,7 +44,7 @@ vec<F, N> scale_to_unity(vec<F, N> v, int_of<F> exponent) {
 }
 
 /// v / |v|. The same for v times any power of two.
-/// Domain: all floats; zeros give zeros (of their signs). Infinite and NaN components give NaN.
+/// Domain: all floats; zeros give zeros (of their signs). Infinite and NaN components are NaN, others then any number.
 /// Error: 3 ULP in each component.
 template <class F, int N>
 vec<F, N> normalize(vec<F, N> v) {
@@ -65,7 +65,7 @@ F length(vec<F, N> v) {
 }
 
 /// |x - y|
-/// Domain: all floats whose differences do not overflow.
+/// Domain: all floats. A difference that overflows gives +inf, NaN gives NaN.
 /// Error: 3 ULP.
 template <class F, int N>
 F distance(vec<F, N> x, vec<F, N> y) {
@@ -73,7 +73,7 @@ F distance(vec<F, N> x, vec<F, N> y) {
 }
 
 /// `incident`, mirrored at the plane with unit normal `normal`: incident - 2 dot(normal, incident) normal.
-/// Domain: all floats whose products do not overflow.
+/// Domain: all floats; products that overflow give infinities or NaN. The normal is not made a unit vector.
 /// Error: 4 ULP of |i| + 2 |n| sum |n_j i_j|, in each component.
 template <class F, int N>
 vec<F, N> reflect(vec<F, N> incident, vec<F, N> normal) {
@@ -82,7 +82,7 @@ vec<F, N> reflect(vec<F, N> incident, vec<F, N> normal) {
 
 /// The direction in which a ray goes on behind a surface. `incident` and `normal` are unit vectors, `eta` the
 /// ratio of the indices of refraction, this side over that. Zeros where there is total reflection.
-/// Domain: all floats; NaN gives zeros. Near total reflection errors grow without bound, in ULP.
+/// Domain: all floats; NaN gives zeros, what overflows infinities. Near total reflection errors grow without bound.
 /// Error: 6 ULP of |eta i| + |n| (eta sum |n_j i_j| + sqrt(k)), in each component, for eta <= 0.9; k is the
 /// square of the refracted ray's cosine.
 template <class F, int N>

@@ -126,7 +126,7 @@ std::vector<Row> procedural_rows() {
       {"fractal3d",
        "A sum of noise3d, each octave `lacunarity` times as fine and `diminish` times as strong as the last.",
        {amplitude,
-        {"octaves", Integer, "how many are summed, 1 to 16", 3.0f},
+        {"octaves", Integer, "how many are summed, 0 to 16", 3.0f},
         {"lacunarity", Float, "how much finer each is than the last", 2.0f},
         {"diminish", Float, "how much weaker", 0.5f},
         position,

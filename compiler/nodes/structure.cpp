@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Making values, taking them apart, changing their type.
+#include <limits>
+
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
 
@@ -33,12 +35,14 @@ std::optional<Refusal> conversion_exists(std::span<const Type> types, std::span<
                      std::string(graph::type_name(out))};
 }
 
-/// Towards zero, within the range of integers; NaN is 0.
+/// Towards zero; beyond the range of integers its end; NaN is 0.
 ir::ValueId to_integer(Site& s) {
-  constexpr float least = -2147483648.0f, greatest = 2147483520.0f;
+  constexpr float least = -2147483648.0f, greatest = 2147483520.0f;  // of the floats that are integers
   const Value inside = s.call("clamp", {s.in[0], s.b.constant(least), s.b.constant(greatest)});
   const ir::ValueId number = s.op(Opcode::feq, {s[0], s[0]});
-  return s.op(Opcode::ftoi, {s.op(Opcode::select, {number, inside.id(), s.b.constant(0.0f)})});
+  const ir::ValueId within = s.op(Opcode::ftoi, {s.op(Opcode::select, {number, inside.id(), s.b.constant(0.0f)})});
+  const ir::ValueId above = s.op(Opcode::fgt, {s[0], s.b.constant(greatest)});
+  return s.op(Opcode::select, {above, s.b.constant(std::numeric_limits<int32_t>::max()), within});
 }
 
 void convert(Site& s) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What functions give outside and at the ends of their domains, as their docstrings say.
+#include <cmath>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -81,12 +82,103 @@ TEST(SpecialValues, OfRemainders) {
       {CALL(mod, -5.5f, -2), -1.5f},
       {CALL(mod, 6, 3), 0},
       {CALL(mod, 6, -3), 0},
+      {CALL(mod, 3e38f, 1e-3f), 0x1.5b16d4p-11f},
+      {CALL(mod, -3e38f, 1e-3f), 0x1.6265dp-12f},
+      {CALL(mod, 3e38f, -1e-3f), -0x1.6265dp-12f},
+      {CALL(mod, huge, 3), 0},
+      {CALL(mod, huge, tiny), 0},
+      {CALL(mod, -tiny, huge), huge},
       {CALL(mod, 1, 0), nan},
+      {CALL(mod, inf, 0), nan},
       {CALL(mod, inf, 1), nan},
       {CALL(mod, 1, inf), nan},
       {CALL(mod, nan, 1), nan},
       {CALL(mod, 1, nan), nan},
   });
+}
+
+TEST(SpecialValues, ModuloIsExactForLargeQuotientsAndNeverLeavesItsDivisor) {
+  std::mt19937 random(3);
+  int large = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const float x = any_float(random), y = any_float(random);
+    const float given = call(mod<float>, x, y);
+    if (!(std::abs(x) < inf) || !(std::abs(y) < inf) || y == 0) {
+      EXPECT_NE(given, given) << x << " " << y;
+      continue;
+    }
+    EXPECT_LE(std::abs(given), std::abs(y)) << x << " " << y;
+    EXPECT_TRUE(given == 0 || (given < 0) == (y < 0)) << x << " " << y;
+    if (!(std::abs(x) / std::abs(y) >= 0x1p20f)) continue;
+    long double exact = std::fmod(static_cast<long double>(x), static_cast<long double>(y));
+    if (exact != 0 && (exact < 0) != (y < 0)) exact += y;
+    EXPECT_EQ(given, std::abs(exact) < 0x1p-126L ? 0 : static_cast<float>(exact)) << x << " " << y;
+    ++large;
+  }
+  EXPECT_GT(large, 10000);
+}
+
+TEST(SpecialValues, WholeTurnsInDegreesChangeNothing) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 20000; ++i) {
+    const float degrees = std::ldexp(1 + static_cast<float>(random() >> 9) * 0x1p-23f, 22 + i % 106);
+    const float rest = std::fmod(degrees, 360.0f);
+    const lanes::FpGuard guard;
+    const vec<float, 2> v{hidden(3), hidden(5)};
+    for (const float sign : {1.0f, -1.0f}) {
+      const vec<float, 2> far = rotate2d(v, hidden(sign * degrees)), near = rotate2d(v, hidden(sign * rest));
+      EXPECT_EQ(bits_of(far[0]), bits_of(near[0])) << degrees;
+      EXPECT_EQ(bits_of(far[1]), bits_of(near[1])) << degrees;
+    }
+  }
+  const lanes::FpGuard guard;
+  for (const float degrees : {inf, -inf, nan}) {
+    const vec<float, 2> v = rotate2d(vec<float, 2>{hidden(3), hidden(5)}, hidden(degrees));
+    EXPECT_TRUE(v[0] != v[0] && v[1] != v[1]) << degrees;
+  }
+}
+
+TEST(SpecialValues, OfVectorsAndColours) {
+  const lanes::FpGuard guard;
+  const auto three = [](float x, float y, float z) { return vec<float, 3>{hidden(x), hidden(y), hidden(z)}; };
+  const auto is_nan = [](float x) { return x != x; };
+  EXPECT_TRUE(is_nan(normalize(three(inf, 1, 0))[0]));
+  EXPECT_TRUE(is_nan(normalize(three(1, nan, 0))[1]));
+  EXPECT_EQ(normalize(three(0, 0, 0))[0], 0);
+  EXPECT_EQ(normalize(three(huge, 0, 0))[0], 1);
+  EXPECT_EQ(normalize(three(tiny, 0, 0))[0], 1);
+  EXPECT_EQ(length(three(inf, 1, 0)), inf);
+  EXPECT_TRUE(is_nan(length(three(nan, 1, 0))));
+  EXPECT_EQ(distance(three(huge, 0, 0), three(-huge, 0, 0)), inf);
+  EXPECT_EQ(dot(three(huge, 0, 0), three(huge, 0, 0)), inf);
+  EXPECT_TRUE(is_nan(cross(three(huge, huge, 0), three(huge, huge, 0))[2]));
+  EXPECT_EQ(refract(three(nan, 0, 1), three(0, 0, 1), 0.5f)[0], 0);
+  EXPECT_TRUE(is_nan(luminance(three(inf, -inf, 0))));
+  for (const vec<float, 3>& colour : {three(0, 0, 0), three(-1, -2, 0), three(-3, -1, -2)}) {
+    EXPECT_EQ(rgb_to_hsv(colour)[0], 0);
+    EXPECT_EQ(rgb_to_hsv(colour)[1], 0);
+  }
+  EXPECT_EQ(hsv_to_rgb(three(inf, 0.25f, 2))[0], 1.5f);
+  EXPECT_EQ(hsv_to_rgb(three(-0.75f, 1, 1))[1], hsv_to_rgb(three(0.25f, 1, 1))[1]);
+  EXPECT_EQ(mip_level(three(huge, 0, 0), three(0, 0, 0)), inf);
+  EXPECT_EQ(mip_level(three(0, 0, 0), three(0, 0, 0)), -inf);
+  EXPECT_EQ(wrap(inf), 0);
+  EXPECT_EQ(mirror(nan), 0);
+}
+
+TEST(SpecialValues, OfOctaves) {
+  const lanes::FpGuard guard;
+  const vec<float, 3> p{hidden(0.25f), hidden(0.5f), hidden(0.75f)};
+  const auto sum = [&](float octaves) { return fractal3d(p, hidden(octaves), 1.9f, 0.9f); };
+  for (const float none : {0.0f, -0.0f, -1.0f, -inf, nan}) {
+    EXPECT_EQ(bits_of(sum(none)), 0u) << none;
+    EXPECT_EQ(bits_of(fractal3d_vector3(p, hidden(none), 2.0f, 0.5f)[1]), 0u) << none;
+  }
+  EXPECT_EQ(sum(1), noise3d(p));
+  EXPECT_EQ(sum(0.25f), noise3d(p));
+  EXPECT_EQ(sum(inf), sum(16));
+  EXPECT_EQ(sum(17), sum(16));
+  EXPECT_NE(sum(15), sum(16));
 }
 
 TEST(SpecialValues, OfBlends) {
@@ -108,7 +200,13 @@ TEST(SpecialValues, OfBlends) {
       {CALL(remap, 0.3f, 0.3f, 0.9f, 7.7f, -0.1f), 7.7f},
       {CALL(remap, 0.9f, 0.3f, 0.9f, 7.7f, -0.1f), -0.1f},
       {CALL(remap, 1, 0, 0.5f, 0, 1), 2},
-      {CALL(remap, 1, 1, 1, 0, 1), nan},
+      {CALL(remap, 1, 1, 1, 3, 4), 3},
+      {CALL(remap, 7, 1, 1, 3, 4), 3},
+      {CALL(remap, nan, 1, 1, 3, 4), 3},
+      {CALL(remap, 0.5f, -huge, huge, 3, 4), 3},
+      {CALL(smoothstep, 1, 1, inf), 1},
+      {CALL(smoothstep, inf, inf, 1), 0},
+      {CALL(contrast, huge, 2, 0), inf},
       {CALL(contrast, 0.25f, 2, 0.5f), 0},
       {CALL(contrast, 0.5f, inf, 0.5f), nan},
   });
@@ -197,19 +295,24 @@ TEST(SpecialValues, OfSafepower) {
 TEST(SpecialValues, OfAngles) {
   expect_rows({
       {CALL(sin, 0.0f), 0.0f},
-      {CALL(sin, inf), 0.0f},
-      {CALL(sin, -inf), 0.0f},
-      {CALL(sin, nan), 0.0f},
-      {CALL(sin, 131073), 0.0f},
+      {CALL(sin, inf), nan},
+      {CALL(sin, -inf), nan},
+      {CALL(sin, nan), nan},
+      {CALL(sin, 131073), -0x1.024168p-1f},
+      {CALL(sin, 1e6f), -0x1.6664b2p-2f},
+      {CALL(sin, huge), -0x1.0b3366p-1f},
+      {CALL(sin, -huge), 0x1.0b3366p-1f},
       {CALL(sin, tiny), tiny},
       {CALL(cos, 0.0f), 1},
       {CALL(cos, -0.0f), 1},
-      {CALL(cos, inf), 1},
-      {CALL(cos, nan), 1},
-      {CALL(cos, -huge), 1},
+      {CALL(cos, inf), nan},
+      {CALL(cos, nan), nan},
+      {CALL(cos, -huge), 0x1.b4bf2cp-1f},
+      {CALL(cos, 1e6f), 0x1.df9df8p-1f},
       {CALL(tan, 0.0f), 0.0f},
-      {CALL(tan, inf), 0.0f},
-      {CALL(tan, nan), 0.0f},
+      {CALL(tan, inf), nan},
+      {CALL(tan, nan), nan},
+      {CALL(tan, 1e6f), -0x1.7e976ap-2f},
       {CALL(asin, 1), pi / 2},
       {CALL(asin, -1), -pi / 2},
       {CALL(asin, 1.0000001f), nan},
@@ -240,6 +343,7 @@ TEST(SpecialValues, OfAngles) {
 
 TEST(SpecialValues, OfTheTransferFunction) {
   expect_rows({
+      {CALL(srgb_encode, 0x1.9a5c38p-9f), 0x1.4b5da4p-5f},  // the threshold is of the linear piece
       {CALL(srgb_encode, 0.0f), 0.0f},
       {CALL(srgb_encode, 1), 1},
       {CALL(srgb_encode, 0.99999994f), 1},

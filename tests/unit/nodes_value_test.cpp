@@ -259,7 +259,9 @@ TEST(NodeValues, FloatsBecomeIntegersTowardsZeroAndNeverFail) {
   EXPECT_EQ(program({-2.75f}), (Floats{-2, 1, 1}));
   EXPECT_EQ(program({0.5f}), (Floats{0, 0, 1}));
   EXPECT_EQ(program({0}), (Floats{0, 0, 0}));
-  EXPECT_EQ(program({1e30f}), (Floats{2147483520.0f, 1, 1}));
+  for (const float above : {0x1p31f, 3e9f, 1e30f, infinity})
+    EXPECT_EQ(program({above}), (Floats{0x1p31f, 1, 1})) << above;  // 2147483647, of which 2^31 is the nearest float
+  EXPECT_EQ(program({2147483520.0f}), (Floats{2147483520.0f, 1, 1}));
   EXPECT_EQ(program({-infinity}), (Floats{-2147483648.0f, 1, 1}));
   EXPECT_EQ(program({std::numeric_limits<float>::quiet_NaN()}), (Floats{0, 0, 1}));
 }
