@@ -147,6 +147,39 @@ TEST(LibraryGraphs, SchlickIsWithin4UlpAndExactAtBothEnds) {
   EXPECT_EQ(f({0.04f, 0.5f, 1, 0}), (Floats{1, 1, 1}));
 }
 
+// A scalar product of unit vectors may exceed 1 by rounding.
+TEST(LibraryGraphs, CosinesALittleAbove1CountAs1) {
+  Program d = load("library/brdf/ggx_d"), f = load("library/brdf/schlick_f");
+  Program ambient = load("library/brdf/ambient_reflectance"), g = load("library/brdf/cook_torrance_g");
+  Program separable = load("library/brdf/smith_g_separable"), correlated = load("library/brdf/smith_g_correlated");
+  Program highlight = load("library/toon/highlight"), cook_torrance = load("library/brdf/cook_torrance");
+  for (const float excess : {0x1p-23f, 0x1p-22f, 0x1p-21f, 0x1p-20f}) {
+    const float c = 1 + excess;
+    for (const float alpha : {1e-4f, 1e-3f, 0.25f, 1.0f}) {
+      EXPECT_EQ(d({alpha, c}), d({alpha, 1})) << alpha << " " << c;
+      for (const float other : {0.0f, 0.5f, 1.0f}) {
+        for (Program* masking : {&separable, &correlated}) {
+          EXPECT_EQ((*masking)({alpha, c, other}), (*masking)({alpha, 1, other}));
+          EXPECT_EQ((*masking)({alpha, other, c}), (*masking)({alpha, other, 1}));
+        }
+        EXPECT_EQ(ambient({c, alpha, 0, other, 1}), ambient({1, alpha, 0, other, 1}));
+      }
+      // Vectors as long as make such cosines.
+      const float z = 1 + excess / 2;
+      const Floats seen = cook_torrance({0, 0, z, 0, 0, z, 0, 0, z, alpha, 0, 0.5f, 1});
+      const Floats unit = cook_torrance({0, 0, 1, 0, 0, 1, 0, 0, 1, alpha, 0, 0.5f, 1});
+      for (size_t i = 0; i < unit.size(); ++i) EXPECT_NEAR(seen[i], unit[i], 1e-5f * unit[i]) << alpha << " " << i;
+    }
+    EXPECT_EQ(f({0, 0.04f, 1, c}), f({0, 0.04f, 1, 1}));
+    for (int which = 0; which < 16; ++which) {
+      const auto cosine = [&](int i) { return (which >> i & 1) != 0 ? c : 1.0f; };
+      EXPECT_EQ(g({cosine(0), cosine(1), cosine(2), cosine(3)}), Floats{1}) << which;
+    }
+    for (const float width : {0.0f, 0.1f})
+      EXPECT_EQ(highlight({c, 0.5f, width, 0}), highlight({1, 0.5f, width, 0}));
+  }
+}
+
 TEST(LibraryGraphs, GroovesAreBetween0And1AndNeverUndefined) {
   Program g = load("library/brdf/cook_torrance_g");
   EXPECT_EQ(g({0, 0, 0, 0}), Floats{0});
