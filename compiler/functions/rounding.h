@@ -84,7 +84,9 @@ F mod(F x, F y) {
         return select(abs(turned) > abs(y), y, turned);
       },
       [&] {
-        const auto defined = (abs(x) < infinity) & (abs(y) < infinity) & (y != 0.0f);
+        const auto x_is_finite = abs(x) < infinity;
+        const auto y_is_finite = abs(y) < infinity;
+        const auto defined = x_is_finite & y_is_finite & (y != 0.0f);
         const F magnitude = remainder_of_magnitudes(x, y, (x < 0.0f) ^ (y < 0.0f));
         return select(defined, select(y < 0.0f, negate(magnitude), magnitude), F(not_a_number));
       });

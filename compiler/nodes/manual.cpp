@@ -5,6 +5,7 @@
 
 #include "compiler/graph/expression.h"
 #include "compiler/nodes/example.h"
+#include "compiler/nodes/table.h"
 #include "compiler/support/parse_number.h"
 
 namespace isoshade::nodes {
@@ -76,6 +77,17 @@ std::string cell(std::string text) {
   return text;
 }
 
+/// Of the default tier, and of the others where they differ.
+std::string domain_text(const Row& row) {
+  const std::string_view usual = domain_of(row);
+  if (usual.empty()) return {};
+  std::string text = "domain " + std::string(usual) + "\n";
+  for (const functions::Tier tier : {functions::Tier::fast, functions::Tier::precise})
+    if (const std::string_view own = domain_of(row, tier); own != usual)
+      text += "  with --precision " + std::string(functions::tier_name(tier)) + ": " + std::string(own) + "\n";
+  return text;
+}
+
 std::string port_markdown(const Port& port) {
   const std::string value = default_text(port);
   return "`" + std::string(port.name) + (value.empty() ? "`" : "` (" + value + ")");
@@ -136,6 +148,7 @@ std::string row_text(const Row& row) {
   constexpr std::string_view homes[] = {"", "  Only in effects and posts.\n", "  Only in effects.\n",
                                         "  Only in posts.\n"};
   text += homes[static_cast<size_t>(row.home())];
+  text += domain_text(row);
   size_t width = 0;
   for (const Port& port : row.ports) width = std::max(width, port.name.size() + 2);
   for (const Output& output : row.outputs) width = std::max(width, output.name.size() + 2);
@@ -153,6 +166,29 @@ std::string row_text(const Row& row) {
   text += "outputs\n";
   for (const Output& output : row.outputs)
     text += "  " + padded(std::string(output.name), width) + type_text(output.type) + "\n";
+  return text;
+}
+
+/// Of nodes, and of functions of expressions, with parentheses, that are no nodes by that name.
+std::string domains_markdown() {
+  std::vector<std::pair<std::string_view, std::string>> lines;  ///< of the same words: with the first of them
+  const auto add = [&](std::string_view domain, const std::string& name) {
+    if (domain.empty()) return;
+    auto line = std::ranges::find(lines, domain, [](const auto& known) { return known.first; });
+    if (line == lines.end()) line = lines.insert(lines.end(), {domain, ""});
+    line->second += (line->second.empty() ? "" : " ") + name;
+  };
+  const auto add_row = [&](const Row& row, std::string_view parentheses) {
+    const std::string name = "`" + std::string(row.name) + std::string(parentheses) + "`";
+    const std::string_view usual = domain_of(row), fast = domain_of(row, functions::Tier::fast);
+    add(usual, name);
+    if (fast != usual) add(fast, name + " in the tier `fast`");
+  };
+  for (const Row& row : table()) add_row(row, "");
+  for (const Row& row : function_table())
+    if (row.is<Function>() && find(row.name) == nullptr) add_row(row, "()");
+  std::string text = "| node or function() | takes, and gives beyond |\n|---|---|\n";
+  for (const auto& [domain, names] : lines) text += "| " + names + " | " + cell(std::string(domain)) + " |\n";
   return text;
 }
 
@@ -175,7 +211,7 @@ std::string table_markdown(std::span<const Row> library) {
   };
   std::ranges::for_each(table(), add);
   std::ranges::for_each(library, add);
-  return text;
+  return text + "\n**domains**\n\n" + domains_markdown();
 }
 
 }  // namespace isoshade::nodes

@@ -21,8 +21,8 @@ std::string row_text(const Row& row);
 /// The same of the nodes that hold a formula, which are no rows.
 std::string expression_text();
 
-/// The tables of graphs/README.md, one a group: node, ports with defaults, what it does; the last one has the functions of
-/// the library.
+/// The tables of graphs/README.md, one a group: node, ports with defaults, what it does; then the functions of the
+/// library; and one of all nodes and functions of expressions, of what they take and give beyond it.
 std::string table_markdown(std::span<const Row> library);
 
 }  // namespace isoshade::nodes

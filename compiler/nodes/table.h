@@ -2,6 +2,7 @@
 // THE node library.
 #pragma once
 
+#include "compiler/functions/tier.h"
 #include "compiler/nodes/row.h"
 
 namespace isoshade::nodes {
@@ -11,6 +12,10 @@ const std::vector<Row>& table();
 
 /// The row of a name, or null.
 const Row* find(std::string_view name);
+
+/// What a row takes, and what it gives beyond it, in a tier: domains.def, or the docstring of the function that it is.
+/// Empty for nodes that take no values.
+std::string_view domain_of(const Row& row, functions::Tier tier = functions::Tier::standard);
 
 /// What stands in expressions: operators by their text, the rows of functions.def, abs, floor and sqrt; sorted
 /// by name.

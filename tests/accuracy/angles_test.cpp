@@ -161,7 +161,7 @@ TEST(Angles, KeepTheirBoundsOverAllFiniteFloatsInEveryTier) {
   std::vector<Worst> parts(static_cast<size_t>(threads));
   std::vector<std::thread> workers;
   for (int t = 0; t < threads; ++t)
-    workers.emplace_back([&parts, t, threads, first, last, stride] {
+    workers.emplace_back([&parts, t, threads, stride] {
       std::vector<float> angles;
       for (int64_t i = first + t * stride; i <= last; i += threads * stride) {
         angles.push_back(from_order(i));

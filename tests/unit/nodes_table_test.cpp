@@ -3,6 +3,7 @@
 #include <set>
 
 #include "compiler/nodes/example.h"
+#include "compiler/nodes/manual.h"
 #include "compiler/nodes/site.h"
 #include "tests/unit/front_end.h"
 
@@ -25,6 +26,29 @@ TEST(NodeTable, EveryRowAndPortIsDocumentedAndHasItsOwnName) {
     }
   }
   EXPECT_EQ(nodes::find("no such node"), nullptr);
+}
+
+TEST(NodeTable, EveryNodeThatTakesValuesSaysWhatItGivesBeyondItsDomain) {
+  for (const Row& row : nodes::table()) {
+    const bool takes_values = std::ranges::any_of(
+        row.ports, [](const nodes::Port& port) { return port.type.kind == nodes::PortType::Kind::value; });
+    EXPECT_EQ(!nodes::domain_of(row).empty(), takes_values) << row.name;
+    if (!takes_values) continue;
+    EXPECT_TRUE(nodes::domain_of(row).ends_with('.')) << row.name;
+    EXPECT_NE(nodes::row_text(row).find("domain " + std::string(nodes::domain_of(row))), std::string::npos);
+    EXPECT_NE(nodes::table_markdown({}).find(nodes::domain_of(row)), std::string::npos) << row.name;
+  }
+  for (const Row& row : nodes::function_table()) {
+    if (!row.is<nodes::Function>()) continue;
+    for (const functions::Tier tier : functions::tiers)
+      EXPECT_FALSE(nodes::domain_of(row, tier).empty()) << row.name;
+  }
+}
+
+TEST(NodeTable, TellsTheDomainsOfTiersThatHaveTheirOwn) {
+  const std::string text = nodes::row_text(*nodes::find("exp2"));
+  EXPECT_NE(text.find("with --precision fast: [-126, 127.9999]"), std::string::npos) << text;
+  EXPECT_EQ(nodes::row_text(*nodes::find("sqrt")).find("--precision"), std::string::npos);
 }
 
 TEST(NodeTable, EveryNodeLowersForEveryTypeThatItAccepts) {
