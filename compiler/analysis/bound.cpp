@@ -90,6 +90,23 @@ Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
   return settled(r);
 }
 
+/// a / b where b is not 0; the error is unknown.
+Bound quotient_by_nonzero(const Bound& a, const Bound& b) {
+  Bound r = anything();
+  if (b.lo == 0 && b.hi == 0) return r;
+  const auto quotient = [](float x, float y) { return x / y; };
+  Ends ends{infinity, -infinity};
+  const auto take = [&](double lo, double hi) {
+    const Ends part = corners(a, between(lo, hi), quotient);
+    ends = {std::min(ends.lo, part.lo), std::max(ends.hi, part.hi)};
+  };
+  if (b.hi >= smallest) take(smallest, b.hi);
+  if (b.lo <= -smallest) take(b.lo, -smallest);
+  r.lo = std::clamp(ends.lo, -largest, largest);
+  r.hi = std::clamp(ends.hi, -largest, largest);
+  return r;
+}
+
 }  // namespace
 
 double Bound::magnitude() const { return std::max(std::abs(lo), std::abs(hi)); }
@@ -228,7 +245,7 @@ Outcome square(const Bound& a) {
 }
 
 Outcome divide(const Bound& a, const Bound& b) {
-  if (b.lo <= 0 && b.hi >= 0) return {anything(), Breach::division_by_zero};
+  if (b.lo <= 0 && b.hi >= 0) return {quotient_by_nonzero(a, b), Breach::division_by_zero};
   const Ends ends = corners(a, b, [](float x, float y) { return x / y; });
   Bound r{ends.lo, ends.hi};
   const double u = is_power_of_two(b) ? 0 : half_ulp;

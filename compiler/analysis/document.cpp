@@ -177,13 +177,15 @@ std::vector<Given> givens(const TypedGraph& graph, const ir::Function& function)
 std::optional<std::vector<Subject>> subjects_of(const TypedGraph& graph, support::Diagnostics& diagnostics,
                                                 functions::Tier tier) {
   std::vector<Subject> subjects;
-  const auto add = [&](const std::string& name, const lower::LowerOptions& part, const std::string& entry) {
+  const auto add = [&](const std::string& name, lower::LowerOptions part, const std::string& entry) {
+    lower::NodesOfOrigins nodes;
+    part.nodes = &nodes;
     const ir::Module module = lower::lower(graph, part);
     const uint32_t function = module.find(entry);
     support::check(function != none, "lowering made no function");
     auto tape = make_tape(module, function, givens(graph, module.functions[function]), outside, tier);
     if (tape)
-      subjects.push_back({name, std::move(*tape)});
+      subjects.push_back({name, std::move(*tape), std::move(nodes)});
     else
       diagnostics.report(
           support::Id::too_large, graph.graph.span(graph.graph.name_place),

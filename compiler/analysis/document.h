@@ -8,6 +8,7 @@
 
 #include "compiler/analysis/prove.h"
 #include "compiler/check/typed_graph.h"
+#include "compiler/lower/lower.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::analysis {
@@ -19,6 +20,7 @@ inline constexpr double default_limit = 1e6;
 struct Subject {
   std::string name;  ///< of a function or post, its own; else "pass base", "pass outline, position"
   Tape tape;
+  lower::NodesOfOrigins nodes;  ///< where the places of the tape are
 };
 
 /// Nothing, and a report, where a document is too large.
@@ -26,8 +28,21 @@ std::optional<std::vector<Subject>> subjects_of(const check::TypedGraph& graph,
                                                 support::Diagnostics& diagnostics,
                                                 functions::Tier tier = functions::Tier::standard);
 
-/// Reports what is not proved, at the node where it happens.
-void report(const check::TypedGraph& graph, const Subject& subject, const Proof& proof,
-            support::Diagnostics& diagnostics);
+/// How much is not proved of a subject, by what is reported.
+struct NotProved {
+  size_t refuted = 0, undecided = 0;
+  size_t shown = 0;  ///< of both
+  size_t later = 0;  ///< undecided, of Proof::later
+};
+
+enum class Detail : uint8_t {
+  brief,  ///< for people: the first ones, with a few of their inputs
+  all,    ///< for tools
+};
+
+/// Reports what is not proved, at the node where it happens: components of one operation once, and so an operation of a
+/// function that several nodes call. Refuted operations first.
+NotProved report(const check::TypedGraph& graph, const Subject& subject, const Proof& proof,
+                 support::Diagnostics& diagnostics, Detail detail = Detail::brief);
 
 }  // namespace isoshade::analysis

@@ -23,8 +23,9 @@ Outcome constant_outcome(const Operation& operation) {
   return {exactly(std::clamp(value, -4 * largest, 4 * largest))};
 }
 
-/// The lesser of a constant and something that is at least another constant.
+/// The lesser of a constant and something that is at least another constant; or what smoothstep holds so.
 bool is_clamp(const Tape& tape, const Operation& operation) {
+  if (operation.kind == Kind::row) return tape.rows[operation.index].rule->row == "smoothstep";
   if (operation.kind != Kind::least) return false;
   const auto in = tape.operands_of(operation);
   const auto is = [&](uint32_t o, Kind kind) { return tape.operations[o].kind == kind; };
@@ -41,18 +42,19 @@ bool is_clamp(const Tape& tape, const Operation& operation) {
 Evaluator::Evaluator(const Tape& tape)
     : tape_(tape),
       cut_of_(tape.operations.size(), none),
-      side_at_(tape.inputs.size(), none),
+      accepted_(tape.operations.size()),
+      facts_of_(tape.operations.size()),
       bounds_(tape.operations.size()),
       states_(tape.operations.size()),
       proportions_(tape.operations.size()),
       guard_dead_(tape.guards.size()) {
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
     const Operation& operation = tape.operations[i];
-    if (operation.kind == Kind::input) side_at_[operation.index] = i;
     if (operation.kind != Kind::dot && !is_clamp(tape, operation)) continue;
     cut_of_[i] = static_cast<uint32_t>(cuts_.size());
     cuts_.push_back(i);
   }
+  for (const auto& [operation, facts] : tape.facts) facts_of_[operation] = &facts;
 }
 
 Box Evaluator::whole() const {
@@ -75,26 +77,29 @@ std::string Evaluator::side_name(size_t side) const {
   return tape_.places[tape_.operations[cuts_[side - tape_.inputs.size()]].place].node;
 }
 
-bool Evaluator::depends(uint32_t operation, size_t side) {
-  if (depends_of_ != operation) {
-    depends_of_ = operation;
-    depends_.assign(operation + 1, false);
-    depends_[operation] = true;
-    for (uint32_t i = operation + 1; i-- > 0;) {
-      if (!depends_[i]) continue;
-      const auto add = [&](uint32_t other) {
-        if (other < i) depends_[other] = true;
-      };
-      for (const uint32_t operand : tape_.operands_of(tape_.operations[i])) add(operand);
-      for (uint32_t guard = tape_.operations[i].guard; guard != 0; guard = tape_.guards[guard].parent)
-        add(tape_.guards[guard].condition);
-      if (const auto facts = tape_.facts.find(i); facts != tape_.facts.end())
-        for (const Fact& fact : facts->second)
-          for (const uint32_t other : {fact.first, fact.second}) add(other);
+std::vector<Evaluator::Dependence> Evaluator::dependence(uint32_t operation) const {
+  std::vector<Dependence> of(operation + 1), sides(side_count());
+  of[operation] = Dependence::direct;
+  for (uint32_t i = operation + 1; i-- > 0;) {
+    if (of[i] == Dependence::none) continue;
+    const Operation& o = tape_.operations[i];
+    if (o.kind == Kind::input) sides[o.index] = std::max(sides[o.index], of[i]);
+    Dependence of_operands = of[i];
+    if (cut_of_[i] != none) {
+      sides[tape_.inputs.size() + cut_of_[i]] = of[i];
+      if (i != operation) of_operands = Dependence::indirect;
     }
+    const auto need = [&](uint32_t other) {
+      if (other < i) of[other] = std::max(of[other], of_operands);
+    };
+    for (const uint32_t operand : tape_.operands_of(o)) need(operand);
+    for (uint32_t guard = o.guard; guard != 0; guard = tape_.guards[guard].parent)
+      need(tape_.guards[guard].condition);
+    if (facts_of_[i] != nullptr)
+      for (const Fact& fact : *facts_of_[i])
+        for (const uint32_t other : {fact.first, fact.second}) need(other);
   }
-  const uint32_t at = side < tape_.inputs.size() ? side_at_[side] : operation_of(side);
-  return at != none && at <= operation && depends_[at];
+  return sides;
 }
 
 /// Whether vectors of length 1 exist in the box, where components are of unit vectors.
@@ -154,7 +159,7 @@ bool Evaluator::walk(const Box& box, uint32_t last) {
     if (outcome.breach != Breach::none) {
       const bool first = states_[i] == State::good;
       if (first) findings_.push_back({i, outcome.breach, severity_of(operation, outcome.breach)});
-      states_[i] = State::doubtful;
+      if (!accepted_[i]) states_[i] = State::doubtful;
     }
     if (!apply_facts(operation, i)) {
       if (operation.guard == 0) return false;
@@ -234,9 +239,9 @@ Outcome Evaluator::outcome_of(const Operation& operation, uint32_t index) {
     case Kind::unknown: return {anything(), Breach::unknown};
     case Kind::op: break;
     case Kind::row: {
-      std::vector<Bound> arguments;
-      for (const uint32_t operand : in) arguments.push_back(bounds_[operand]);
-      return bound_of(*tape_.rows[operation.index].rule, arguments, operation.component, tape_.tier);
+      arguments_.clear();
+      for (const uint32_t operand : in) arguments_.push_back(bounds_[operand]);
+      return bound_of(*tape_.rows[operation.index].rule, arguments_, operation.component, tape_.tier);
     }
     case Kind::input:
     case Kind::narrow:

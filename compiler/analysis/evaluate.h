@@ -32,13 +32,20 @@ class Evaluator {
   std::string side_name(size_t side) const;
   /// The operation that a side beyond the inputs is of.
   uint32_t operation_of(size_t side) const { return cuts_[side - tape_.inputs.size()]; }
-  /// Whether an operation depends on a side. Quick only for the operation that was asked about last.
-  bool depends(uint32_t operation, size_t side);
+  /// How an operation depends on a side: directly, or only through other sides.
+  enum class Dependence : uint8_t { none, indirect, direct };
+  /// By side.
+  std::vector<Dependence> dependence(uint32_t operation) const;
+
+  /// From here on what reads the operation is judged as if it always gave a finite number.
+  void accept(uint32_t operation) { accepted_[operation] = true; }
+  bool is_accepted(uint32_t operation) const { return accepted_[operation]; }
 
   /// Walks operations up to `last`. False if the box holds no input at all. Needs lanes::FpGuard.
   bool walk(const Box& box, uint32_t last);
   bool walk(const Box& box) { return walk(box, static_cast<uint32_t>(tape_.operations.size() - 1)); }
-  /// What the last walk did not prove; of operations that read each other's results only the first.
+  /// What the last walk did not prove; of operations that read each other's results only the first, and those that
+  /// read what accepted ones give.
   const std::vector<Finding>& findings() const { return findings_; }
   const Bound& bound(uint32_t operation) const { return bounds_[operation]; }
   bool is_reached(uint32_t operation) const { return states_[operation] != State::dead; }
@@ -85,11 +92,11 @@ class Evaluator {
   double severity_of(const Operation& operation, Breach breach) const;
 
   const Tape& tape_;
-  std::vector<uint32_t> cuts_;     ///< the scalar products and clamps
-  std::vector<uint32_t> cut_of_;   ///< of operations: which cut, or none
-  uint32_t depends_of_ = none;     ///< the operation that `depends_` is of
-  std::vector<bool> depends_;      ///< the operations that it depends on, itself among them
-  std::vector<uint32_t> side_at_;  ///< of inputs: their operations
+  std::vector<uint32_t> cuts_;    ///< the scalar products and clamps
+  std::vector<uint32_t> cut_of_;  ///< of operations: which cut, or none
+  std::vector<bool> accepted_;
+  std::vector<const std::vector<Fact>*> facts_of_;  ///< of operations: null if there are none
+  std::vector<Bound> arguments_;                    ///< of the row that is walked
   std::vector<Bound> bounds_;
   std::vector<State> states_;
   std::vector<Proportions> proportions_;

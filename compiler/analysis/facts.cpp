@@ -20,12 +20,11 @@ constexpr double flushed = 0x1p-120;
 
 /// False if the facts contradict what the operands say: then no input leads here.
 bool Evaluator::apply_facts(const Operation& operation, uint32_t index) {
-  const auto found = tape_.facts.find(index);
-  if (found == tape_.facts.end()) return true;
+  if (facts_of_[index] == nullptr) return true;
   bool possible = true;
   const auto usable = [&](uint32_t fact) { return fact != none && states_[fact] != State::dead; };
   const auto in = tape_.operands_of(operation);
-  for (const Fact& fact : found->second) {
+  for (const Fact& fact : *facts_of_[index]) {
     switch (fact.kind) {
       case Fact::Kind::dot: {
         const Lengths a = lengths_of(fact.left), b = lengths_of(fact.right);

@@ -102,7 +102,9 @@ uint32_t Flattener::place_of(Frame& frame, uint32_t origin) {
     std::vector<Place>& places = pool_.tape().places;
     place = static_cast<uint32_t>(places.size());
     const uint32_t caller = frame.caller == 0 ? none : frame.caller;
-    places.push_back({frame.function.document, frame.function.origins[origin].node, caller});
+    const auto function = static_cast<uint32_t>(&frame.function - module_.functions.data());
+    places.push_back(
+        {frame.function.document, frame.function.origins[origin].node, caller, function, origin});
   }
   return place;
 }

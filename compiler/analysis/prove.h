@@ -10,10 +10,12 @@
 
 namespace isoshade::analysis {
 
-/// How much work a proof may be, in operations walked: so it ends alike on every machine.
+/// How much work a proof may be, in operations walked or run: so it ends alike on every machine.
 struct Effort {
-  uint64_t proof = 12'000'000;
+  uint64_t proof = 12'000'000;  ///< of one operation; of all together twice that
+  uint64_t later = 500'000;     ///< of one operation that reads what another one gives that is not proved
   uint64_t error = 4'000'000;
+  uint64_t samples = 30'000'000;
   int tries = 1500;  ///< inputs tried for a counterexample, in a box that was not proved
 };
 
@@ -21,15 +23,19 @@ struct Unproved {
   uint32_t operation = none;
   Breach breach = Breach::none;
   std::vector<uint32_t> counterexample;  ///< words of the inputs; empty: none was found
-  size_t open_boxes = 0;                 ///< in which it is not proved
+  size_t open_boxes = 0;                 ///< in which it is not proved; beyond a few they are not counted
   Box box;                               ///< one of them, as it was reached
 };
 
 /// Over all inputs, the whole result of one output component.
 struct Proof {
   bool vacuous = false;            ///< no input lies within all ranges: then nothing else is told
-  std::vector<Unproved> unproved;  ///< empty: all is proved
-  std::vector<Bound> outputs;      ///< of Tape::outputs; without meaning where not all is proved
+  std::vector<Unproved> unproved;  ///< in the order of the tape; empty: all is proved
+  /// Operations that read what an unproved one gives, and that are not decided either. Judged, as all others, for
+  /// inputs where what they read is finite.
+  std::vector<Unproved> later;
+  bool unfinished = false;     ///< there may be more that is not proved; then `unproved` is not empty
+  std::vector<Bound> outputs;  ///< of Tape::outputs; without meaning where not all is proved
   /// The same, but the errors are those against exact arithmetic that takes the same side of each select. They are
   /// smaller where rounding may tip a comparison.
   std::vector<Bound> followed;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
 #include <unordered_map>
 
 #include "compiler/analysis/document.h"
@@ -14,25 +18,29 @@ namespace {
 using check::TypedGraph;
 using support::quote;
 
-constexpr size_t most_named = 40;  ///< inputs in a message
+constexpr size_t most_shown = 20;  ///< of what is not proved of a subject
+constexpr size_t most_named = 12;  ///< numbers in a note
 
-/// The documents that a graph uses, by their paths.
+/// The documents that a subject uses, by their paths.
 class Documents {
  public:
-  explicit Documents(const TypedGraph& graph) : graph_(graph) { add(graph); }
+  Documents(const TypedGraph& graph, const Subject& subject) : graph_(graph), subject_(subject) {
+    add(graph);
+  }
 
   struct Found {
     const TypedGraph* graph = nullptr;
     uint32_t node = none;
     support::Span span;
+    std::string name() const { return node == none ? "" : graph->graph.nodes[node].id; }
   };
   Found find(const Place& place) const {
     const auto document = by_path_.find(place.document);
     const TypedGraph& graph = document == by_path_.end() ? graph_ : *document->second;
-    const auto name = graph.graph.names.find(place.node);
-    if (document == by_path_.end() || name == graph.graph.names.end() || name->second.is_input)
-      return {&graph, none, graph.graph.span(graph.graph.name_place)};
-    const uint32_t node = name->second.index;
+    const bool known =
+        place.function < subject_.nodes.size() && place.origin < subject_.nodes[place.function].size();
+    const uint32_t node = known ? subject_.nodes[place.function][place.origin] : none;
+    if (node == none) return {&graph, none, graph.graph.span(graph.graph.name_place)};
     return {&graph, node, graph.graph.span(graph.graph.nodes[node].id_place)};
   }
 
@@ -44,6 +52,7 @@ class Documents {
   }
 
   const TypedGraph& graph_;
+  const Subject& subject_;
   std::unordered_map<std::string, const TypedGraph*> by_path_;
 };
 
@@ -83,87 +92,152 @@ std::vector<bool> inputs_of(const Tape& tape, uint32_t operation) {
   return inputs;
 }
 
-std::string both_ways(ir::Scalar scalar, uint32_t word) {
+std::string number(ir::Scalar scalar, uint32_t word) {
   if (scalar != ir::Scalar::floating) return std::to_string(static_cast<int32_t>(word));
-  const auto value = std::bit_cast<float>(word);
-  return support::format_float(value) + " (" + support::format_hex_float(value) + ")";
+  return support::format_float(std::bit_cast<float>(word));
 }
 
-/// "a = 0.5 (0x1p-1), b = ..." in notes of a few inputs each.
-void note_list(support::Diagnostic& diagnostic, std::string_view begin,
-               const std::vector<std::string>& items) {
-  constexpr size_t on_a_line = 4;
-  for (size_t i = 0; i < items.size(); i += on_a_line) {
-    std::string line(i == 0 ? begin : "and ");
-    for (size_t k = i; k < std::min(i + on_a_line, items.size()); ++k)
-      line += (k == i ? "" : ", ") + items[k];
-    diagnostic.note(line);
+/// One operation of a node, or several that are the same to an author: components, and those of a function's calls.
+struct Entry {
+  const Unproved* unproved = nullptr;  ///< the first of them that is refuted, or the first
+  size_t operations = 0;
+  std::set<uint32_t> callers;
+  bool is_refuted() const { return !unproved->counterexample.empty(); }
+};
+
+std::vector<Entry> entries_of(const Tape& tape, const std::vector<Unproved>& unproved) {
+  std::map<std::tuple<uint32_t, uint32_t, Breach>, size_t> known;
+  std::vector<Entry> entries;
+  for (const Unproved& u : unproved) {
+    const Place& place = tape.places[tape.operations[u.operation].place];
+    const auto [found, is_new] = known.try_emplace({place.function, place.origin, u.breach}, entries.size());
+    if (is_new) entries.push_back({&u, 0, {}});
+    Entry& entry = entries[found->second];
+    if (!entry.is_refuted() && !u.counterexample.empty()) entry.unproved = &u;
+    ++entry.operations;
+    entry.callers.insert(place.caller);
   }
+  std::ranges::stable_partition(entries, &Entry::is_refuted);
+  return entries;
 }
 
-void describe_counterexample(const Subject& subject, const Unproved& unproved,
-                             support::Diagnostic& diagnostic) {
-  const Tape& tape = subject.tape;
+class Reporter {
+ public:
+  Reporter(const TypedGraph& graph, const Subject& subject, support::Diagnostics& diagnostics,
+           size_t most_named)
+      : subject_(subject), documents_(graph, subject), diagnostics_(diagnostics), most_named_(most_named) {}
+
+  void report(const Entry& entry);
+
+ private:
+  void describe_counterexample(const Unproved& unproved, support::Diagnostic& diagnostic);
+  void describe_box(const Unproved& unproved, support::Diagnostic& diagnostic) const;
+  void note_callers(const Entry& entry, const Place& place, support::Diagnostic& diagnostic) const;
+
+  /// "where x = 0.5, y = 1.0 and 3 more"
+  std::string list(std::string_view begin, const std::vector<std::string>& items) const;
+
+  const Subject& subject_;
+  Documents documents_;
+  support::Diagnostics& diagnostics_;
+  size_t most_named_;
+  std::optional<Runner> runner_;
+};
+
+std::string Reporter::list(std::string_view begin, const std::vector<std::string>& items) const {
+  std::string text(begin);
+  for (size_t i = 0; i < std::min(items.size(), most_named_); ++i) text += (i == 0 ? " " : ", ") + items[i];
+  if (items.size() > most_named_) text += " and " + std::to_string(items.size() - most_named_) + " more";
+  return text;
+}
+
+void Reporter::describe_counterexample(const Unproved& unproved, support::Diagnostic& diagnostic) {
+  const Tape& tape = subject_.tape;
   const std::vector<bool> relevant = inputs_of(tape, unproved.operation);
   std::vector<std::string> items;
-  for (size_t i = 0; i < tape.inputs.size() && items.size() < most_named; ++i)
-    if (relevant[i])
-      items.push_back(tape.inputs[i].name + " = " +
-                      both_ways(tape.inputs[i].scalar, unproved.counterexample[i]));
-  note_list(diagnostic, "where ", items);
+  for (size_t i = 0; i < tape.inputs.size(); ++i) {
+    if (!relevant[i]) continue;
+    const Input& input = tape.inputs[i];
+    items.push_back(input.name + " = " + number(input.scalar, unproved.counterexample[i]));
+  }
+  if (!items.empty()) diagnostic.note(list("where", items));
 
   const lanes::FpGuard guard;
-  Runner runner(tape);
-  runner.run(unproved.counterexample);
-  const Operation& operation = tape.operations[unproved.operation];
+  if (!runner_) runner_.emplace(tape);
+  runner_->run(unproved.counterexample);
   items.clear();
-  for (const uint32_t operand : tape.operands_of(operation))
-    items.push_back(both_ways(tape.operations[operand].scalar, runner.word(operand)));
-  note_list(diagnostic, "it reads ", items);
-  items.clear();
-  for (const Tape::Output& output : tape.outputs)
-    items.push_back(output.name + " = " + both_ways(ir::Scalar::floating, runner.word(output.operation)));
-  note_list(diagnostic, "the results are ", items);
+  for (const uint32_t operand : tape.operands_of(tape.operations[unproved.operation])) {
+    const ir::Scalar scalar = tape.operations[operand].scalar;
+    items.push_back(number(scalar, runner_->word(operand)));
+  }
+  if (!items.empty()) diagnostic.note(list("it reads", items));
 }
 
-void describe_box(const Subject& subject, const Unproved& unproved, support::Diagnostic& diagnostic) {
-  const Tape& tape = subject.tape;
-  const std::vector<bool> relevant = inputs_of(tape, unproved.operation);
+/// Tells the sides that are narrower than all inputs, for example scalar products by their nodes.
+void Reporter::describe_box(const Unproved& unproved, support::Diagnostic& diagnostic) const {
+  const Evaluator evaluator(subject_.tape);
+  const Box whole = evaluator.whole();
+  using enum Evaluator::Dependence;
+  const std::vector<Evaluator::Dependence> dependence = evaluator.dependence(unproved.operation);
   std::vector<std::string> items;
-  for (size_t i = 0; i < tape.inputs.size() && items.size() < most_named; ++i) {
-    const Side& side = unproved.box[i];
-    if (!relevant[i]) continue;
-    items.push_back(tape.inputs[i].name + " in [" + support::format_float(static_cast<float>(side.lo)) +
-                    ", " + support::format_float(static_cast<float>(side.hi)) + "]");
+  for (const auto wanted : {direct, indirect}) {
+    for (size_t s = 0; s < std::min(unproved.box.size(), whole.size()); ++s) {
+      const Side& side = unproved.box[s];
+      if (dependence[s] != wanted || (side.lo == whole[s].lo && side.hi == whole[s].hi)) continue;
+      const std::string name = evaluator.side_name(s);
+      const float lo = static_cast<float>(side.lo), hi = static_cast<float>(side.hi);
+      items.push_back(name + " in [" + support::format_float(lo) + ", " + support::format_float(hi) + "]");
+    }
   }
-  const std::string count = std::to_string(unproved.open_boxes);
-  note_list(diagnostic,
-            unproved.open_boxes == 1 ? "open where " : "open in " + count + " boxes, one of them ", items);
+  diagnostic.note(items.empty() ? "for any inputs" : list("for example where", items));
+}
+
+void Reporter::note_callers(const Entry& entry, const Place& place, support::Diagnostic& diagnostic) const {
+  for (uint32_t caller = place.caller; caller != none; caller = subject_.tape.places[caller].caller) {
+    const Documents::Found found = documents_.find(subject_.tape.places[caller]);
+    std::string message = "called by node " + quote(found.name());
+    const size_t others = entry.callers.size() - 1;
+    if (caller == place.caller && others > 0)
+      message += ", and " + std::to_string(others) + (others == 1 ? " other call" : " other calls");
+    diagnostic.note(found.span, message);
+  }
+}
+
+void Reporter::report(const Entry& entry) {
+  const Unproved& unproved = *entry.unproved;
+  const Place& place = subject_.tape.places[subject_.tape.operations[unproved.operation].place];
+  const Documents::Found found = documents_.find(place);
+  const std::string port = port_of(found, unproved.breach), node = found.name();
+  std::string message = node.empty() ? "here" : "in node " + quote(node);
+  if (!port.empty()) message += ", port " + quote(port);
+  message += ": " + std::string(words(unproved.breach)) + (entry.is_refuted() ? "" : " is not ruled out");
+  const support::Id id = entry.is_refuted() ? support::Id::refuted : support::Id::unproved;
+  support::Diagnostic& diagnostic = diagnostics_.report(id, found.span, message);
+  if (entry.is_refuted())
+    describe_counterexample(unproved, diagnostic);
+  else
+    describe_box(unproved, diagnostic);
+  note_callers(entry, place, diagnostic);
 }
 
 }  // namespace
 
-void report(const TypedGraph& graph, const Subject& subject, const Proof& proof,
-            support::Diagnostics& diagnostics) {
-  const Documents documents(graph);
-  for (const Unproved& unproved : proof.unproved) {
-    const Place& place = subject.tape.places[subject.tape.operations[unproved.operation].place];
-    const Documents::Found found = documents.find(place);
-    const std::string port = port_of(found, unproved.breach);
-    const bool refuted = !unproved.counterexample.empty();
-    std::string message = found.node == none ? "here" : "in node " + quote(place.node);
-    if (!port.empty()) message += ", port " + quote(port);
-    message += ": " + std::string(words(unproved.breach)) + (refuted ? "" : " is not ruled out");
-    support::Diagnostic& diagnostic =
-        diagnostics.report(refuted ? support::Id::refuted : support::Id::unproved, found.span, message);
-    for (uint32_t caller = place.caller; caller != none; caller = subject.tape.places[caller].caller)
-      diagnostic.note(documents.find(subject.tape.places[caller]).span,
-                      "called by node " + quote(subject.tape.places[caller].node));
-    if (refuted)
-      describe_counterexample(subject, unproved, diagnostic);
-    else
-      describe_box(subject, unproved, diagnostic);
+NotProved report(const TypedGraph& graph, const Subject& subject, const Proof& proof,
+                 support::Diagnostics& diagnostics, Detail detail) {
+  const bool all = detail == Detail::all;
+  Reporter reporter(graph, subject, diagnostics, all ? SIZE_MAX : most_named);
+  NotProved counts;
+  for (const Entry& entry : entries_of(subject.tape, proof.unproved)) {
+    ++(entry.is_refuted() ? counts.refuted : counts.undecided);
+    if (!all && counts.shown == most_shown) continue;
+    ++counts.shown;
+    reporter.report(entry);
   }
+  for (const Entry& entry : entries_of(subject.tape, proof.later)) {
+    ++counts.later;
+    if (all) reporter.report(entry);
+  }
+  return counts;
 }
 
 }  // namespace isoshade::analysis

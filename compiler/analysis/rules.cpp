@@ -187,6 +187,34 @@ Outcome rule_atan2(Arguments in, uint32_t, const Accuracy& accuracy) {
   return approximate(lo, hi, accuracy.error, carried);
 }
 
+/// How far x is on the way from low to high, held within [0, 1].
+Bound share_of_way(const Bound& low, const Bound& high, const Bound& x) {
+  Bound any = settled(Bound{0, 1, 1, infinity, infinity}).bound;
+  const Outcome gone = subtract(x, low), way = subtract(high, low);
+  if (gone.breach != Breach::none || way.breach != Breach::none) return any;
+  const Outcome share = divide(gone.bound, way.bound);
+  // Edges that are equal, or nearly, make a step, and what rounding or flushing takes may move it.
+  if (share.breach == Breach::division_by_zero) return any;
+  // A quotient that overflows is infinite, of its sign: then both ends are taken, as exactly.
+  Bound held = lesser(greater(share.bound, exactly(0)), exactly(1));
+  held.absolute = std::min(held.absolute, 1.0);
+  return settled(held).bound;
+}
+
+Outcome rule_smoothstep(Arguments in, uint32_t, const Accuracy&) {
+  const Bound t = share_of_way(in[0], in[1], in[2]);
+  const auto curve = [](double x) { return x * x * (3 - 2 * x); };
+  const Outcome rest = subtract(exactly(3), multiply(exactly(2), t).bound);
+  Bound r = multiply(square(t).bound, rest.bound).bound;
+  // It rises with t, at most by 3/2, and is rounded three times.
+  const double error = 3.1 * half_ulp, flushed = 4 * smallest;
+  r.lo = std::max({r.lo, curve(t.lo) * (1 - error) - flushed, 0.0});
+  r.hi = std::min({r.hi, curve(t.hi) * (1 + error) + flushed, 1.0});  // no float t gives more
+  r.absolute = std::min(r.absolute, 1.5 * (1 + error) * t.absolute + error * r.hi + flushed);
+  place_exact(r, curve(std::clamp(t.exact_lo(), 0.0, 1.0)), curve(std::clamp(t.exact_hi(), 0.0, 1.0)));
+  return settled(r);
+}
+
 double norm(Arguments v, double (Bound::*part)() const) {
   double sum = 0;
   for (const Bound& c : v) sum += (c.*part)() * (c.*part)();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "compiler/ir/evaluate.h"
 
@@ -127,7 +128,9 @@ Runner::Runner(const Tape& tape)
     : tape_(tape),
       interpreter_(tape.module, ir::Preconditions::report),
       words_(tape.operations.size()),
-      guard_holds_(tape.guards.size(), true) {}
+      guard_holds_(tape.guards.size(), true),
+      after_breach_(tape.operations.size()),
+      guard_after_breach_(tape.guards.size()) {}
 
 uint32_t Runner::dot(const Operation& operation) const {
   const auto in = tape_.operands_of(operation);
@@ -179,43 +182,61 @@ Breach Runner::breach_of(const Operation& operation, uint32_t index) const {
   return breach == Breach::none ? Breach::overflow : breach;
 }
 
-std::optional<Runner::Broken> Runner::run(std::span<const uint32_t> inputs) {
-  std::optional<Broken> broken;
+void Runner::compute(const Operation& operation, uint32_t index, std::span<const uint32_t> inputs) {
+  const auto in = tape_.operands_of(operation);
+  uint32_t& word = words_[index];
+  switch (operation.kind) {
+    case Kind::constant: word = operation.bits; break;
+    case Kind::input: word = inputs[operation.index]; break;
+    case Kind::op:
+      word = ir::evaluate(operation.op, words_[in[0]], in.size() > 1 ? words_[in[1]] : 0,
+                          in.size() > 2 ? words_[in[2]] : 0);
+      break;
+    case Kind::least:
+    case Kind::greatest: {
+      const Opcode replaces = operation.kind == Kind::least ? Opcode::fgt : Opcode::flt;
+      word = words_[in[ir::evaluate(replaces, words_[in[0]], words_[in[1]], 0)]];
+      break;
+    }
+    case Kind::dot: word = dot(operation); break;
+    case Kind::row: word = row(operation); break;
+    case Kind::sum: word = ir::evaluate(Opcode::fadd, 0, words_[in[0]], 0); break;
+    case Kind::unknown: word = 0; break;
+    case Kind::asked:
+    case Kind::narrow: word = words_[in[0]]; break;
+    case Kind::enter: {
+      const Guard& guard = tape_.guards[operation.index];
+      guard_holds_[operation.index] =
+          guard_holds_[guard.parent] && (words_[guard.condition] != 0) == guard.truth;
+      guard_after_breach_[operation.index] =
+          guard_after_breach_[guard.parent] || after_breach_[guard.condition];
+      break;
+    }
+  }
+}
+
+bool Runner::follows_breach(const Operation& operation) const {
+  if (guard_after_breach_[operation.guard]) return true;
+  const auto in = tape_.operands_of(operation);
+  if (operation.kind == Kind::op && operation.op == Opcode::select)
+    return after_breach_[in[0]] || after_breach_[in[words_[in[0]] != 0 ? 1 : 2]];
+  return std::ranges::any_of(in, [&](uint32_t operand) { return after_breach_[operand]; });
+}
+
+const std::vector<Runner::Broken>& Runner::run(std::span<const uint32_t> inputs) {
+  broken_.clear();
   for (uint32_t i = 0; i < tape_.operations.size(); ++i) {
     const Operation& operation = tape_.operations[i];
-    const auto in = tape_.operands_of(operation);
-    switch (operation.kind) {
-      case Kind::constant: words_[i] = operation.bits; break;
-      case Kind::input: words_[i] = inputs[operation.index]; break;
-      case Kind::op:
-        words_[i] = ir::evaluate(operation.op, words_[in[0]], in.size() > 1 ? words_[in[1]] : 0,
-                                 in.size() > 2 ? words_[in[2]] : 0);
-        break;
-      case Kind::least:
-      case Kind::greatest: {
-        const Opcode replaces = operation.kind == Kind::least ? Opcode::fgt : Opcode::flt;
-        words_[i] = words_[in[ir::evaluate(replaces, words_[in[0]], words_[in[1]], 0)]];
-        break;
-      }
-      case Kind::dot: words_[i] = dot(operation); break;
-      case Kind::row: words_[i] = row(operation); break;
-      case Kind::sum: words_[i] = ir::evaluate(Opcode::fadd, 0, words_[in[0]], 0); break;
-      case Kind::unknown: words_[i] = 0; break;
-      case Kind::asked:
-      case Kind::narrow: words_[i] = words_[in[0]]; break;
-      case Kind::enter: {
-        const Guard& guard = tape_.guards[operation.index];
-        guard_holds_[operation.index] =
-            guard_holds_[guard.parent] && (words_[guard.condition] != 0) == guard.truth;
-        break;
-      }
-    }
-    if (broken || operation.kind == Kind::enter || operation.kind == Kind::narrow ||
-        !guard_holds_[operation.guard])
-      continue;
-    if (const Breach breach = breach_of(operation, i); breach != Breach::none) broken = Broken{i, breach};
+    compute(operation, i, inputs);
+    if (operation.kind == Kind::enter) continue;
+    after_breach_[i] = follows_breach(operation);
+    if (after_breach_[i] || operation.kind == Kind::narrow || !guard_holds_[operation.guard]) continue;
+    const Breach breach = breach_of(operation, i);
+    if (breach == Breach::none) continue;
+    after_breach_[i] = true;
+    broken_.push_back({i, breach});
   }
-  return broken;
+  return broken_;
 }
 
 std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int count) {
@@ -225,25 +246,29 @@ std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int
   return all;
 }
 
-std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries,
+std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries, size_t most,
                                    const std::function<bool(const std::vector<uint32_t>&)>& allowed) {
-  // A sum of a fixed number of terms is not what one of them is.
+  // A sum of a fixed number of terms is not what one of them is, and nobody knows what an unknown is.
   std::vector<bool> is_doubtful(tape.operations.size());
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
     const Operation& operation = tape.operations[i];
-    is_doubtful[i] = operation.kind == Kind::sum && operation.bits != 0;
+    is_doubtful[i] = operation.kind == Kind::unknown || (operation.kind == Kind::sum && operation.bits != 0);
     for (const uint32_t operand : tape.operands_of(operation))
       if (is_doubtful[operand]) is_doubtful[i] = true;
   }
   std::vector<Counterexample> found;
+  std::vector<bool> is_found(tape.operations.size());
   Points points(tape, box);
-  for (int i = 0; i < tries; ++i) {
+  for (int i = 0; i < tries && found.size() < most; ++i) {
     const std::vector<uint32_t>& inputs = points.next();
-    const auto broken = runner.run(inputs);
-    if (!broken || is_doubtful[broken->operation] || !allowed(inputs)) continue;
-    const auto known = std::ranges::find_if(
-        found, [&](const Counterexample& c) { return c.broken.operation == broken->operation; });
-    if (known == found.end()) found.push_back({inputs, *broken});
+    std::optional<bool> counts;
+    for (const Runner::Broken& broken : runner.run(inputs)) {
+      if (is_found[broken.operation] || is_doubtful[broken.operation]) continue;
+      if (!counts) counts = allowed(inputs);
+      if (!*counts || found.size() == most) break;
+      is_found[broken.operation] = true;
+      found.push_back({inputs, broken});
+    }
   }
   return found;
 }

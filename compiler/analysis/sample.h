@@ -3,7 +3,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <vector>
 
 #include "compiler/analysis/evaluate.h"
 #include "compiler/ir/interpreter.h"
@@ -20,13 +20,16 @@ class Runner {
     uint32_t operation = none;
     Breach breach = Breach::none;
   };
-  /// Runs on the words of the inputs; returns the first operation that is looked at and gives no finite number.
-  /// Needs lanes::FpGuard. Sums over lights are of one light.
-  std::optional<Broken> run(std::span<const uint32_t> inputs);
+  /// Runs on the words of the inputs; returns the operations that are looked at and give no finite number, without
+  /// those that read what another of them gave. Needs lanes::FpGuard. Sums over lights are of one light.
+  const std::vector<Broken>& run(std::span<const uint32_t> inputs);
   uint32_t word(uint32_t operation) const { return words_[operation]; }
 
  private:
+  void compute(const Operation& operation, uint32_t index, std::span<const uint32_t> inputs);
   Breach breach_of(const Operation& operation, uint32_t index) const;
+  /// Whether what the operation gives comes from an operation that broke.
+  bool follows_breach(const Operation& operation) const;
   uint32_t row(const Operation& operation);
   uint32_t dot(const Operation& operation) const;
 
@@ -34,6 +37,9 @@ class Runner {
   ir::Interpreter interpreter_;
   std::vector<uint32_t> words_;
   std::vector<bool> guard_holds_;
+  std::vector<bool> after_breach_;        ///< of operations
+  std::vector<bool> guard_after_breach_;  ///< of guards
+  std::vector<Broken> broken_;
 };
 
 struct Counterexample {
@@ -45,9 +51,9 @@ struct Counterexample {
 /// are of any direction.
 std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int count);
 
-/// Tries so many of them; one counterexample for each operation that breaks. `allowed`: of the inputs that were run
-/// last, whether they count.
-std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries,
+/// Tries so many of them; one counterexample for each operation that breaks, of at most so many. `allowed`: of the inputs
+/// that were run last, whether they count.
+std::vector<Counterexample> search(Runner& runner, const Tape& tape, const Box& box, int tries, size_t most,
                                    const std::function<bool(const std::vector<uint32_t>&)>& allowed);
 
 }  // namespace isoshade::analysis

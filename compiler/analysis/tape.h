@@ -59,7 +59,8 @@ enum class Answer : uint8_t {
 struct Place {
   std::string document;  ///< as ir::Function::document
   std::string node;
-  uint32_t caller = none;  ///< the node that called the document's function, in Tape::places
+  uint32_t caller = none;                ///< the node that called the document's function, in Tape::places
+  uint32_t function = none, origin = 0;  ///< of the module that the tape was made of
 };
 
 struct Side {

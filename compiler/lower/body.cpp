@@ -76,6 +76,8 @@ class Body {
   void name_results(uint32_t node, ir::ValueId first_new);
   void name_value(const Value& value, uint32_t origin, ir::ValueId first_new);
   uint32_t origin_of(uint32_t node);
+  /// An origin of its own for a part of what the node makes.
+  uint32_t add_origin(std::string name, uint32_t node);
   std::span<Value> results_of(const Node& node) {
     return {values_.data() + node.first_type, node.output_count};
   }
@@ -113,10 +115,18 @@ Value Body::read(const Operand& operand) {
 }
 
 uint32_t Body::origin_of(uint32_t node) {
-  const graph::Node& source = graph_.graph.nodes[node];
-  if (origins_[node] == 0)
-    origins_[node] = b_.add_origin(source.id, graph_.graph.span(source.id_place).line());
+  if (origins_[node] == 0) origins_[node] = add_origin(graph_.graph.nodes[node].id, node);
   return origins_[node];
+}
+
+uint32_t Body::add_origin(std::string name, uint32_t node) {
+  const graph::Node& source = graph_.graph.nodes[node];
+  const uint32_t origin = b_.add_origin(std::move(name), graph_.graph.span(source.id_place).line());
+  if (std::vector<uint32_t>* nodes = environment_.node_of_origin; nodes != nullptr) {
+    nodes->resize(origin + 1, ir::none);
+    (*nodes)[origin] = node;
+  }
+  return origin;
 }
 
 void Body::make(uint32_t index) {
@@ -311,7 +321,7 @@ void Body::make_sum(uint32_t index) {
     }
     if (asks_light) {
       const std::array arguments{turn, environment_.surface[world_position.index()]};
-      b_.set_origin(b_.add_origin("light", b_.function().origins[origin_of(index)].line));
+      b_.set_origin(add_origin("light", index));
       light_ = b_.call(environment_.light_at, arguments);
     }
     for (const uint32_t i : inside) make(i);
@@ -345,11 +355,10 @@ void Body::name_results(uint32_t index, ir::ValueId first_new) {
   } else {
     // Several outputs: each is the node's name and its own.
     const std::string id = graph_.graph.nodes[index].id;
-    const uint32_t line = b_.function().origins[origin_of(index)].line;
     for (size_t i = 0; i < results.size(); ++i) {
       const std::string output =
           node.row != nullptr ? std::string(node.row->outputs[i].name) : node.callee->graph.outputs[i].name;
-      name_value(results[i], b_.add_origin(id + "_" + output, line), first_new);
+      name_value(results[i], add_origin(id + "_" + output, index), first_new);
     }
   }
 }

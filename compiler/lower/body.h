@@ -42,6 +42,7 @@ struct Environment {
       image_slots;  ///< of the slots: the texture, negative for none; none where not needed
   ScreenInputs screen;
   std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called
+  std::vector<uint32_t>* node_of_origin = nullptr;                ///< if given: filled, see NodesOfOrigins
 };
 
 /// Makes the needed nodes and returns the results, of the types that they are needed in.

@@ -35,6 +35,8 @@ std::string authored_name(const std::string& name) {
 
 class ModuleLowering {
  public:
+  explicit ModuleLowering(NodesOfOrigins* nodes) : nodes_(nodes) {}
+
   ir::Module lower_function(const TypedGraph& graph) {
     names_.insert(entry_name(graph));
     add_function(graph, entry_name(graph));
@@ -62,7 +64,11 @@ class ModuleLowering {
     return [this](const TypedGraph& callee) { return functions_.at(&callee); };
   }
 
+  /// Of the last function, which is about to be built.
+  std::vector<uint32_t>* node_of_origin();
+
   ir::Module module_;
+  NodesOfOrigins* nodes_;
   std::unordered_map<const TypedGraph*, uint32_t> functions_;
   std::unordered_set<std::string> names_;
 };
@@ -71,6 +77,12 @@ std::string ModuleLowering::unique_name(const std::string& wanted) {
   std::string name = wanted;
   for (int number = 2; !names_.insert(name).second; ++number) name = wanted + "_" + std::to_string(number);
   return name;
+}
+
+std::vector<uint32_t>* ModuleLowering::node_of_origin() {
+  if (nodes_ == nullptr) return nullptr;
+  nodes_->resize(module_.functions.size());
+  return &nodes_->back();
 }
 
 /// The names of some values beside each other: of each its own, or one a column of a matrix, "m_0", "m_1". No two are
@@ -172,6 +184,7 @@ void ModuleLowering::add_function(const TypedGraph& graph, std::string name) {
   for (size_t i = 0; i < first.size(); ++i)
     environment.inputs.push_back(parameter_value(b, first[i], graph.graph.inputs[i].type));
   environment.function_of = function_of();
+  environment.node_of_origin = node_of_origin();
   std::vector<ir::ValueId> results;
   for (const Value& value : build_body(b, graph, needs, environment, graph.outputs))
     results.insert(results.end(), value.ids().begin(), value.ids().end());
@@ -240,6 +253,7 @@ ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& ro
   environment.images = &images;
   for (const bool read : reads) environment.image_slots.push_back(read ? b.parameter(next++) : ir::none);
   if (needs.lights) environment.light_count = b.parameter(last);
+  environment.node_of_origin = node_of_origin();
   const ir::ValueId result = build_body(b, graph, needs, environment, roots)[0].id();
   b.finish(std::array{root.needed == Type::color3 ? with_alpha(b, result) : result});
   return std::move(module_);
@@ -276,6 +290,7 @@ ir::Module ModuleLowering::lower_post(const TypedGraph& graph) {
     environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
                                                  : Value());
   }
+  environment.node_of_origin = node_of_origin();
   const Value color = build_body(b, graph, needs, environment, graph.outputs)[0];
   b.finish(std::array{with_alpha(b, color.id())});
   return std::move(module_);
@@ -330,16 +345,17 @@ std::string entry_name(const TypedGraph& graph) {
 }
 
 ir::Module lower(const TypedGraph& graph, const LowerOptions& options) {
-  if (graph.graph.kind == DocumentKind::function) return ModuleLowering().lower_function(graph);
-  if (graph.graph.kind == DocumentKind::post) return ModuleLowering().lower_post(graph);
+  if (graph.graph.kind == DocumentKind::function) return ModuleLowering(options.nodes).lower_function(graph);
+  if (graph.graph.kind == DocumentKind::post) return ModuleLowering(options.nodes).lower_post(graph);
   support::check(options.pass < graph.graph.passes.size(), "the effect has no such pass");
   const Operand* position = graph.position_of(options.pass);
   if (options.part == PassPart::color) {
-    return ModuleLowering().lower_pass(graph, graph.outputs[options.pass], shade_name,
-                                       {"color", ir::vector_type(4)});
+    return ModuleLowering(options.nodes)
+        .lower_pass(graph, graph.outputs[options.pass], shade_name, {"color", ir::vector_type(4)});
   }
   support::check(position != nullptr, "the pass moves no vertices");
-  return ModuleLowering().lower_pass(graph, *position, move_vertex_name, {"position", ir::vector_type(3)});
+  return ModuleLowering(options.nodes)
+      .lower_pass(graph, *position, move_vertex_name, {"position", ir::vector_type(3)});
 }
 
 }  // namespace isoshade::lower

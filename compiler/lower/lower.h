@@ -16,9 +16,13 @@ namespace isoshade::lower {
 /// What is lowered of a pass of an effect: the colour of its pixels, or where its vertices go.
 enum class PassPart : uint8_t { color, position };
 
+/// By function of a module and origin of that function: the node in the Graph of its document, or ir::none.
+using NodesOfOrigins = std::vector<std::vector<uint32_t>>;
+
 struct LowerOptions {
   size_t pass = 0;  ///< of an effect
   PassPart part = PassPart::color;
+  NodesOfOrigins* nodes = nullptr;  ///< if given, filled
 };
 
 /// The names of an effect's functions; they are the same for every effect.

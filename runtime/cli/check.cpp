@@ -16,6 +16,8 @@ namespace isoshade::cli {
 
 namespace {
 
+constexpr size_t most_for_tools = 10'000;  ///< diagnostics
+
 /// Of floats the nearest that are not less, or not more: what is told must hold.
 std::string number_above(double value) {
   auto nearest = static_cast<float>(value);
@@ -63,6 +65,21 @@ void print_bounds(const analysis::Tape& tape, const analysis::Proof& proof) {
   for (const uint32_t operation : proof.tipped)
     if (named.insert(node(operation)).second) nodes += (nodes.empty() ? "" : ", ") + node(operation);
   if (tips) std::printf("  branches that rounding may tip: %s\n", nodes.c_str());
+}
+
+std::string counted(size_t count, std::string_view what) {
+  return count == 0 ? "" : ", " + std::to_string(count) + " " + std::string(what);
+}
+
+/// "not proved, 2 refuted, 1 undecided; ..."
+std::string summary(const analysis::Proof& proof, const analysis::NotProved& counts) {
+  std::string text =
+      "not proved" + counted(counts.refuted, "refuted") + counted(counts.undecided, "undecided");
+  text += counted(counts.later, "undecided that read what these give");
+  if (proof.unfinished) text += ", and more that was not looked at";
+  if (counts.shown < counts.refuted + counts.undecided)
+    text += "; " + std::to_string(counts.shown) + " are shown, --diagnostics json tells all";
+  return text;
 }
 
 /// The counterexamples as rows of a table for `isoshade eval`.
@@ -128,12 +145,15 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
     const bool proved = proof.unproved.empty();
     const bool is_effect = typed->graph.kind == graph::DocumentKind::effect;
     const bool is_function = typed->graph.kind == graph::DocumentKind::function;
-    std::printf("%s%s: %s\n", path.c_str(), is_effect ? (", " + subject.name).c_str() : "",
-                proved ? "proved" : "not proved");
+    std::string outcome = "proved";
+    if (!proved) {
+      result = Result::not_proved;
+      const auto detail = common.json ? analysis::Detail::all : analysis::Detail::brief;
+      outcome = summary(proof, analysis::report(*typed, subject, proof, diagnostics, detail));
+    }
+    std::printf("%s%s: %s\n", path.c_str(), is_effect ? (", " + subject.name).c_str() : "", outcome.c_str());
     if (proved && !common.quiet) print_bounds(subject.tape, proof);
     if (proved) continue;
-    result = Result::not_proved;
-    analysis::report(*typed, subject, proof, diagnostics);
     if (is_function && !arguments.output.empty() &&
         !scene::write_file(arguments.output, table_of(subject.tape, proof), diagnostics))
       return Result::error;
@@ -144,7 +164,8 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
 }  // namespace
 
 int check_documents(const CheckArguments& arguments, const Common& common) {
-  support::Diagnostics diagnostics = make_diagnostics(common);
+  support::Diagnostics diagnostics =
+      common.json ? make_diagnostics(common, most_for_tools) : make_diagnostics(common);
   int exit = success;
   if (!read_standard_input_once(arguments.documents, diagnostics) ||
       (!arguments.output.empty() && !may_write(arguments.output, arguments.documents, diagnostics)))

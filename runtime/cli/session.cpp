@@ -38,8 +38,8 @@ check::Library make_library(const Common& common) {
   return library;
 }
 
-support::Diagnostics make_diagnostics(const Common& common) {
-  support::Diagnostics diagnostics;
+support::Diagnostics make_diagnostics(const Common& common, size_t limit) {
+  support::Diagnostics diagnostics(limit);
   diagnostics.warnings_as_errors(common.warnings_as_errors);
   for (const support::Id id : support::all_ids())
     if (std::ranges::find(common.disabled, support::id_text(id)) != common.disabled.end())

@@ -19,8 +19,8 @@ std::string library_root(const Common& common);
 /// The library as the command line has it.
 check::Library make_library(const Common& common);
 
-/// A sink that obeys -Werror and -Wno-ID.
-support::Diagnostics make_diagnostics(const Common& common);
+/// A sink that obeys -Werror and -Wno-ID, and keeps so many errors.
+support::Diagnostics make_diagnostics(const Common& common, size_t limit = 50);
 
 /// Prints what has been reported to stderr, as text or as --diagnostics says; returns whether there was an
 /// error.
