@@ -80,9 +80,7 @@ target_compile_definitions(fog_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DI
 
 
 isoshade_test(proved_test SOURCES accuracy/proved_test.cpp LINKS isoshade_analysis LABEL accuracy)
-target_compile_definitions(proved_test PRIVATE
-  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
-  ISOSHADE_PROVED="${PROJECT_SOURCE_DIR}/tests/accuracy/proved.txt")
+target_compile_definitions(proved_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
 isoshade_test(bound_test
   SOURCES

@@ -242,9 +242,9 @@ class Examination {
   std::string tape(const std::vector<uint32_t>& row, Count& counted) {
     {
       const lanes::FpGuard guard;
-      if (const auto broken = runner_.run(row))
-        return tape_.places[tape_.operations[broken->operation].place].node + ": " +
-               std::string(words(broken->breach));
+      for (const analysis::Runner::Broken& broken : runner_.run(row))
+        return tape_.places[tape_.operations[broken.operation].place].node + ": " +
+               std::string(words(broken.breach));
     }
     exact_tape_.run(row, true);
     for (size_t o = 0; o < tape_.outputs.size(); ++o) {
