@@ -2,16 +2,13 @@
 #include "compiler/graph/document.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <memory>
-#include <system_error>
+#include <unistd.h>
 #include <utility>
 
 #include "compiler/support/parse_number.h"
+#include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
@@ -48,6 +45,7 @@ float Document::to_float(const Json& number) const {
 }
 
 int64_t Document::to_integer(const Json& number) const {
+  if (!number.integral) return static_cast<int64_t>(number.number);
   const std::string_view digits = text(number);
   int64_t value = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -57,39 +55,16 @@ int64_t Document::to_integer(const Json& number) const {
 Source read_source(const std::string& path, Diagnostics& diagnostics, const Span& where) {
   const bool named_by_document = where.file != nullptr;
   const bool standard_input = path == "-" && !named_by_document;
-  const auto fail = [&](Id id, const std::string& reason) {
+  auto [bytes, id, reason] =
+      standard_input
+          ? support::read_open_file(STDIN_FILENO, max_document_bytes)
+          : support::read_file(path, max_document_bytes,
+                               named_by_document ? support::Pipes::refused : support::Pipes::nameless);
+  if (!bytes) {
     diagnostics.report(id, where, "cannot read " + support::quote(path) + ": " + reason);
     return nullptr;
-  };
-  // The system would open what stands before the NUL.
-  if (path.find('\0') != std::string::npos) return fail(Id::missing_file, "the name has a NUL byte");
-  // A user may name a pipe. Opening one that a document names would wait for a writer.
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (named_by_document && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    return fail(Id::unreadable_file, "it is no regular file");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
-      standard_input ? nullptr : std::fopen(path.c_str(), "rb"),
-      [](std::FILE* file) { return std::fclose(file); });
-  std::FILE* const file = standard_input ? stdin : opened.get();
-  if (file == nullptr) {
-    const int error = errno;
-    const bool missing = error == ENOENT || error == ENOTDIR || error == ENAMETOOLONG;
-    return fail(missing ? Id::missing_file : Id::unreadable_file, std::strerror(error));
   }
-  // Read rather than asked for its size: pipes have none, and /dev/zero no end.
-  std::string text;
-  char buffer[1 << 16];
-  while (text.size() <= max_document_bytes) {
-    const size_t count = std::fread(buffer, 1, sizeof buffer, file);
-    text.append(buffer, count);
-    if (count < sizeof buffer) break;
-  }
-  if (std::ferror(file)) return fail(Id::unreadable_file, std::strerror(errno));
-  if (text.size() > max_document_bytes) {
-    return fail(Id::too_large, "it has more than " + std::to_string(max_document_bytes >> 20) + " MiB");
-  }
-  return std::make_shared<support::SourceFile>(standard_input ? "<stdin>" : path, std::move(text));
+  return std::make_shared<support::SourceFile>(standard_input ? "<stdin>" : path, *std::move(bytes));
 }
 
 std::string pointer_at(const Document& document, uint32_t offset) {

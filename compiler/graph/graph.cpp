@@ -53,7 +53,7 @@ bool check_version(const Document& document, Diagnostics& diagnostics) {
         .suggest("add \"isoshade\": 1");
     return false;
   }
-  if (version->kind == Json::Kind::number && version->integral && version->number == 1) return true;
+  if (version->kind == Json::Kind::number && version->number == 1) return true;
   diagnostics.report(Id::wrong_version, document.span(*version),
                      "this isoshade reads documents of version 1");
   return false;

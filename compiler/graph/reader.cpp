@@ -31,6 +31,12 @@ std::string join(const std::vector<std::string_view>& words) {
 
 }  // namespace
 
+bool is_whole(const Json& json) {
+  if (json.kind != Json::Kind::number) return false;
+  constexpr double limit = 0x1p53;  // up to which a double is the number that was written
+  return json.integral || (std::abs(json.number) <= limit && json.number == std::floor(json.number));
+}
+
 ObjectReader::ObjectReader(const Document& document, const Json& json, std::string what,
                            support::Diagnostics& diagnostics)
     : document_(document),
@@ -128,10 +134,10 @@ std::optional<float> ObjectReader::optional_number(std::string_view key, Range r
 int64_t ObjectReader::integer(std::string_view key, Range range, std::optional<int64_t> fallback) {
   const Json* found = value(key, fallback ? Need::optional : Need::required);
   if (found == nullptr) return fallback.value_or(0);
-  if (found->kind != Json::Kind::number || !found->integral) {
+  if (!is_whole(*found)) {
     if (found->kind == Json::Kind::number) {
       diagnostics_.report(Id::wrong_type, document_.span(*found),
-                          quote(key) + " of " + what_ + " is an integer, written without fraction");
+                          quote(key) + " of " + what_ + " is an integer, and this is none");
     } else {
       report_wrong(key, *found, "an integer");
     }

@@ -15,6 +15,9 @@
 
 namespace isoshade::graph {
 
+/// Whether it is an integer that fits int64, written in whatever way: to JSON, 1.0 and 1e0 are 1.
+bool is_whole(const Json& json);
+
 /// The numbers that a key takes, both ends included.
 struct Range {
   double low = -std::numeric_limits<float>::max();

@@ -62,6 +62,12 @@ std::optional<float> parse_float(std::string_view text) {
   return std::bit_cast<float>(sign | bits);
 }
 
+std::optional<float> parse_float_in_range(std::string_view text) {
+  const std::optional<float> value = parse_float(text);
+  const bool infinite = value && (std::bit_cast<uint32_t>(*value) & ~sign_bit) == infinity_bits;
+  return infinite && !text.ends_with("inf") ? std::nullopt : value;
+}
+
 std::string format_float(float value) {
   const uint32_t bits = std::bit_cast<uint32_t>(value);
   if ((bits & ~sign_bit) > infinity_bits) return "nan";

@@ -14,6 +14,10 @@ namespace isoshade::support {
 /// nothing.
 std::optional<float> parse_float(std::string_view text);
 
+/// The same where the text must say what it means: a number beyond the range of float is no number, and an infinity is
+/// written "inf".
+std::optional<float> parse_float_in_range(std::string_view text);
+
 /// The shortest decimal that reads back as `value`, at most 9 digits, always with a '.' or an exponent
 /// ("1.0", "0.1", "1e-07"), so that it is a float in C++, GLSL and JSON. "nan", "inf", "-inf".
 std::string format_float(float value);

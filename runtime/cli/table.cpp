@@ -20,7 +20,7 @@ Cell cell_of(const driver::Field& field) {
 
 std::optional<int32_t> parse_cell(std::string_view text, Cell cell) {
   if (cell == Cell::floating) {
-    const auto value = support::parse_float(text);
+    const auto value = support::parse_float_in_range(text);
     return value ? std::optional(std::bit_cast<int32_t>(*value)) : std::nullopt;
   }
   int32_t value = 0;
@@ -180,8 +180,10 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
       const auto value = parse_cell(cells[i], column.cell);
       if (!value) {
         constexpr std::string_view kinds[] = {"a float", "an integer", "a boolean, 0 or 1"};
-        reader.report(cells[i], "\"" + std::string(cells[i].substr(0, 40)) + "\" is not " +
-                                    std::string(kinds[static_cast<size_t>(column.cell)]));
+        auto& report = reader.report(cells[i], "\"" + std::string(cells[i].substr(0, 40)) + "\" is not " +
+                                                   std::string(kinds[static_cast<size_t>(column.cell)]));
+        if (column.cell == Cell::floating && support::parse_float(cells[i]))
+          report.suggest("it is beyond the range of float; infinities are written inf and -inf");
         return std::nullopt;
       }
       table.words[table.rows * columns.size() + column.word] = *value;

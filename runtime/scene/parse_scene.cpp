@@ -62,8 +62,7 @@ class Names {
 void parse_size(const Document& document, ObjectReader& reader, Scene& scene, Diagnostics& diagnostics) {
   const Json* size = reader.array("size", Need::optional);
   if (size == nullptr) return;
-  const bool integers = size->items.size() == 2 && std::all_of(size->items.begin(), size->items.end(),
-                                                               [](const Json& i) { return i.integral; });
+  const bool integers = size->items.size() == 2 && std::ranges::all_of(size->items, graph::is_whole);
   if (!integers) {
     diagnostics.report(Id::wrong_type, document.span(*size), "\"size\" of a scene is an array of 2 integers");
     return;

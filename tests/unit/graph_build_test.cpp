@@ -191,10 +191,11 @@ a.json:7:3: error[unknown-key]: a function document has no key "noeds"
 TEST(Build, VersionIsRequired) {
   EXPECT_EQ(first(R"({"function": "f", "outputs": {"out": "x"}})"),
             "missing-key: a document needs its version | { | add \"isoshade\": 1");
-  for (const std::string version : {"2", "1.0", "\"1\"", "null"}) {
+  for (const std::string version : {"2", "1.5", "\"1\"", "null"}) {
     EXPECT_EQ(first(R"({"isoshade": )" + version + R"(, "function": "f"})"),
               "wrong-version: this isoshade reads documents of version 1 | " + version);
   }
+  EXPECT_EQ(first(R"({"isoshade": 1.0})"), first(R"({"isoshade": 1})"));
 }
 
 TEST(Build, KindIsExactlyOne) {

@@ -335,7 +335,7 @@ TEST_F(ReadSource, ReportsFoldersAndEndlessFiles) {
   EXPECT_EQ(read_source(folder_, diagnostics_), nullptr);
   EXPECT_EQ(read_source("/dev/zero", diagnostics_), nullptr);
   EXPECT_EQ(diagnostics_.all().at(0).id, support::Id::unreadable_file);
-  EXPECT_EQ(diagnostics_.all().at(1).id, support::Id::too_large);
+  EXPECT_EQ(diagnostics_.all().at(1).id, support::Id::unreadable_file);
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST_F(Reader, ReportsWrongTypes) {
   EXPECT_EQ(messages, R"(wrong-type 1: "b" of a camera is a boolean, not a number
 wrong-type null: "s" of a camera is a string, not null
 wrong-type "1": "n" of a camera is a number, not a string
-wrong-type 1.5: "i" of a camera is an integer, written without fraction
+wrong-type 1.5: "i" of a camera is an integer, and this is none
 wrong-type [1, 2]: "v" of a camera is an array of 3 numbers, not of 2
 wrong-type true: "w[1]" of a camera is a number, not a boolean
 wrong-type 1: "c" of a camera is a string, not a number
