@@ -32,7 +32,7 @@ class Verifier {
       if (arguments_.update && result == different)
         std::printf("nothing is recorded: the images differ\n");
       else if (arguments_.update && result == success &&
-               !compare::write_goldens(arguments_.golden, goldens_, diagnostics_))
+               !compare::update_goldens(arguments_.golden, goldens_, diagnostics_))
         result = failure;
     }
     return flush(diagnostics_, common_) ? failure : result;
@@ -57,11 +57,11 @@ class Verifier {
       return false;
     }
     if (!arguments_.golden.empty()) {
-      // A file that --update is about to make need not be there yet.
+      // A file that --update is about to make need not be there yet. What it holds then is read again when it is written.
       if (!arguments_.update || std::filesystem::exists(arguments_.golden)) {
         auto read = compare::read_goldens(arguments_.golden, diagnostics_);
         if (!read) return false;
-        goldens_ = std::move(*read);
+        if (!arguments_.update) goldens_ = std::move(*read);
       }
     }
     for (const std::string& name : arguments_.backends) {
@@ -175,7 +175,7 @@ class Verifier {
   check::Library library_;
   support::Diagnostics diagnostics_ = make_diagnostics(common_);
   std::vector<NamedBackend> backends_;
-  compare::Goldens goldens_;
+  compare::Goldens goldens_;  ///< those of the file; with --update, those to be put into it
 };
 
 }  // namespace

@@ -2,7 +2,13 @@
 #include "runtime/compare/golden.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <fcntl.h>
 #include <filesystem>
+#include <sys/file.h>
+#include <thread>
+#include <unistd.h>
 
 #include "compiler/graph/files.h"
 #include "compiler/graph/reader.h"
@@ -63,6 +69,33 @@ std::string json_string(const std::string& text) {
   return quoted + "\"";
 }
 
+/// Held until its end by one process at a time. No file is needed for it, so none is left.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ < 0) return;  // whoever writes there reports it
+    constexpr int most_attempts = 600;
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+      // Some file systems know no locks: there it goes without.
+      held_by_another_ = flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      if (!held_by_another_) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  bool is_held_by_another() const { return held_by_another_; }
+
+ private:
+  int descriptor_;
+  bool held_by_another_ = false;
+};
+
 std::string size_text(const Golden& golden) {
   return std::to_string(golden.width) + " x " + std::to_string(golden.height);
 }
@@ -114,7 +147,25 @@ std::string goldens_text(const Goldens& goldens) {
   return text + "\n}\n";
 }
 
-bool write_goldens(const std::string& path, const Goldens& goldens, Diagnostics& diagnostics) {
+bool update_goldens(const std::string& path, const Goldens& changes, Diagnostics& diagnostics) {
+  namespace fs = std::filesystem;
+  const std::string target = graph::canonical_path(path);
+  const FolderLock lock(fs::path(target).parent_path().string());
+  if (lock.is_held_by_another()) {
+    diagnostics
+        .report(Id::unwritable_file,
+                "cannot write " + quote(path) + ": another process holds a lock on its folder")
+        .suggest("end that process, or try again");
+    return false;
+  }
+  Goldens goldens;
+  if (std::error_code error; fs::exists(target, error)) {
+    auto recorded = read_goldens(target, diagnostics);
+    if (!recorded) return false;
+    goldens = *std::move(recorded);
+  }
+  for (const auto& [scene, tiers] : changes)
+    for (const auto& [tier, golden] : tiers) goldens[scene][tier] = golden;
   return scene::write_file(path, goldens_text(goldens), diagnostics);
 }
 

@@ -34,8 +34,10 @@ std::string golden_key(const std::string& scene_path, const std::string& golden_
 
 /// Reports a file that is missing or is no file of goldens.
 std::optional<Goldens> read_goldens(const std::string& path, support::Diagnostics& diagnostics);
-/// Sorted and indented, so that a change shows as one line. The file is replaced whole or not at all.
-bool write_goldens(const std::string& path, const Goldens& goldens, support::Diagnostics& diagnostics);
+/// Puts these into the file, or makes it; what else it holds by then stays, also what another process is putting there:
+/// they wait for each other, by a lock on the folder. Sorted and indented, so that a change shows as one line. The file
+/// is replaced whole or not at all.
+bool update_goldens(const std::string& path, const Goldens& changes, support::Diagnostics& diagnostics);
 std::string goldens_text(const Goldens& goldens);
 
 /// Empty if the scene is recorded with just these hashes; otherwise what is wrong, as one line.

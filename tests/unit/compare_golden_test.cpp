@@ -2,7 +2,9 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <thread>
 #include <unistd.h>
+#include <vector>
 
 #include "runtime/compare/golden.h"
 
@@ -33,10 +35,25 @@ TEST_F(GoldenFile, ReadsBackWhatItWrites) {
   goldens["a.json"]["precise"] = golden('2');
   goldens["a.json"]["default"] = golden('3');
   Diagnostics diagnostics;
-  ASSERT_TRUE(compare::write_goldens(path_, goldens, diagnostics));
+  ASSERT_TRUE(compare::update_goldens(path_, goldens, diagnostics));
   const auto read = compare::read_goldens(path_, diagnostics);
   ASSERT_TRUE(read) << diagnostics.text();
   EXPECT_EQ(*read, goldens);
+}
+
+TEST_F(GoldenFile, KeepsWhatOthersPutThereAtTheSameTime) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 16; ++i) {
+    threads.emplace_back([this, i] {
+      Goldens goldens;
+      goldens["scene" + std::to_string(i)]["default"] = golden('1');
+      Diagnostics diagnostics;
+      EXPECT_TRUE(compare::update_goldens(path_, goldens, diagnostics)) << diagnostics.text();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  Diagnostics diagnostics;
+  EXPECT_EQ(compare::read_goldens(path_, diagnostics)->size(), 16u);
 }
 
 TEST_F(GoldenFile, IsSortedAndIndented) {
