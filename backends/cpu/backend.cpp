@@ -285,7 +285,7 @@ std::unique_ptr<backends::Backend> create(const Options& options, Diagnostics& d
     report.suggest("choose one of " + choices);
     return nullptr;
   }
-  std::optional<Compiler> compiler = Compiler::find(options.compiler, diagnostics);
+  std::optional<Compiler> compiler = Compiler::find(options.compiler, diagnostics, options.build_timeout);
   if (!compiler) return nullptr;
   std::optional<Cache> cache = Cache::open(options.cache, diagnostics);
   if (!cache) return nullptr;

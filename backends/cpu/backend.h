@@ -7,6 +7,7 @@
 
 #include "backends/backend.h"
 #include "backends/cpu/kernel.h"
+#include "compiler/support/process.h"
 
 namespace isoshade::cpu {
 
@@ -19,6 +20,8 @@ struct Options {
   std::string compiler;
   /// Where compiled code is kept. Empty: isoshade in $XDG_CACHE_HOME or $HOME/.cache.
   std::string cache;
+  /// How long the compiler may take for one program.
+  support::Seconds build_timeout = support::default_time_limit;
   /// A folder that receives the generated C++; empty: none does.
   std::string keep;
   /// The text of a program; emit/stages.h tells what it must export.

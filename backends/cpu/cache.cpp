@@ -11,6 +11,7 @@
 #include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 #include "compiler/support/sha256.h"
 #include "compiler/support/visible.h"
@@ -25,14 +26,14 @@ using support::quote;
 
 // After the contents of an entry: this and their SHA-256 in hex.
 constexpr std::string_view seal_mark = "\nisoshade:";
-constexpr size_t seal_bytes = seal_mark.size() + 64;
-
-constexpr size_t most_entries = 1000;
+constexpr size_t hash_digits = 64;
+constexpr size_t seal_bytes = seal_mark.size() + hash_digits;
 constexpr auto oldest_workshop = std::chrono::hours(24);
 
 class File {
  public:
-  File(const std::string& path, int flags) : descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
+  File(const std::string& path, int flags)
+      : descriptor_(open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY, 0600)) {}
   ~File() {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
@@ -40,6 +41,13 @@ class File {
   File& operator=(const File&) = delete;
 
   bool is_open() const { return descriptor_ >= 0; }
+
+  /// Whether it is a file that only this user may have written.
+  bool is_own() const {
+    struct stat facts;
+    return fstat(descriptor_, &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_uid == geteuid() &&
+           (facts.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+  }
 
   bool read_all(std::string& text) const {
     text.clear();
@@ -75,27 +83,16 @@ class File {
   int descriptor_;
 };
 
-std::string reason() { return std::strerror(errno); }
-
 bool report_unwritable(const std::string& path, Diagnostics& diagnostics) {
-  const std::string why = reason();
-  diagnostics.report(Id::unwritable_cache, "cannot write " + quote(path) + ": " + why);
+  const int failure = errno;
+  diagnostics.report(Id::unwritable_cache, "cannot write " + quote(path) + ": " + std::strerror(failure))
+      .suggest(std::string(support::way_to_write(failure)));
   return false;
 }
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value ? value : "";
-}
-
-/// Empty where the user has no place of their own.
-std::string usual_folder() {
-  // The XDG base directory specification: a relative path is to be ignored.
-  const std::string caches = variable("XDG_CACHE_HOME");
-  if (caches.starts_with('/')) return caches + "/isoshade";
-  const std::string home = variable("HOME");
-  if (home.starts_with('/')) return home + "/.cache/isoshade";
-  return "";
 }
 
 /// Makes the folder and its parents; only the owner can enter what is made.
@@ -105,84 +102,147 @@ bool make_folders(const std::string& path) {
   return mkdir(path.c_str(), 0700) == 0 || errno == EEXIST;
 }
 
-enum class Folder { fit, absent, unsafe };
-
-Folder examine(const std::string& path) {
+/// Why code in the folder could be someone else's; empty if it could not.
+std::string danger_of(const std::string& folder) {
   struct stat facts;
-  if (stat(path.c_str(), &facts) != 0 || !S_ISDIR(facts.st_mode)) return Folder::absent;
-  if (facts.st_uid != geteuid() || (facts.st_mode & (S_IWGRP | S_IWOTH)) != 0) return Folder::unsafe;
-  return access(path.c_str(), W_OK | X_OK) == 0 ? Folder::fit : Folder::absent;
+  if (lstat(folder.c_str(), &facts) != 0) return "";
+  if (S_ISLNK(facts.st_mode)) return "is a symbolic link, and what it names may change";
+  if (facts.st_uid != geteuid()) return "belongs to someone else";
+  if ((facts.st_mode & (S_IWGRP | S_IWOTH)) != 0) return "is one that others may write to";
+  std::error_code error;
+  for (fs::path above = fs::canonical(folder, error).parent_path(); !error; above = above.parent_path()) {
+    if (stat(above.c_str(), &facts) == 0 && (facts.st_mode & S_IWOTH) != 0 && (facts.st_mode & S_ISVTX) == 0)
+      return "lies in " + quote(above.string()) + ", which others may write to";
+    if (above == above.parent_path()) break;
+  }
+  return "";
 }
 
-std::string temporary_parent() {
-  const std::string parent = variable("TMPDIR");
-  return parent.starts_with('/') ? parent : "/tmp";
+bool is_usable(const std::string& folder) {
+  struct stat facts;
+  return lstat(folder.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) &&
+         access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
-/// Workshops whose process must be gone, and entries beyond the limit, oldest first. Losing an entry is
-/// harmless.
-void tidy(const std::string& folder) {
-  std::error_code ignored;
-  const fs::file_time_type now = fs::file_time_type::clock::now();
-  std::vector<std::pair<fs::file_time_type, fs::path>> entries;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const fs::file_time_type used = entry.last_write_time(ignored);
-    if (entry.is_regular_file(ignored)) {
-      entries.emplace_back(used, entry.path());
-    } else if (entry.path().filename().string().starts_with("isoshade-") && now - used > oldest_workshop) {
-      fs::remove_all(entry.path(), ignored);
+constexpr std::string_view entry_ending = ".so";
+
+bool is_entry_name(const std::string& name) {
+  return name.size() == hash_digits + entry_ending.size() && name.ends_with(entry_ending) &&
+         name.find_first_not_of("0123456789abcdef") == hash_digits;
+}
+
+struct Entry {
+  fs::file_time_type used;
+  uint64_t bytes = 0;
+  fs::path path;
+};
+
+/// The entries, and the workshops that no process uses any more. Only what bears a name that a cache gives; no link is
+/// followed.
+struct Listing {
+  explicit Listing(const std::string& folder) {
+    const fs::file_time_type now = fs::file_time_type::clock::now();
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      std::error_code gone;  // another process may delete it at any time
+      const fs::file_status status = at->symlink_status(gone);
+      if (gone) continue;
+      if (is_entry_name(name) && fs::is_regular_file(status)) {
+        const fs::file_time_type used = at->last_write_time(gone);
+        const uint64_t bytes = gone ? 0 : at->file_size(gone);
+        if (!gone) entries.push_back({used, bytes, at->path()});
+      } else if (support::TemporaryFolder::is_name(name) && fs::is_directory(status)) {
+        const fs::file_time_type made = at->last_write_time(gone);
+        if (!gone && now - made > oldest_workshop) abandoned.push_back(at->path());
+      }
     }
   }
-  if (entries.size() <= most_entries) return;
-  std::sort(entries.begin(), entries.end());
-  entries.resize(entries.size() - most_entries / 2);
-  for (const auto& [used, path] : entries) fs::remove(path, ignored);
+
+  CacheContents sum() const {
+    CacheContents sum;
+    for (const Entry& entry : entries) sum.bytes += entry.bytes;
+    sum.entries = entries.size();
+    return sum;
+  }
+
+  std::vector<Entry> entries;
+  std::vector<fs::path> abandoned;
+};
+
+void remove_abandoned(const Listing& listing) {
+  std::error_code ignored;
+  for (const fs::path& path : listing.abandoned) fs::remove_all(path, ignored);
+}
+
+/// Losing an entry is harmless.
+void tidy(const std::string& folder, const CacheLimit& limit) {
+  Listing listing(folder);
+  remove_abandoned(listing);
+  CacheContents left = listing.sum();
+  if (left.entries <= limit.entries && left.bytes <= limit.bytes) return;
+  std::ranges::sort(listing.entries, {}, &Entry::used);
+  for (const Entry& entry : listing.entries) {
+    if (left.entries <= limit.entries / 2 && left.bytes <= limit.bytes / 2) break;
+    std::error_code ignored;
+    fs::remove(entry.path, ignored);
+    left.entries -= 1;
+    left.bytes -= entry.bytes;
+  }
 }
 
 }  // namespace
 
-std::optional<TemporaryFolder> TemporaryFolder::make(const std::string& parent) {
-  std::string path = parent + "/isoshade-XXXXXX";
-  if (!mkdtemp(path.data())) return std::nullopt;
-  return TemporaryFolder(std::move(path));
+std::string Cache::usual_folder() {
+  // The XDG base directory specification: a relative path is to be ignored.
+  const std::string caches = variable("XDG_CACHE_HOME");
+  if (caches.starts_with('/')) return caches + "/isoshade";
+  const std::string home = variable("HOME");
+  if (home.starts_with('/')) return home + "/.cache/isoshade";
+  return "";
 }
 
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  if (path_) fs::remove_all(*path_, ignored);
-}
+std::string Cache::entry_name(const std::string& key) { return key + std::string(entry_ending); }
 
 std::optional<Cache> Cache::open(const std::string& folder, Diagnostics& diagnostics) {
   const std::string wanted = folder.empty() ? usual_folder() : folder;
   if (!wanted.empty() && make_folders(wanted)) {
-    const Folder found = examine(wanted);
-    if (found == Folder::fit) return Cache(wanted, std::nullopt);
-    if (found == Folder::unsafe) {
+    const std::string danger = danger_of(wanted);
+    if (danger.empty() && is_usable(wanted)) return Cache(wanted, std::nullopt);
+    if (!danger.empty()) {
       diagnostics
-          .report(Id::unsafe_cache,
-                  "the cache folder " + quote(wanted) +
-                      " belongs to someone else, or others may write to it; code in it could be theirs")
-          .suggest("make it yours alone (chmod go-w), or set XDG_CACHE_HOME to a folder of your own");
-      return std::nullopt;
+          .report(Id::unsafe_cache, "the cache folder " + quote(wanted) + " " + danger +
+                                        "; code in it could be theirs, and so none is kept or used")
+          .suggest("make it a folder of yours alone (chmod go-w), or set XDG_CACHE_HOME to one");
     }
-  }
-  if (!folder.empty()) {
+  } else if (!folder.empty()) {
     report_unwritable(folder, diagnostics);
     return std::nullopt;
   }
-  std::optional<TemporaryFolder> temporary = TemporaryFolder::make(temporary_parent());
+  const std::string parent = support::temporary_parent();
+  std::optional<support::TemporaryFolder> temporary = support::TemporaryFolder::make(parent);
   if (!temporary) {
-    report_unwritable(temporary_parent(), diagnostics);
+    report_unwritable(parent, diagnostics);
     return std::nullopt;
   }
   std::string path = temporary->path();
   return Cache(std::move(path), std::move(temporary));
 }
 
+CacheContents Cache::contents() const { return Listing(folder_).sum(); }
+
+CacheContents Cache::clear() const {
+  const Listing listing(folder_);
+  remove_abandoned(listing);
+  std::error_code ignored;
+  for (const Entry& entry : listing.entries) fs::remove(entry.path, ignored);
+  return contents();
+}
+
 std::optional<std::string> Cache::find(const std::string& name) const {
   const std::string path = folder_ + "/" + name;
   const File file(path, O_RDONLY);
-  if (!file.is_open()) return std::nullopt;
+  if (!file.is_open() || !file.is_own()) return std::nullopt;
   std::string text;
   if (file.read_all(text) && text.size() > seal_bytes) {
     const std::string_view contents = std::string_view(text).substr(0, text.size() - seal_bytes);
@@ -195,9 +255,10 @@ std::optional<std::string> Cache::find(const std::string& name) const {
   return std::nullopt;
 }
 
-std::optional<TemporaryFolder> Cache::workshop(Diagnostics& diagnostics) const {
-  tidy(folder_);
-  std::optional<TemporaryFolder> made = TemporaryFolder::make(folder_);
+std::optional<support::TemporaryFolder> Cache::workshop(Diagnostics& diagnostics,
+                                                        const CacheLimit& limit) const {
+  tidy(folder_, limit);
+  std::optional<support::TemporaryFolder> made = support::TemporaryFolder::make(folder_);
   if (!made) report_unwritable(folder_, diagnostics);
   return made;
 }
@@ -214,9 +275,13 @@ bool Cache::store(const std::string& name, const std::string& path, Diagnostics&
     if (!file.is_open() || !file.write_all(seal) || !file.sync() || !file.close())
       return report_unwritable(path, diagnostics);
   }
-  if (rename(path.c_str(), (folder_ + "/" + name).c_str()) != 0)
-    return report_unwritable(folder_, diagnostics);
-  return true;
+  const std::string entry = folder_ + "/" + name;
+  if (rename(path.c_str(), entry.c_str()) == 0) return true;
+  // A folder in its place goes the way of the workshop.
+  if (errno == EISDIR && rename(entry.c_str(), (path + ".replaced").c_str()) == 0 &&
+      rename(path.c_str(), entry.c_str()) == 0)
+    return true;
+  return report_unwritable(folder_, diagnostics);
 }
 
 bool write_file(const std::string& path, std::string_view text, Diagnostics& diagnostics) {

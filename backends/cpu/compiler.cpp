@@ -2,11 +2,14 @@
 #include "backends/cpu/compiler.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
 #include <sys/stat.h>
+#include <unistd.h>
 
-#include "compiler/support/process.h"
+#include "compiler/support/temporary.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::cpu {
@@ -45,9 +48,21 @@ void note_lines(std::string_view text, support::Diagnostic& report) {
   if (count == 0) report.note("it said nothing");
 }
 
+/// What to do where a compiler failed with these words.
+std::string_view way_out_of(std::string_view words) {
+  // It speaks English here, and names these reasons as the system does.
+  for (const int failure : {ENOSPC, EDQUOT, EFBIG, EROFS})
+    if (words.find(std::strerror(failure)) != std::string_view::npos) return support::way_to_write(failure);
+  return way_out;
+}
+
+// Long for a program that only says what it is, also on a machine that is busy.
+constexpr support::Seconds longest_answer{20};
+
 }  // namespace
 
-std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& diagnostics) {
+std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& diagnostics,
+                                       support::Seconds limit) {
   const char* variable = std::getenv("ISOSHADE_CXX");
   std::string name = !wanted.empty() ? wanted : variable ? variable : "";
   Compiler compiler;
@@ -66,13 +81,14 @@ std::optional<Compiler> Compiler::find(const std::string& wanted, Diagnostics& d
     }
   }
   const std::optional<support::ProcessEnd> answer =
-      support::run_process({compiler.path_, "--version"}, {{"LC_ALL", "C"}});
-  if (!answer || answer->status != 0 || answer->output.empty()) {
+      support::run_process({compiler.path_, "--version"}, {{"LC_ALL", "C"}}, std::min(limit, longest_answer));
+  if (!answer || answer->late || answer->status != 0 || answer->output.empty()) {
     diagnostics
         .report(Id::no_compiler, quote(compiler.path_) + " is no compiler: it does not answer --version")
         .suggest(way_out);
     return std::nullopt;
   }
+  compiler.limit_ = limit;
   compiler.version_ = answer->output;
   compiler.identity_ = compiler.path_ + "\n" + file_facts(compiler.path_) + "\n" + compiler.version_;
   return compiler;
@@ -97,20 +113,29 @@ std::vector<std::string> Compiler::flags(const LaneCount& lanes) const {
   return result;
 }
 
-bool Compiler::compile(const std::string& folder, const LaneCount& lanes, Diagnostics& diagnostics) const {
+bool Compiler::compile(const std::string& folder, const std::string& what, const LaneCount& lanes,
+                       Diagnostics& diagnostics) const {
   std::vector<std::string> arguments = {path_};
   for (std::string& flag : flags(lanes)) arguments.push_back(std::move(flag));
   arguments.insert(arguments.end(), {"-I" + folder, "-o", folder + "/program.so", folder + "/program.cpp"});
   const std::optional<support::ProcessEnd> end =
-      support::run_process(arguments, {{"LC_ALL", "C"}, {"TMPDIR", folder}});
+      support::run_process(arguments, {{"LC_ALL", "C"}, {"TMPDIR", folder}}, limit_);
+  if (end && end->late) {
+    support::report_late(Id::compiler_failed, path_, "compile " + what, limit_, diagnostics)
+        .suggest("give it more time (--build-timeout SECONDS), or make the document smaller");
+    return false;
+  }
   const bool wrote = access((folder + "/program.so").c_str(), R_OK) == 0;
   if (end && end->status == 0 && wrote) return true;
-  const std::string what = !end                ? " could not be started"
-                           : end->status > 128 ? " was ended by signal " + std::to_string(end->status - 128)
-                           : end->status > 0   ? " failed with status " + std::to_string(end->status)
-                                               : " ended well but wrote no program";
-  support::Diagnostic& report = diagnostics.report(Id::compiler_failed, quote(path_) + what).suggest(way_out);
-  note_lines(end ? end->output : "", report);
+  const std::string failed = !end                ? " could not be started"
+                             : end->status > 128 ? " was ended by signal " + std::to_string(end->status - 128)
+                             : end->status > 0   ? " failed with status " + std::to_string(end->status)
+                                                 : " ended well but wrote no program";
+  const std::string words = end ? end->output : "";
+  support::Diagnostic& report =
+      diagnostics.report(Id::compiler_failed, quote(path_) + failed + " as it compiled " + what)
+          .suggest(std::string(way_out_of(words)));
+  note_lines(words, report);
   return false;
 }
 

@@ -8,14 +8,16 @@
 
 #include "backends/cpu/lane_count.h"
 #include "compiler/support/diagnostics.h"
+#include "compiler/support/process.h"
 
 namespace isoshade::cpu {
 
 class Compiler {
  public:
   /// `wanted` is a path or a name on PATH; empty: $ISOSHADE_CXX, else the first of c++, g++ and clang++ on
-  /// PATH. Reports if there is none.
-  static std::optional<Compiler> find(const std::string& wanted, support::Diagnostics& diagnostics);
+  /// PATH. Reports if there is none. `limit` is how long one program may take to compile.
+  static std::optional<Compiler> find(const std::string& wanted, support::Diagnostics& diagnostics,
+                                      support::Seconds limit = support::default_time_limit);
 
   const std::string& path() const { return path_; }
   /// As it says itself: "g++ (Debian 12.2.0-14) 12.2.0".
@@ -26,13 +28,16 @@ class Compiler {
   /// The options that every shared object is compiled with.
   std::vector<std::string> flags(const LaneCount& lanes) const;
 
-  /// Compiles program.cpp to program.so, both in `folder`, where the headers are too.
-  bool compile(const std::string& folder, const LaneCount& lanes, support::Diagnostics& diagnostics) const;
+  /// Compiles program.cpp to program.so, both in `folder`, where the headers are too. Messages say `what` it is: "the
+  /// pixel program of \"a.json\"".
+  bool compile(const std::string& folder, const std::string& what, const LaneCount& lanes,
+               support::Diagnostics& diagnostics) const;
 
  private:
   std::string path_;
   std::string version_;  ///< all that it says
   std::string identity_;
+  support::Seconds limit_{};
 };
 
 }  // namespace isoshade::cpu

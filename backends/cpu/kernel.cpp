@@ -147,10 +147,10 @@ std::optional<std::vector<const Kernel*>> KernelStore::kernels(
 
 std::unique_ptr<Kernel> KernelStore::make(const driver::Program& program, const std::string& text,
                                           const std::string& key, Diagnostics& diagnostics) const {
-  const std::string entry = key + ".so";
+  const std::string entry = Cache::entry_name(key);
   std::optional<std::string> path = cache_.find(entry);
   if (!path) {
-    if (!compile(text, entry, diagnostics)) return nullptr;
+    if (!compile(program, text, entry, diagnostics)) return nullptr;
     path = cache_.find(entry);
   }
   if (!path) {
@@ -161,11 +161,14 @@ std::unique_ptr<Kernel> KernelStore::make(const driver::Program& program, const 
   return Kernel::load(*path, program.stage, diagnostics);
 }
 
-bool KernelStore::compile(const std::string& text, const std::string& entry, Diagnostics& diagnostics) const {
-  const std::optional<TemporaryFolder> workshop = cache_.workshop(diagnostics);
+bool KernelStore::compile(const driver::Program& program, const std::string& text, const std::string& entry,
+                          Diagnostics& diagnostics) const {
+  const std::string what = "the " + std::string(lower::name(program.stage)) + " program of " +
+                           quote(program.document.empty() ? program.name : program.document);
+  const std::optional<support::TemporaryFolder> workshop = cache_.workshop(diagnostics);
   return workshop && write_headers(workshop->path(), diagnostics) &&
          write_file(workshop->path() + "/program.cpp", text, diagnostics) &&
-         compiler_.compile(workshop->path(), lanes_, diagnostics) &&
+         compiler_.compile(workshop->path(), what, lanes_, diagnostics) &&
          cache_.store(entry, workshop->path() + "/program.so", diagnostics);
 }
 

@@ -72,7 +72,8 @@ class KernelStore {
  private:
   std::unique_ptr<Kernel> make(const driver::Program& program, const std::string& text,
                                const std::string& key, support::Diagnostics& diagnostics) const;
-  bool compile(const std::string& text, const std::string& entry, support::Diagnostics& diagnostics) const;
+  bool compile(const driver::Program& program, const std::string& text, const std::string& entry,
+               support::Diagnostics& diagnostics) const;
   std::string key_of(const std::string& text) const;
 
   Compiler compiler_;

@@ -6,11 +6,18 @@
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <string_view>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
+#include <utility>
+
+#include "compiler/support/leftovers.h"
+#include "compiler/support/parse_number.h"
+#include "compiler/support/visible.h"
 
 namespace isoshade::support {
 namespace {
@@ -24,14 +31,17 @@ class SpawnSettings {
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
-    // Whatever this process ignores or blocks is its own affair.
+    // Whatever this process ignores or blocks is its own affair; but a limit on file sizes that it ignores is told by
+    // the child in words, where the signal would only end it.
     posix_spawnattr_init(&attributes);
     sigset_t signals;
     sigemptyset(&signals);
     posix_spawnattr_setsigmask(&attributes, &signals);
     sigaddset(&signals, SIGPIPE);
     posix_spawnattr_setsigdefault(&attributes, &signals);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    posix_spawnattr_setpgroup(&attributes, 0);  // one of its own, so that all that it starts can be ended
+    posix_spawnattr_setflags(&attributes,
+                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   }
   ~SpawnSettings() {
     posix_spawn_file_actions_destroy(&files);
@@ -63,16 +73,67 @@ std::vector<char*> pointers(const std::vector<std::string>& strings) {
   return result;
 }
 
-/// Reads to the end, so that the writer is never held up.
-std::string read_all(int file) {
-  std::string text;
-  char part[4096];
-  while (true) {
-    const ssize_t n = read(file, part, sizeof part);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return text;
-    text.append(part, std::min(static_cast<size_t>(n), most_output - text.size()));
+class Output {
+ public:
+  explicit Output(int file) : file_(file) {}
+  ~Output() { end(); }
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  bool is_open() const { return file_ >= 0; }
+  std::string take() { return std::move(text_); }
+
+  /// Waits for more of it, not longer than this, and reads what there is, so that the writer is never held up.
+  void read_for(int milliseconds) {
+    pollfd event{file_, POLLIN, 0};
+    if (poll(&event, 1, milliseconds) <= 0) return;
+    char part[4096];
+    const ssize_t n = read(file_, part, sizeof part);
+    if (n < 0 && errno == EINTR) return;
+    if (n <= 0) return end();
+    text_.append(part, std::min(static_cast<size_t>(n), most_output - text_.size()));
   }
+  /// Reads what is there already.
+  void read_rest() {
+    for (pollfd event{file_, POLLIN, 0}; is_open() && poll(&event, 1, 0) > 0;) read_for(0);
+  }
+
+ private:
+  void end() {
+    if (file_ >= 0) close(file_);
+    file_ = -1;
+  }
+
+  int file_;
+  std::string text_;
+};
+
+/// Whether the child has ended; it stays a zombie, so that its number is not given to another process.
+bool has_ended(pid_t child, bool wait) {
+  siginfo_t info{};
+  while (waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG)) != 0)
+    if (errno != EINTR) return true;
+  return info.si_pid == child;
+}
+
+/// Waits for the child, which leads a group of its own, and kills the group when the time is over. Returns whether it
+/// had to. What the child leaves running may hold its output open: that is not waited for.
+bool wait_for(pid_t child, Output& output, Seconds limit) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+  constexpr int tick = 20;  // milliseconds in which the end of the child may go unseen
+  while (!has_ended(child, false)) {
+    if (Clock::now() >= end) {
+      kill(-child, SIGKILL);
+      has_ended(child, true);
+      return true;
+    }
+    if (output.is_open())
+      output.read_for(tick);
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
 }
 
 bool is_program(const std::string& path) {
@@ -100,24 +161,44 @@ std::string find_program(const std::string& name) {
   return search_path(name);
 }
 
-std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments, const Variables& variables) {
+std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments, const Variables& variables,
+                                      Seconds limit) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+  Output output(ends[0]);
   const std::vector<std::string> environment = environment_with(variables);
-  pid_t child = 0;
   const SpawnSettings settings(ends[1]);
-  const int failure = posix_spawn(&child, arguments[0].c_str(), &settings.files, &settings.attributes,
-                                  pointers(arguments).data(), pointers(environment).data());
+  pid_t child = 0;
+  int failure = 0;
+  {
+    const auto lock = Leftovers::lock();
+    failure = posix_spawn(&child, arguments[0].c_str(), &settings.files, &settings.attributes,
+                          pointers(arguments).data(), pointers(environment).data());
+    if (failure == 0) Leftovers::add_group(child);
+  }
   close(ends[1]);
-  ProcessEnd result{-1, failure == 0 ? read_all(ends[0]) : ""};
-  close(ends[0]);
   if (failure != 0) return std::nullopt;
 
+  ProcessEnd result{-1, "", wait_for(child, output, limit)};
+  output.read_rest();
+  {
+    const auto lock = Leftovers::lock();
+    Leftovers::remove_group(child);
+  }
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return std::nullopt;
+  result.output = output.take();
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+Diagnostic& report_late(Id id, const std::string& program, const std::string& what, Seconds limit,
+                        Diagnostics& diagnostics) {
+  std::string seconds = format_float(static_cast<float>(limit.count()));
+  if (seconds.ends_with(".0")) seconds.resize(seconds.size() - 2);
+  return diagnostics.report(id, quote(program) + " did not " + what + " within " + seconds +
+                                    (seconds == "1" ? " second" : " seconds") + ", and was ended");
 }
 
 }  // namespace isoshade::support

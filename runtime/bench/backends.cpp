@@ -35,6 +35,7 @@ bool add_cpu(const Options& options, std::vector<Contestant>& all, Diagnostics& 
     cpu.lanes = count;
     cpu.threads = options.threads;
     cpu.compiler = options.compiler;
+    cpu.build_timeout = options.build_timeout;
     cpu.cpp = remembered([](const driver::Program& program) { return driver::cpp(program); });
     auto device = cpu::create(cpu, diagnostics);
     if (device == nullptr) return false;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/support/diagnostics.h"
+#include "compiler/support/process.h"
 
 namespace isoshade::bench {
 
@@ -22,7 +23,8 @@ struct Options {
   std::vector<std::string> lanes;  ///< of the cpu backend; empty: all that the machine has
   int threads = 1;                 ///< of the cpu backend
   std::string compiler;            ///< of generated C++
-  bool vulkan = true;              ///< with GLSL's own built-ins beside it
+  support::Seconds build_timeout = support::default_time_limit;
+  bool vulkan = true;  ///< with GLSL's own built-ins beside it
   std::string device;
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 };

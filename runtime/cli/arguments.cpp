@@ -40,8 +40,9 @@ const CLI::Validator size_text(
 std::optional<NamedRange> parse_range(const std::string& text) {
   const size_t equals = text.find('='), colon = text.find(':', std::min(equals, text.size()));
   if (equals == 0 || equals == std::string::npos || colon == std::string::npos) return std::nullopt;
-  const auto lo = support::parse_float(std::string_view(text).substr(equals + 1, colon - equals - 1));
-  const auto hi = support::parse_float(std::string_view(text).substr(colon + 1));
+  const auto lo =
+      support::parse_float_in_range(std::string_view(text).substr(equals + 1, colon - equals - 1));
+  const auto hi = support::parse_float_in_range(std::string_view(text).substr(colon + 1));
   if (!lo || !hi || !(*lo <= *hi)) return std::nullopt;
   return NamedRange{text.substr(0, equals), *lo, *hi};
 }
@@ -56,9 +57,18 @@ const CLI::Validator range_text(
 /// CLI::Range takes what is no number.
 const CLI::Validator time_text(
     [](std::string& text) {
-      const auto time = support::parse_float(text);
+      const auto time = support::parse_float_in_range(text);
       return time && *time >= -1e9f && *time <= 1e9f ? std::string()
                                                      : "\"" + text + "\" is no number from -1e9 to 1e9";
+    },
+    "SECONDS");
+
+const CLI::Validator limit_text(
+    [](std::string& text) {
+      const auto limit = support::parse_float_in_range(text);
+      return limit && *limit >= 0.001f && *limit <= 86400
+                 ? std::string()
+                 : "\"" + text + "\" is no number of seconds from 0.001 to 86400";
     },
     "SECONDS");
 
@@ -170,6 +180,14 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->take_all();
   app.add_flag("--allow-outside", parsed.common.allow_outside,
                "Let documents name files outside of their folder tree and the library");
+  app.add_option_function<std::string>(
+         "--build-timeout",
+         [&parsed](const std::string& text) {
+           parsed.common.build_timeout = support::Seconds(*support::parse_float_in_range(text));
+         },
+         "Seconds after which a C++ compiler, Graphviz or gnuplot that has not ended is ended")
+      ->check(limit_text)
+      ->default_str("120");
   app.add_option("--library", parsed.common.library, "Folder of the library's function documents")
       ->envname("ISOSHADE_LIBRARY")
       ->check(CLI::ExistingDirectory);
@@ -301,6 +319,12 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(lane_names);
   add_choice(*bench_app, bench.choice, false);
 
+  CacheArguments cache;
+  CLI::App* cache_app =
+      app.add_subcommand("cache", "Tell where compiled C++ is kept, and how much of it there is");
+  cache_app->add_flag("--clear", cache.clear,
+                      "Delete all that is kept; it is compiled again when it is needed");
+
   DevicesArguments devices;
   CLI::App* devices_app =
       app.add_subcommand("devices", "List Vulkan devices and what the probe finds on each");
@@ -355,6 +379,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (format_app->parsed()) parsed.format = format;
   if (draw_app->parsed()) parsed.draw = draw;
   if (bench_app->parsed()) parsed.bench = bench;
+  if (cache_app->parsed()) parsed.cache = cache;
   if (devices_app->parsed()) parsed.devices = devices;
   if (nodes_app->parsed()) parsed.nodes = nodes;
   if (schema_app->parsed()) parsed.schema.emplace();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/functions/tier.h"
+#include "compiler/support/process.h"
 
 namespace isoshade::cli {
 
@@ -118,6 +119,10 @@ struct BenchArguments {
   BackendChoice choice;
 };
 
+struct CacheArguments {
+  bool clear = false;
+};
+
 struct DevicesArguments {
   BackendChoice choice;
 };
@@ -133,8 +138,9 @@ struct Common {
   bool quiet = false;
   bool json = false;  ///< diagnostics as a JSON array, and nothing else on stderr
   bool warnings_as_errors = false;
-  std::vector<std::string> disabled;  ///< ids of warnings
-  bool allow_outside = false;         ///< documents may name files anywhere
+  std::vector<std::string> disabled;                             ///< ids of warnings
+  bool allow_outside = false;                                    ///< documents may name files anywhere
+  support::Seconds build_timeout = support::default_time_limit;  ///< of each compiler and drawing program
   std::string library;  ///< the folder of library documents; empty: found beside the command or as installed
 };
 
@@ -148,6 +154,7 @@ struct Arguments {
   std::optional<FormatArguments> format;
   std::optional<DrawArguments> draw;
   std::optional<BenchArguments> bench;
+  std::optional<CacheArguments> cache;
   std::optional<DevicesArguments> devices;
   std::optional<NodesArguments> nodes;
   std::optional<SchemaArguments> schema;

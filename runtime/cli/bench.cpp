@@ -25,8 +25,15 @@ std::optional<std::string> find_gnuplot(support::Diagnostics& diagnostics) {
   return std::nullopt;
 }
 
-bool draw_picture(const std::string& gnuplot, const std::string& script, support::Diagnostics& diagnostics) {
-  const auto end = support::run_process({gnuplot, script});
+bool draw_picture(const std::string& gnuplot, const std::string& script, support::Seconds limit,
+                  support::Diagnostics& diagnostics) {
+  const auto end = support::run_process({gnuplot, script}, {}, limit);
+  if (end && end->late) {
+    support::report_late(support::Id::no_gnuplot, gnuplot, "draw " + support::quote(script), limit,
+                         diagnostics)
+        .suggest("give it more time (--build-timeout SECONDS), or leave the picture out by --no-picture");
+    return false;
+  }
   if (end && end->status == 0) return true;
   diagnostics.report(support::Id::no_gnuplot,
                      "`gnuplot` failed: " + (end ? support::quote(end->output) : "it cannot be run"));
@@ -41,6 +48,7 @@ bench::Options options_of(const BenchArguments& arguments, const Common& common)
   options.lanes = arguments.lanes;
   options.threads = arguments.choice.threads > 0 ? arguments.choice.threads : 1;
   options.compiler = arguments.choice.compiler;
+  options.build_timeout = common.build_timeout;
   options.device = arguments.choice.device;
   options.vulkan = !arguments.without_vulkan;
   options.progress = [&common](const std::string& line) { progress(common, line); };
@@ -77,7 +85,7 @@ bool bench_to_folder(const BenchArguments& arguments, const Common& common, supp
          scene::write_file(stem + ".json", bench::json_text(*report), diagnostics) &&
          (!draws ||
           (scene::write_file(stem + ".gp", bench::gnuplot_text(*report, stem + ".svg"), diagnostics) &&
-           draw_picture(*gnuplot, stem + ".gp", diagnostics)));
+           draw_picture(*gnuplot, stem + ".gp", common.build_timeout, diagnostics)));
 }
 
 }  // namespace

@@ -130,6 +130,7 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   if (source == nullptr) return Result::error;
   const auto typed = driver::check_document(source, options, diagnostics);
   if (typed == nullptr) return Result::error;
+  if (!arguments.output.empty() && !may_write(arguments.output, diagnostics)) return Result::error;
   const auto subjects = analysis::subjects_of(*typed, diagnostics, arguments.precision);
   if (!subjects) return Result::error;
   Result result = Result::proved;
@@ -167,9 +168,15 @@ int check_documents(const CheckArguments& arguments, const Common& common) {
   support::Diagnostics diagnostics =
       common.json ? make_diagnostics(common, most_for_tools) : make_diagnostics(common);
   int exit = success;
-  if (!read_standard_input_once(arguments.documents, diagnostics) ||
-      (!arguments.output.empty() && !may_write(arguments.output, arguments.documents, diagnostics)))
+  if (!read_standard_input_once(arguments.documents, diagnostics)) exit = failure;
+  if (!arguments.output.empty() && arguments.documents.size() > 1) {
+    diagnostics
+        .report(support::Id::unwritable_file, support::quote(arguments.output) +
+                                                  " would be written once for each of " +
+                                                  std::to_string(arguments.documents.size()) + " documents")
+        .suggest("with -o, check one document at a time");
     exit = failure;
+  }
   for (const std::string& document : arguments.documents) {
     if (exit == failure) break;
     switch (check_one(document, arguments, common, diagnostics)) {

@@ -51,6 +51,7 @@ class Writer {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(),
                                         error);  // write_file reports what cannot be written
+    if (!may_write(path.string(), diagnostics_)) return false;
     if (is_document(path)) {
       diagnostics_
           .report(support::Id::unwritable_file,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade draw: a graph as a picture.
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
-#include <unistd.h>
 
 #include "compiler/driver/drawing.h"
 #include "compiler/driver/driver.h"
 #include "compiler/support/process.h"
+#include "compiler/support/temporary.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
@@ -16,26 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this process alone, gone with the object.
-class PrivateFolder {
- public:
-  PrivateFolder() {
-    std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "isoshade-XXXXXX").string();
-    if (mkdtemp(pattern.data()) != nullptr) path = pattern;
-  }
-  ~PrivateFolder() {
-    std::error_code error;
-    if (!path.empty()) fs::remove_all(path, error);
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-
-  fs::path path;
-};
-
 /// The picture in `format` as Graphviz makes it of `dot`; through files, so that no shell is needed.
-std::optional<std::string> lay_out(const std::string& dot, const std::string& format,
+std::optional<std::string> lay_out(const std::string& dot, const std::string& document,
+                                   const std::string& format, support::Seconds limit,
                                    support::Diagnostics& diagnostics) {
   const auto fail = [&](const std::string& message) {
     diagnostics.report(support::Id::no_graphviz, message)
@@ -44,12 +29,28 @@ std::optional<std::string> lay_out(const std::string& dot, const std::string& fo
   };
   const std::string program = support::find_program("dot");
   if (program.empty()) return fail("there is no `dot` on PATH");
-  const PrivateFolder folder;
-  if (folder.path.empty()) return fail("no temporary folder can be made");
-  const std::string input = (folder.path / "graph.dot").string();
-  const std::string output = (folder.path / ("graph." + format)).string();
+  const auto folder = support::TemporaryFolder::make(support::temporary_parent());
+  if (!folder) {
+    const int failure = errno;
+    diagnostics
+        .report(support::Id::unwritable_file, "no temporary folder can be made in " +
+                                                  support::quote(support::temporary_parent()) + ": " +
+                                                  std::strerror(failure))
+        .suggest("set TMPDIR to a folder that can be written");
+    return std::nullopt;
+  }
+  const std::string input = folder->path() + "/graph.dot";
+  const std::string output = folder->path() + "/graph." + format;
   if (!scene::write_file(input, dot, diagnostics)) return std::nullopt;
-  const auto end = support::run_process({program, "-T" + format, "-o", output, input});
+  const auto end = support::run_process({program, "-T" + format, "-o", output, input}, {}, limit);
+  if (end && end->late) {
+    support::report_late(support::Id::no_graphviz, program, "draw " + support::quote(document), limit,
+                         diagnostics)
+        .suggest(
+            "give it more time (--build-timeout SECONDS), or write a .dot file and draw it by another "
+            "layout");
+    return std::nullopt;
+  }
   if (!end || end->status != 0)
     return fail("`dot` failed: " + (end ? support::quote(end->output) : "it cannot be run"));
   const support::Source picture = graph::read_source(output, diagnostics);
@@ -69,10 +70,10 @@ bool draw_to_file(const DrawArguments& arguments, const Common& common, support:
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
   if (source == nullptr) return false;
   const auto graph = driver::check_document(source, options, diagnostics);
-  if (graph == nullptr) return false;
+  if (graph == nullptr || !may_write(arguments.output, diagnostics)) return false;
   const std::string dot = driver::draw(*graph, arguments.depth);
   if (format == ".dot") return scene::write_file(arguments.output, dot, diagnostics);
-  const auto picture = lay_out(dot, format.substr(1), diagnostics);
+  const auto picture = lay_out(dot, arguments.graph, format.substr(1), common.build_timeout, diagnostics);
   return picture && scene::write_file(arguments.output, *picture, diagnostics);
 }
 

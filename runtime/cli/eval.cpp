@@ -12,8 +12,7 @@ namespace {
 
 bool evaluate(const EvalArguments& arguments, const Common& common, support::Diagnostics& diagnostics) {
   const std::vector<std::string> read = {arguments.function, arguments.inputs};
-  if (!read_standard_input_once(read, diagnostics) || !may_write(arguments.output, read, diagnostics))
-    return false;
+  if (!read_standard_input_once(read, diagnostics)) return false;
   check::Library library = make_library(common);
   driver::Options options;
   options.library = &library;
@@ -26,7 +25,7 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   const support::Source table = graph::read_source(arguments.inputs, diagnostics);
   if (table == nullptr) return false;
   const auto inputs = read_table(table, program->inputs, diagnostics);
-  if (!inputs) return false;
+  if (!inputs || !may_write(arguments.output, diagnostics)) return false;
   const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
   if (backend == nullptr) return false;
   progress(common, "evaluating " + std::to_string(inputs->rows) + " rows on " + backend->description());

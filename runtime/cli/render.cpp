@@ -60,9 +60,7 @@ namespace {
 /// The exit code.
 int render_to_file(const RenderArguments& arguments, const Common& common,
                    support::Diagnostics& diagnostics) {
-  if (!scene::check_image_path(arguments.output, diagnostics) ||
-      !may_write(arguments.output, {arguments.scene}, diagnostics))
-    return failure;
+  if (!scene::check_image_path(arguments.output, diagnostics)) return failure;
   auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
   if (!scene) return failure;
   check::Library library = make_library(common);
@@ -75,7 +73,7 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
   options.compiler.reference = arguments.backend == "reference";
   options.compiler.tier = arguments.precision;
   const auto plan = render::plan_frame(*scene, options, diagnostics);
-  if (!plan) return failure;
+  if (!plan || !may_write(arguments.output, diagnostics)) return failure;
   const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
   if (backend == nullptr) return failure;
   progress(common, "rendering on " + backend->description());

@@ -11,6 +11,7 @@
 #include "backends/cpu/backend.h"
 #include "backends/interpreter/backend.h"
 #include "backends/reference/backend.h"
+#include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/places.h"
 #ifdef ISOSHADE_VULKAN
@@ -62,17 +63,12 @@ bool flush(support::Diagnostics& diagnostics, const Common& common) {
   return diagnostics.has_errors();
 }
 
-bool may_write(const std::string& path, const std::vector<std::string>& inputs,
-               support::Diagnostics& diagnostics) {
-  std::error_code error;
-  for (const std::string& input : inputs) {
-    if (!fs::equivalent(path, input, error) || !fs::is_regular_file(path, error)) continue;
-    diagnostics
-        .report(support::Id::unwritable_file, "writing " + support::quote(path) + " would destroy an input")
-        .suggest("give the output another name");
-    return false;
-  }
-  return true;
+bool may_write(const std::string& path, support::Diagnostics& diagnostics) {
+  if (path == "-" || !support::was_read(path)) return true;
+  diagnostics
+      .report(support::Id::unwritable_file, "writing " + support::quote(path) + " would destroy an input")
+      .suggest("give the output another name");
+  return false;
 }
 
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics) {
@@ -110,8 +106,15 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
   options.lanes = choice.lanes;
   options.threads = choice.threads;
   options.compiler = choice.compiler;
+  options.build_timeout = common.build_timeout;
   support::Diagnostics reported;
-  if (auto backend = cpu::create(options, reported)) return backend;
+  if (auto backend = cpu::create(options, reported)) {
+    for (const support::Diagnostic& warning : reported.all())
+      if (std::ranges::find(diagnostics.all(), warning.message, &support::Diagnostic::message) ==
+          diagnostics.all().end())
+        diagnostics.report(warning.id, warning.message).suggest(warning.fix);
+    return backend;
+  }
   const bool no_compiler = reported.all().size() == 1 && reported.all()[0].id == support::Id::no_compiler;
   const char* named = std::getenv("ISOSHADE_CXX");
   const bool asked_for = !choice.compiler.empty() || (named != nullptr && *named != '\0');

@@ -29,9 +29,9 @@ bool flush(support::Diagnostics& diagnostics, const Common& common);
 /// Progress for a person: to stderr, if that is a terminal and nobody asked for quiet.
 void progress(const Common& common, const std::string& line);
 
-/// Whether it is safe to write the file: it is none of those that are read. Reports if it is one.
-bool may_write(const std::string& path, const std::vector<std::string>& inputs,
-               support::Diagnostics& diagnostics);
+/// Whether it is safe to write the file: it is none of those that have been read so far, whatever named them. Ask when
+/// all is read and nothing computed. Reports if it is one.
+bool may_write(const std::string& path, support::Diagnostics& diagnostics);
 
 /// Whether "-" stands at most once among the files to be read. Reports if not.
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics);
@@ -53,6 +53,7 @@ int check_documents(const CheckArguments& arguments, const Common& common);
 int format(const FormatArguments& arguments, const Common& common);
 int draw(const DrawArguments& arguments, const Common& common);
 int bench(const BenchArguments& arguments, const Common& common);
+int cache(const CacheArguments& arguments, const Common& common);
 int devices(const DevicesArguments& arguments, const Common& common);
 int nodes(const NodesArguments& arguments, const Common& common);
 int schema(const Common& common);

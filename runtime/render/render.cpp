@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/render/render.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/check.h"
+#include "compiler/support/memory.h"
 #include "compiler/support/release.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
@@ -22,11 +24,28 @@ raster::Cull to_raster(backends::Cull cull) {
   return raster::Cull::none;
 }
 
+/// What the images of a frame take at the least: those that are drawn and the ones that posts keep, beside the arrays
+/// that a post reads. The drawing itself takes more, which only the backend knows.
+uint64_t image_bytes(const Plan& plan) {
+  constexpr uint64_t color = 4 * sizeof(float), depth = sizeof(float);
+  const auto each_way = static_cast<uint64_t>(samples_each_way(plan.samples));
+  const uint64_t pixels = static_cast<uint64_t>(plan.frame.width) * static_cast<uint64_t>(plan.frame.height) /
+                          (each_way * each_way);
+  uint64_t of_posts = 0;
+  for (const PostStep& step : plan.posts.steps)
+    of_posts =
+        std::max(of_posts, static_cast<uint64_t>(step.width) * static_cast<uint64_t>(step.height) * color);
+  return pixels * (color + depth) + (plan.posts.steps.empty() ? 0 : of_posts + pixels * color);
+}
+
 }  // namespace
 
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics) {
   const backends::Frame& frame = plan.frame;
+  if (!support::check_memory(image_bytes(plan), "the image", "choose a smaller --size, or fewer posts",
+                             diagnostics))
+    return false;
   Clock clock;
   double built = backend.build_seconds();
   stats.build_seconds = 0;

@@ -42,7 +42,7 @@ struct Files {
   static bool read(std::vector<unsigned char>* out, std::string* why, const std::string& path, void* self) {
     Files& files = *static_cast<Files*>(self);
     if (!exists(path, self)) return false;
-    const auto [bytes, id, reason] = read_file_bytes(path, files.bytes_left);
+    const auto [bytes, id, reason] = support::read_file(path, files.bytes_left);
     if (!bytes) {
       if (why != nullptr) *why = reason;
       return false;
@@ -92,31 +92,6 @@ bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tiny
 
 }  // namespace
 
-FileBytes read_file_bytes(const std::string& path, size_t limit) {
-  if (path.find('\0') != std::string::npos) return {{}, Id::unreadable_file, "the name has a NUL byte"};
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::exists(status) && !fs::is_regular_file(status))
-    return {{}, Id::unreadable_file, "it is no regular file"};
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             [](std::FILE* f) { return std::fclose(f); });
-  if (file == nullptr) {
-    const bool missing = errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG;
-    return {{}, missing ? Id::missing_file : Id::unreadable_file, std::strerror(errno)};
-  }
-  std::string bytes;
-  char buffer[1 << 16];
-  while (bytes.size() <= limit) {
-    const size_t count = std::fread(buffer, 1, sizeof buffer, file.get());
-    bytes.append(buffer, count);
-    if (count < sizeof buffer) break;
-  }
-  if (std::ferror(file.get()) != 0) return {{}, Id::unreadable_file, std::strerror(errno)};
-  if (bytes.size() > limit)
-    return {{}, Id::too_large, "it has more than " + std::to_string(limit >> 20) + " MiB"};
-  return {std::move(bytes), {}, {}};
-}
-
 void Refusal::report(const std::string& file, const support::Span& where, Diagnostics& diagnostics) const {
   diagnostics.report(id_, where,
                      (part_.empty() ? "cannot read the mesh " : "cannot read " + part_ + " of ") +
@@ -125,7 +100,7 @@ void Refusal::report(const std::string& file, const support::Span& where, Diagno
 
 std::optional<GltfModel> load_gltf(const std::string& path, const support::Span& where,
                                    Diagnostics& diagnostics) {
-  const auto [bytes, id, reason] = read_file_bytes(path, max_gltf_bytes);
+  const auto [bytes, id, reason] = support::read_file(path, max_gltf_bytes);
   if (!bytes) {
     diagnostics.report(id, where, "cannot read " + quote(path) + ": " + reason);
     return std::nullopt;

@@ -26,14 +26,14 @@ std::string percent_decoded(const std::string& uri) {
   return decoded;
 }
 
-FileBytes bytes_in_file(const std::string& path, const ImageBytes& images) {
+support::FileBytes bytes_in_file(const std::string& path, const ImageBytes& images) {
   if (path.find('\0') == std::string::npos && !graph::is_within(graph::canonical_path(path), images.folder))
     return {{}, Id::outside_reference, "it lies outside of the folder of the glTF"};
-  return read_file_bytes(path, max_gltf_bytes);
+  return support::read_file(path, max_gltf_bytes);
 }
 
-FileBytes bytes_in_buffer(const tinygltf::Model& model, int view) {
-  const FileBytes outside{{}, Id::bad_image, "it lies outside of its buffer"};
+support::FileBytes bytes_in_buffer(const tinygltf::Model& model, int view) {
+  const support::FileBytes outside{{}, Id::bad_image, "it lies outside of its buffer"};
   if (view < 0 || static_cast<size_t>(view) >= model.bufferViews.size()) return outside;
   const tinygltf::BufferView& part = model.bufferViews[static_cast<size_t>(view)];
   if (part.buffer < 0 || static_cast<size_t>(part.buffer) >= model.buffers.size()) return outside;
@@ -57,7 +57,8 @@ std::optional<GltfImage> read_gltf_image(const tinygltf::Model& model, int image
   }
   std::shared_ptr<const std::string>& kept = images.by_index[image];
   if (kept == nullptr) {
-    FileBytes read = from.uri.empty() ? bytes_in_buffer(model, from.bufferView) : bytes_in_file(name, images);
+    support::FileBytes read =
+        from.uri.empty() ? bytes_in_buffer(model, from.bufferView) : bytes_in_file(name, images);
     if (!read.bytes) {
       refusal.refuse(read.id, std::move(part), std::move(read.reason));
       return std::nullopt;

@@ -13,6 +13,7 @@
 
 #include "compiler/graph/document.h"
 #include "compiler/support/diagnostics.h"
+#include "compiler/support/read_file.h"
 #include "runtime/scene/gltf.h"
 
 namespace isoshade::scene {
@@ -35,14 +36,6 @@ class Refusal {
   std::string part_;
   std::string reason_;
 };
-
-/// The bytes of a regular file, or the reason why there are none.
-struct FileBytes {
-  std::optional<std::string> bytes;
-  support::Id id = support::Id::unreadable_file;
-  std::string reason;
-};
-FileBytes read_file_bytes(const std::string& path, size_t limit);
 
 /// The text of a .gltf file, or of the first chunk of a .glb.
 std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal);

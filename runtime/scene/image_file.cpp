@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/image_codecs.h"
 #include "runtime/scene/output_file.h"
@@ -103,26 +102,10 @@ std::string refuse_size(int64_t width, int64_t height) {
 
 std::optional<std::string> read_image_file(const std::string& path, Diagnostics& diagnostics,
                                            const support::Span& where) {
-  constexpr uintmax_t most = uintmax_t{2} << 30;
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    diagnostics.report(Id::missing_file, where, "there is no file " + quote(path));
-    return std::nullopt;
-  }
-  if (!std::filesystem::is_regular_file(path, error)) {
-    diagnostics.report(Id::unreadable_file, where, quote(path) + " is no file");
-    return std::nullopt;
-  }
-  const uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size >= most) {
-    diagnostics.report(Id::too_large, where, quote(path) + " has more than 2 GiB");
-    return std::nullopt;
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(file), {});
-  if (!error && file.is_open() && !file.bad()) return bytes;
-  diagnostics.report(Id::unreadable_file, where, "cannot read " + quote(path));
-  return std::nullopt;
+  constexpr size_t most = (size_t{2} << 30) - 1;  // readers count in int
+  auto [bytes, id, reason] = support::read_file(path, most);
+  if (!bytes) diagnostics.report(id, where, "cannot read " + quote(path) + ": " + reason);
+  return std::move(bytes);
 }
 
 namespace {

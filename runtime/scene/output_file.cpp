@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
+#include "compiler/support/temporary.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::scene {
@@ -30,34 +29,48 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-/// What the file would have been made with: mkstemp gives it to its owner alone.
-mode_t usual_mode(const fs::path& target) {
-  struct stat old {};
-  if (::stat(target.c_str(), &old) == 0) return old.st_mode & 07777;
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  return 0666 & ~mask;
-}
-
 /// 0, or the errno of what failed.
 int write_directly(const char* path, std::string_view bytes) {
-  const int descriptor = ::open(path, O_WRONLY | O_CLOEXEC);
+  const int descriptor = ::open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
   if (descriptor < 0) return errno;
   const int failure = write_all(descriptor, bytes) ? 0 : errno;
   return ::close(descriptor) == 0 || failure != 0 ? failure : errno;
 }
 
-int write_through_temporary(const fs::path& target, std::string_view bytes) {
-  // Not the target's name and an ending: that may be too long for a name, or for a path.
-  std::string temporary = (target.parent_path() / ".isoshade-XXXXXX").string();
-  const int descriptor = ::mkstemp(temporary.data());
-  if (descriptor < 0) return errno;
-  int failure = write_all(descriptor, bytes) ? 0 : errno;
-  if (failure == 0 && ::fchmod(descriptor, usual_mode(target)) != 0) failure = errno;
-  if (::close(descriptor) != 0 && failure == 0) failure = errno;
-  if (failure == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) failure = errno;
-  if (failure != 0) ::unlink(temporary.c_str());
-  return failure;
+/// `old`: of the file that is replaced, null if there is none.
+int write_through_temporary(const fs::path& target, std::string_view bytes, const struct stat* old) {
+  support::TemporaryFile file(target.parent_path().string());
+  if (!file.is_open() || !write_all(file.descriptor(), bytes)) return errno;
+  if (old != nullptr && ::fchmod(file.descriptor(), old->st_mode & 07777) != 0) return errno;
+  return file.rename_to(target.string()) ? 0 : errno;
+}
+
+/// The file that a chain of links names, which need not be there. 0, or an errno.
+int follow_links(fs::path& target) {
+  constexpr int most_links = 40;  // as the system has it
+  std::error_code error;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(target, error)); ++i) {
+    if (i == most_links) return ELOOP;
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return error.value();
+    target = next.is_absolute() ? next : target.parent_path() / next;
+  }
+  return 0;
+}
+
+int write_to(const std::string& path, std::string_view bytes) {
+  struct stat status {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  // The system may forbid to follow a link of someone else.
+  if (!exists && errno != ENOENT) return errno;
+  if (exists && S_ISDIR(status.st_mode)) return EISDIR;
+  // Before links are followed: /dev/stdout may name a pipe, which has no path.
+  if (exists && !S_ISREG(status.st_mode)) return write_directly(path.c_str(), bytes);
+  if (exists && ::access(path.c_str(), W_OK) != 0) return errno;
+  fs::path target(path);
+  if (const int failure = follow_links(target); failure != 0) return failure;
+  if (!target.has_filename()) return ENOENT;
+  return write_through_temporary(target, bytes, exists ? &status : nullptr);
 }
 
 }  // namespace
@@ -68,28 +81,14 @@ bool write_file(const std::string& path, std::string_view bytes, support::Diagno
     std::fflush(stdout);
     failure = write_all(STDOUT_FILENO, bytes) ? 0 : errno;
   } else {
-    std::error_code error;
-    fs::path target(path);
-    struct stat status {};
-    // A link is kept, and the file that it names replaced; but /dev/stdout may name a pipe, which has no path.
-    const bool special = ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
-    if (!special && fs::is_symlink(target, error)) target = fs::weakly_canonical(target, error);
-    const bool exists = ::stat(target.c_str(), &status) == 0;
-    if (exists && S_ISDIR(status.st_mode)) {
-      failure = EISDIR;
-    } else if (exists && !S_ISREG(status.st_mode)) {
-      failure = write_directly(target.c_str(), bytes);
-    } else if (exists && ::access(target.c_str(), W_OK) != 0) {
-      failure = errno;
-    } else {
-      failure = write_through_temporary(target, bytes);
-    }
+    failure = write_to(path, bytes);
   }
   if (failure == 0) return true;
   const std::string name = path == "-" ? "standard output" : support::quote(path);
   support::Diagnostic& report = diagnostics.report(
       support::Id::unwritable_file, "cannot write " + name + ": " + std::generic_category().message(failure));
   if (failure == ENOENT) report.note("the folder does not exist");
+  report.suggest(std::string(support::way_to_write(failure)));
   return false;
 }
 

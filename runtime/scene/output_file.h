@@ -10,8 +10,9 @@
 namespace isoshade::scene {
 
 /// Writes a file through a temporary one beside it, which then takes its name: readers see the old bytes or
-/// the new ones. What is no regular file (a pipe, /dev/null) is written directly; "-" is standard output.
-/// Reports what goes wrong, and then leaves the old file as it was.
+/// the new ones. A symbolic link is kept, and the file that it names is written, which need not be there yet. What is
+/// no regular file (a pipe, /dev/null) is written directly; "-" is standard output. Reports what goes wrong, and then
+/// leaves the old file as it was.
 bool write_file(const std::string& path, std::string_view bytes, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::scene

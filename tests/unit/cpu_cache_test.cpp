@@ -86,38 +86,126 @@ TEST(Cache, MakesAFolderThatOnlyTheUserCanEnter) {
   EXPECT_EQ(facts.st_mode & 0777, 0700u);
 }
 
-TEST(Cache, RefusesAFolderThatOthersCanWriteTo) {
+/// Opens the folder and finds that it is not used, with a warning.
+void expect_unsafe(const std::string& folder) {
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder, diagnostics);
+  ASSERT_TRUE(cache) << "work goes on without a cache";
+  EXPECT_NE(cache->folder(), folder);
+  EXPECT_TRUE(store(*cache, "entry", "contents", diagnostics));
+  EXPECT_TRUE(holds(*cache, "entry", "contents"));
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].id, Id::unsafe_cache);
+  EXPECT_FALSE(diagnostics.has_errors());
+}
+
+TEST(Cache, LeavesAFolderAloneThatOthersCanWriteTo) {
   const TestFolder folder;
   for (const mode_t mode : {0777, 0770, 0702, 01777}) {
     ASSERT_EQ(chmod(folder.path().c_str(), mode), 0);
-    Diagnostics diagnostics;
-    EXPECT_FALSE(Cache::open(folder.path(), diagnostics));
-    ASSERT_EQ(diagnostics.all().size(), 1u);
-    EXPECT_EQ(diagnostics.all()[0].id, Id::unsafe_cache);
+    expect_unsafe(folder.path());
+    EXPECT_EQ(count_files(folder.path()), 0);
   }
   ASSERT_EQ(chmod(folder.path().c_str(), 0755), 0);
   Diagnostics diagnostics;
-  EXPECT_TRUE(Cache::open(folder.path(), diagnostics));
+  EXPECT_EQ(Cache::open(folder.path(), diagnostics)->folder(), folder.path());
 }
 
-TEST(Cache, RefusesAFolderOfSomeoneElse) {
+TEST(Cache, LeavesAFolderAloneThatCanBeReplaced) {
+  const TestFolder folder;
+  const std::string inner = folder / "open/to/all/cache";
+  std::filesystem::create_directories(inner);
+  ASSERT_EQ(chmod((folder / "open").c_str(), 0777), 0);
+  expect_unsafe(inner);
+  ASSERT_EQ(chmod((folder / "open").c_str(), 01777),
+            0);  // in a sticky folder only owners replace what is theirs
+  Diagnostics diagnostics;
+  EXPECT_EQ(Cache::open(inner, diagnostics)->folder(), inner);
+}
+
+TEST(Cache, LeavesAFolderOfSomeoneElseAlone) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
   const TestFolder folder;
   ASSERT_EQ(chown(folder.path().c_str(), 65534, 65534), 0);
-  Diagnostics diagnostics;
-  EXPECT_FALSE(Cache::open(folder.path(), diagnostics));
-  ASSERT_EQ(diagnostics.all().size(), 1u);
-  EXPECT_EQ(diagnostics.all()[0].id, Id::unsafe_cache);
+  expect_unsafe(folder.path());
 }
 
-TEST(Cache, RefusesTheUsualFolderRatherThanReplaceItWhereItIsUnsafe) {
+TEST(Cache, FollowsNoLink) {
   const TestFolder folder;
-  ASSERT_EQ(mkdir((folder / "isoshade").c_str(), 0700), 0);
-  ASSERT_EQ(chmod((folder / "isoshade").c_str(), 0777), 0);
-  const TestVariable caches("XDG_CACHE_HOME", folder.path().c_str());
+  ASSERT_EQ(mkdir((folder / "precious").c_str(), 0700), 0);
+  const std::string key(64, 'a');
+  write_text(folder / "precious/" + Cache::entry_name(key), "something");
+  std::filesystem::create_symlink("precious", folder / "link");
+  expect_unsafe(folder / "link");
+  // Nor as an entry, nor as a workshop.
   Diagnostics diagnostics;
-  EXPECT_FALSE(Cache::open("", diagnostics));
-  EXPECT_EQ(diagnostics.all().at(0).id, Id::unsafe_cache);
+  ASSERT_EQ(mkdir((folder / "cache").c_str(), 0700), 0);
+  const auto cache = Cache::open(folder / "cache", diagnostics);
+  const std::string name = Cache::entry_name(std::string(64, 'b'));
+  ASSERT_TRUE(store(*cache, name, "contents", diagnostics));
+  std::filesystem::rename(folder / "cache/" + name, folder / "elsewhere");
+  std::filesystem::create_symlink("../elsewhere", folder / "cache/" + name);
+  EXPECT_FALSE(cache->find(name));
+  std::filesystem::create_symlink("../precious", folder / "cache/isoshade-AbCdEf");
+  const timespec long_ago[2] = {{1000000000, 0}, {1000000000, 0}};
+  ASSERT_EQ(utimensat(AT_FDCWD, (folder / "precious").c_str(), long_ago, 0), 0);
+  { const auto workshop = cache->workshop(diagnostics, {0, 0}); }
+  cache->clear();
+  EXPECT_TRUE(std::filesystem::exists(folder / "elsewhere"));
+  EXPECT_EQ(count_files(folder / "precious"), 1);
+  EXPECT_TRUE(store(*cache, name, "contents", diagnostics)) << diagnostics.text();
+  EXPECT_TRUE(holds(*cache, name, "contents"));
+}
+
+TEST(Cache, DeletesOnlyItsOwn) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder.path(), diagnostics);
+  const std::string key = std::string(63, '0');
+  for (const std::string& other : {std::string("photo.jpg"), std::string("a.so"), key + ".so", key + "0.sow",
+                                   key + "G.so", key + "0.txt", std::string("isoshade-AbCdEf")})
+    write_text(folder / other, "precious");
+  std::filesystem::create_directories(folder / "isoshade-notes of mine");
+  const timespec long_ago[2] = {{1000000000, 0}, {1000000000, 0}};
+  utimensat(AT_FDCWD, (folder / "isoshade-notes of mine").c_str(), long_ago, 0);
+  for (const char last : {'1', '2', '3'})
+    ASSERT_TRUE(store(*cache, Cache::entry_name(key + last), "contents", diagnostics));
+  EXPECT_EQ(cache->contents().entries, 3u);
+  { const auto workshop = cache->workshop(diagnostics, {2, 1000000}); }
+  EXPECT_EQ(cache->contents().entries, 1u);
+  EXPECT_EQ(cache->clear().entries, 0u);
+  EXPECT_EQ(count_files(folder.path()), 8);
+}
+
+TEST(Cache, IsNoLargerThanItMayBe) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder.path(), diagnostics);
+  for (const char last : {'1', '2', '3', '4'})
+    ASSERT_TRUE(
+        store(*cache, Cache::entry_name(std::string(63, '0') + last), std::string(1000, 'x'), diagnostics));
+  EXPECT_GT(cache->contents().bytes, 4000u);
+  { const auto workshop = cache->workshop(diagnostics, {1000, 3000}); }
+  EXPECT_EQ(cache->contents().entries, 1u);
+}
+
+TEST(Cache, IsNotHeldUpByWhatStandsInPlaceOfAnEntry) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder.path(), diagnostics);
+  const std::string name = Cache::entry_name(std::string(64, 'a')), path = folder / name;
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_FALSE(cache->find(name));
+  EXPECT_TRUE(store(*cache, name, "contents", diagnostics));
+  EXPECT_TRUE(holds(*cache, name, "contents"));
+  std::filesystem::remove(path);
+  std::filesystem::create_directories(path + "/full/of");
+  EXPECT_FALSE(cache->find(name));
+  EXPECT_TRUE(store(*cache, name, "contents", diagnostics)) << diagnostics.text();
+  EXPECT_TRUE(holds(*cache, name, "contents"));
+  ASSERT_EQ(chmod(path.c_str(), 0666), 0);
+  EXPECT_FALSE(cache->find(name)) << "others may have written it";
+  EXPECT_EQ(count_files(folder.path()), 1);
 }
 
 TEST(Cache, WithoutAHomeIsATemporaryFolder) {
@@ -175,24 +263,30 @@ TEST(Cache, ClearsAwayWhatACrashLeft) {
   EXPECT_TRUE(std::filesystem::exists(folder / "isoshade-ghijkl"));
 }
 
+std::string entry_number(int i) {
+  const std::string digits = std::to_string(i);
+  return Cache::entry_name(std::string(64 - digits.size(), '0') + digits);
+}
+
 TEST(Cache, ForgetsWhatWasUsedLongestAgo) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
-  ASSERT_TRUE(store(*cache, "used", "contents", diagnostics));
+  const std::string used = Cache::entry_name(std::string(64, 'a'));
+  ASSERT_TRUE(store(*cache, used, "contents", diagnostics));
   const timespec long_ago[2] = {{1000000000, 0}, {1000000000, 0}};
-  utimensat(AT_FDCWD, (folder / "used").c_str(), long_ago, 0);
+  utimensat(AT_FDCWD, (folder / used).c_str(), long_ago, 0);
   for (int i = 0; i < 1200; ++i) {
-    const std::string other = folder / ("other" + std::to_string(i));
+    const std::string other = folder / entry_number(i);
     write_text(other, "");
     const timespec later[2] = {{1000000001 + i, 0}, {1000000001 + i, 0}};
     utimensat(AT_FDCWD, other.c_str(), later, 0);
   }
-  EXPECT_TRUE(cache->find("used"));
+  EXPECT_TRUE(cache->find(used));
   { const auto workshop = cache->workshop(diagnostics); }
-  EXPECT_TRUE(cache->find("used"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "other0"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "other1199"));
+  EXPECT_TRUE(cache->find(used));
+  EXPECT_FALSE(std::filesystem::exists(folder / entry_number(0)));
+  EXPECT_TRUE(std::filesystem::exists(folder / entry_number(1199)));
   EXPECT_LE(count_files(folder.path()), 1000);
 }
 

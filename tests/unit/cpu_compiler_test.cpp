@@ -98,7 +98,7 @@ TEST(Compiler, TellsWhatItCouldNotCompile) {
   const auto compiler = Compiler::find("", diagnostics);
   ASSERT_TRUE(compiler) << diagnostics.text();
   write_text(folder / "program.cpp", "this is no program\n");
-  EXPECT_FALSE(compiler->compile(folder.path(), *lane_count("4"), diagnostics));
+  EXPECT_FALSE(compiler->compile(folder.path(), "the program", *lane_count("4"), diagnostics));
   ASSERT_EQ(diagnostics.all().size(), 1u);
   EXPECT_EQ(diagnostics.all()[0].id, Id::compiler_failed);
   EXPECT_NE(diagnostics.text().find("program.cpp:1:1"), std::string::npos) << diagnostics.text();
@@ -115,12 +115,41 @@ TEST(Compiler, ThatFailsIsReportedWithItsWordsAndTheWayOut) {
     Diagnostics diagnostics;
     const auto compiler = Compiler::find(folder / "c++", diagnostics);
     ASSERT_TRUE(compiler) << diagnostics.text();
-    EXPECT_FALSE(compiler->compile(folder.path(), *lane_count("4"), diagnostics));
+    EXPECT_FALSE(compiler->compile(folder.path(), "the program", *lane_count("4"), diagnostics));
     const std::string text = diagnostics.text();
     EXPECT_NE(text.find(words), std::string::npos) << text;
     EXPECT_NE(text.find("ISOSHADE_CXX"), std::string::npos) << text;
     EXPECT_EQ(text.find("\\x0a"), std::string::npos) << "lines stand on lines of their own: " << text;
   }
+}
+
+TEST(Compiler, ThatDoesNotEndIsEnded) {
+  const TestFolder folder;
+  write_script(folder / "c++", "[ \"$1\" = --version ] && echo compiler 1.0 && exit\nsleep 100 & sleep 100");
+  Diagnostics diagnostics;
+  const auto compiler = Compiler::find(folder / "c++", diagnostics, support::Seconds(0.5));
+  ASSERT_TRUE(compiler) << diagnostics.text();
+  EXPECT_FALSE(
+      compiler->compile(folder.path(), "the pixel program of \"a.json\"", *lane_count("4"), diagnostics));
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].id, Id::compiler_failed);
+  EXPECT_NE(diagnostics.text().find("did not compile the pixel program of \"a.json\" within 0.5 seconds"),
+            std::string::npos)
+      << diagnostics.text();
+  write_script(folder / "c++", "sleep 100");
+  EXPECT_FALSE(Compiler::find(folder / "c++", diagnostics, support::Seconds(0.5)));
+  EXPECT_EQ(diagnostics.all().back().id, Id::no_compiler);
+}
+
+TEST(Compiler, ThatCannotWriteIsToldSo) {
+  const TestFolder folder;
+  write_script(
+      folder / "c++",
+      "[ \"$1\" = --version ] && echo compiler 1.0 && exit\necho 'a.s: No space left on device'; exit 1");
+  Diagnostics diagnostics;
+  const auto compiler = Compiler::find(folder / "c++", diagnostics);
+  EXPECT_FALSE(compiler->compile(folder.path(), "the program", *lane_count("4"), diagnostics));
+  EXPECT_NE(diagnostics.text().find("make room on the disk"), std::string::npos) << diagnostics.text();
 }
 
 TEST(LaneCount, HasTheWidestOfTheMachine) {

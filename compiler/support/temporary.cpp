@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/support/temporary.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <string_view>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+#include "compiler/support/leftovers.h"
+
+namespace isoshade::support {
+namespace {
+
+constexpr std::string_view folder_prefix = "isoshade-";
+constexpr std::string_view filler = "XXXXXX";
+
+void forget(const std::string& path) {
+  const auto lock = Leftovers::lock();
+  Leftovers::remove_path(path);
+}
+
+}  // namespace
+
+std::string temporary_parent() {
+  const char* parent = std::getenv("TMPDIR");
+  return parent != nullptr && *parent == '/' ? parent : "/tmp";
+}
+
+std::string_view way_to_write(int failure) {
+  switch (failure) {
+    case ENOSPC: return "make room on the disk, or choose a folder on another one";
+    case EDQUOT: return "the quota of this user is used up: make room, or choose a folder on another disk";
+    case EFBIG: return "files may not grow that large here: raise the limit (ulimit -f)";
+    case EROFS: return "the disk is mounted read-only: choose a folder on another one";
+    case EACCES:
+    case EPERM: return "this user may not write there: choose another folder, or change its permissions";
+    case ENAMETOOLONG: return "choose a shorter name";
+    case ELOOP: return "the symbolic links lead in a circle: name the file itself";
+    default: return {};
+  }
+}
+
+std::optional<TemporaryFolder> TemporaryFolder::make(const std::string& parent) {
+  std::string path = parent + "/" + std::string(folder_prefix) + std::string(filler);
+  const auto lock = Leftovers::lock();
+  if (mkdtemp(path.data()) == nullptr) return std::nullopt;
+  Leftovers::add_path(path);
+  return TemporaryFolder(std::move(path));
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  if (!path_) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(*path_, ignored);
+  forget(*path_);
+}
+
+bool TemporaryFolder::is_name(const std::string& name) {
+  return name.size() == folder_prefix.size() + filler.size() && name.starts_with(folder_prefix) &&
+         std::all_of(name.begin() + folder_prefix.size(), name.end(), [](char c) {
+           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+         });
+}
+
+TemporaryFile::TemporaryFile(const std::string& folder) : folder_(folder.empty() ? "." : folder) {
+  if (access("/proc/self/fd", X_OK) == 0) {  // by which it is given a name
+    descriptor_ = open(folder_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0) return;
+  }
+  // Not every file system has nameless files, and each says so by another error: any real one is met again here.
+  std::string path = folder_ + "/.isoshade-" + std::string(filler);
+  const mode_t mask = umask(0);
+  umask(mask);
+  const auto lock = Leftovers::lock();
+  descriptor_ = mkostemp(path.data(), O_CLOEXEC);
+  if (descriptor_ < 0) return;
+  Leftovers::add_path(path);
+  name_ = std::move(path);
+  (void)fchmod(descriptor_, 0666 & ~mask);  // mkostemp gives it to its owner alone
+}
+
+TemporaryFile::~TemporaryFile() {
+  close_file();
+  if (name_.empty()) return;
+  unlink(name_.c_str());
+  forget(name_);
+}
+
+bool TemporaryFile::close_file() {
+  const int descriptor = std::exchange(descriptor_, -1);
+  return descriptor < 0 || close(descriptor) == 0;
+}
+
+/// Gives a nameless file a name that nothing has.
+bool TemporaryFile::take_name() {
+  if (!name_.empty()) return true;
+  const std::string open_file = "/proc/self/fd/" + std::to_string(descriptor_);
+  constexpr int most_attempts = 100;
+  const auto lock = Leftovers::lock();
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    // mkstemp would make the file, and only a link to none can be made.
+    std::string path = folder_ + "/.isoshade-" + std::to_string(getpid()) + "-" + std::to_string(attempt);
+    if (linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      Leftovers::add_path(path);
+      name_ = std::move(path);
+      return true;
+    }
+    if (errno != EEXIST) return false;
+  }
+  return false;
+}
+
+bool TemporaryFile::rename_to(const std::string& path) {
+  if (!take_name() || !close_file() || rename(name_.c_str(), path.c_str()) != 0) return false;
+  forget(name_);
+  name_.clear();
+  return true;
+}
+
+}  // namespace isoshade::support

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// isoshade cache: where compiled code is kept, how much of it there is, and how to be rid of it.
+#include "backends/cpu/cache.h"
+
+#include <cstdio>
+
+#include "compiler/support/memory.h"
+#include "runtime/cli/session.h"
+
+namespace isoshade::cli {
+
+int cache(const CacheArguments& arguments, const Common& common) {
+  support::Diagnostics diagnostics = make_diagnostics(common);
+  const auto cache = cpu::Cache::open("", diagnostics);
+  const bool usual = cache && cache->folder() == cpu::Cache::usual_folder();
+  if (cache && !usual)
+    std::printf("there is no cache: each run compiles anew\n");
+  else if (cache) {
+    const cpu::CacheContents held = cache->contents();
+    const cpu::CacheContents left = arguments.clear ? cache->clear() : held;
+    const cpu::CacheLimit limit;
+    std::printf("%s\n", cache->folder().c_str());
+    if (arguments.clear)
+      std::printf("%zu entries deleted, %zu left\n", held.entries - left.entries, left.entries);
+    else
+      std::printf("%zu entries, %s; at most %zu and %s are kept\n", held.entries,
+                  support::memory_text(held.bytes).c_str(), limit.entries,
+                  support::memory_text(limit.bytes).c_str());
+  }
+  return flush(diagnostics, common) ? failure : success;
+}
+
+}  // namespace isoshade::cli
