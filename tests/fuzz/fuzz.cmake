@@ -10,7 +10,7 @@ target_compile_definitions(documents_test PRIVATE
 set(fuzz_readers png jpeg hdr exr gltf)
 list(TRANSFORM fuzz_readers REPLACE "(.+)" "fuzz/\\1_reader.cpp" OUTPUT_VARIABLE fuzz_reader_sources)
 add_library(fuzz_readers STATIC fuzz/read_image.cpp ${fuzz_reader_sources})
-target_link_libraries(fuzz_readers PUBLIC isoshade_scene PkgConfig::jpeg)
+target_link_libraries(fuzz_readers PUBLIC isoshade_scene OpenEXR::OpenEXR PkgConfig::jpeg)
 target_compile_definitions(fuzz_readers PRIVATE ISOSHADE_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")
 isoshade_test(images_fuzz_test SOURCES fuzz/images_test.cpp LINKS fuzz_readers TIMEOUT 5400)
 

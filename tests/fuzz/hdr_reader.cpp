@@ -17,7 +17,13 @@ std::vector<std::string> good() {
   // A run of one value for each channel.
   const std::string run = "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n" +
                           std::string("\2\2\0\x09\x89\x80\x89\x40\x89\x20\x89\x81", 12);
-  return {packed, run, hdr_file(3, 5, floats)};
+  // The pixel before, 3 times and 258 times.
+  const std::string old = "#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 -X 263\n";
+  const std::string line = std::string("\x80\x40\x20\x81\1\1\1\3\x40\x80\x20\x81\1\1\1\2\1\1\1\1", 20);
+  const std::string wide =
+      "#?RADIANCE\nPRIMARIES=0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329\nCOLORCORR=1 2 4\n"
+      "FORMAT=32-bit_rle_rgbe\n\n+X 1 -Y 2\n\x80\x40\x20\x81\x80\x40\x20\x81";
+  return {packed, run, hdr_file(3, 5, floats), old + line + line, wide};
 }
 
 void damage_number(std::string& bytes, Random& random) {

@@ -75,8 +75,10 @@ TEST_P(ExrCompression, IsReadInRowsAndTilesOfEveryType) {
         };
       const float error = lossy && type != Imf::UINT ? 0.15f : 0.0f;
       expect_values(part, decoded(exr_file(part)), error);
+      if (order == Imf::DECREASING_Y) continue;
       for (const Imf::LevelMode mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
         for (const Imf::LevelRoundingMode rounding : {Imf::ROUND_DOWN, Imf::ROUND_UP}) {
+          if (rounding == Imf::ROUND_UP && type != Imf::HALF) continue;
           part.tiles = Imf::TileDescription(16, 24, mode, rounding);
           expect_values(part, decoded(exr_file(part)), error);
         }
