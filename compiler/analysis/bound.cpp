@@ -39,8 +39,11 @@ double outward_up(double x) { return -outward_down(-x); }
 template <class Operation>
 void place_exact_corners(Bound& r, const Bound& a, const Bound& b, Operation operation) {
   const double al = a.exact_lo(), ah = a.exact_hi(), bl = b.exact_lo(), bh = b.exact_hi();
-  const auto [lo, hi] =
-      std::minmax({operation(al, bl), operation(al, bh), operation(ah, bl), operation(ah, bh)});
+  const std::initializer_list<double> ends = {operation(al, bl), operation(al, bh), operation(ah, bl),
+                                              operation(ah, bh)};
+  // Where an end is unknown, infinity by infinity may be anything.
+  if (std::ranges::any_of(ends, [](double end) { return std::isnan(end); })) return;
+  const auto [lo, hi] = std::minmax(ends);
   place_exact(r, lo, hi);
 }
 
@@ -150,12 +153,16 @@ std::string_view words(Breach breach) {
 }
 
 void place_exact(Bound& r, double least, double most) {
+  if (std::isnan(least) || std::isnan(most)) return;
   constexpr double far = 1e200;  // ends that lie beyond the doubles are not needed
   r.exact_least = outward_down(std::min(least, far));
   r.exact_most = outward_up(std::max(most, -far));
 }
 
 Outcome settled(Bound r) {
+  // 0 times an unknown error.
+  for (double* const error : {&r.absolute, &r.relative, &r.slack})
+    if (std::isnan(*error)) *error = infinity;
   r.absolute = up(r.absolute);
   r.relative = up(r.relative);
   r.slack = up(r.slack);

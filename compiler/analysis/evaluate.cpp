@@ -263,7 +263,10 @@ Outcome Evaluator::select_of(std::span<const uint32_t> in, uint32_t index) {
   if (!no_then && !no_other) return {select(condition, then, other)};
   Bound taken = no_then ? other : then;
   // Nobody computed what exact arithmetic may have taken instead.
-  if (condition.absolute != 0) taken.absolute = taken.relative = taken.slack = HUGE_VAL;
+  if (condition.absolute != 0) {
+    const Bound unknown = anything();
+    taken = {taken.lo, taken.hi, unknown.absolute, unknown.relative, unknown.slack};
+  }
   return {taken};
 }
 

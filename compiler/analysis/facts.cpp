@@ -78,6 +78,7 @@ Evaluator::Lengths Evaluator::lengths_of(uint32_t index) const {
   // Each component rounds two products and their difference; what these are off by is at most 2 sqrt(2) |a| |b| / 2^24.
   const double carried = a.vector * b.error + a.error * b.vector + a.error * b.error;
   const double error = carried + 3 * half_ulp * a.vector * b.vector + flushed;
+  if (std::isnan(error)) return lengths;
   lengths.vector =
       std::min(lengths.vector, a.vector * b.vector + 3 * half_ulp * a.vector * b.vector + flushed);
   lengths.error = std::min(lengths.error, error * rounded_up);
@@ -86,6 +87,7 @@ Evaluator::Lengths Evaluator::lengths_of(uint32_t index) const {
 
 /// |computed - exact| of a scalar product by what its vectors are off: Cauchy and Schwarz.
 void Evaluator::limit_error(uint32_t index, size_t terms, const Lengths& a, const Lengths& b) {
+  if (!std::isfinite(a.error) || !std::isfinite(b.error)) return;
   const double carried = a.vector * b.error + a.error * b.vector + a.error * b.error;
   const double roundings = static_cast<double>(terms) * half_ulp * a.vector * b.vector;
   const double error = (carried + roundings) * rounded_up + flushed;
