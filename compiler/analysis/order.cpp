@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/analysis/flatten.h"
 #include "compiler/support/check.h"
@@ -242,7 +243,7 @@ uint32_t Ordering::find_dot(std::span<const uint32_t> a, std::span<const uint32_
 }
 
 double Ordering::longest(const Words& vector, int depth) const {
-  constexpr double any = 1e30;
+  constexpr double any = HUGE_VAL;
   if (pool_.at_most_units.contains(vector)) return 1;
   if (depth == 0) return any;
   Words left, right;

@@ -3,6 +3,7 @@
 // over and over with other inputs: by floats, or by bounds.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -126,7 +127,7 @@ struct VectorShape {
   uint32_t left = none, right = none;  ///< in Tape::vectors
   std::vector<uint32_t> components;    ///< operations
   uint32_t square = none;              ///< its scalar product with itself, if that stands before
-  double length = 1e30;                ///< what its length is at most
+  double length = HUGE_VAL;            ///< what its length is at most
 };
 
 struct Tape {

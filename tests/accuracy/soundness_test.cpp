@@ -41,7 +41,7 @@ std::string decimal(double value) {
 }
 
 /// What the bound says that is not so; empty: nothing.
-std::string lie(const Bound& bound, double value, const Real& exact) {
+std::string lie(const Bound& bound, double value, const Real& exact, bool is_float = true) {
   if (!(value >= bound.lo && value <= bound.hi))
     return decimal(value) + " is not in [" + decimal(bound.lo) + ", " + decimal(bound.hi) + "]";
   const std::string both = ": computed " + decimal(value) + ", exactly " + exact.text(12);
@@ -49,7 +49,7 @@ std::string lie(const Bound& bound, double value, const Real& exact) {
   const Real error = abs(Real(value) - exact);
   if (error > Real(bound.absolute))
     return "errs by " + error.text(6) + ", not at most " + decimal(bound.absolute) + both;
-  if (std::isfinite(bound.relative) && std::isfinite(bound.slack) &&
+  if (is_float && std::isfinite(bound.relative) && std::isfinite(bound.slack) &&
       error > Real(bound.relative) * abs(exact) + Real(bound.slack))
     return "errs by " + error.text(6) + ", not at most " + decimal(bound.relative) + " of it and " +
            decimal(bound.slack) + both;
@@ -190,7 +190,8 @@ class Examination {
   }
   std::string compare(const Bound& bound, size_t output, const char* where, Count& counted) {
     ++counted.bounds;
-    const std::string wrong = lie(bound, computed(output), exact(output));
+    const auto scalar = tape_.operations[tape_.outputs[output].operation].scalar;
+    const std::string wrong = lie(bound, computed(output), exact(output), scalar == ir::Scalar::floating);
     return wrong.empty() ? "" : tape_.outputs[output].name + " " + where + ": " + wrong;
   }
 
