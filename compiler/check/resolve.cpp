@@ -71,6 +71,8 @@ class NodeResolver {
     }
     add_operands();
     for (const graph::Port& port : source_.ports) match(port);
+    for (const graph::Port& port : source_.free_keys)
+      if (node_.callee != nullptr && find_port(port.name)) match(port);
     for (uint32_t i = 0; i < node_.operand_count; ++i) {
       if (work_.given[node_.first_operand + i].port == nullptr) check_left_out(i);
     }
@@ -233,6 +235,8 @@ class NodeResolver {
         "node " + quote(source_.id) + " (" + quote(source_.type) + ") needs " + quote(port_name(i)));
     if (node_.row != nullptr)
       report.note(std::string(port_name(i)) + ": " + std::string(node_.row->ports[i].doc));
+    else if (port_name(i) == "type")
+      report.suggest("the key \"type\" of a node is its type: give the input another name, or a \"value\"");
   }
 
   /// "3 arguments"

@@ -104,6 +104,8 @@ struct Node {
   Place id_place, type_place, place;
   Origin origin = Origin::node;
   std::string shown = {};  ///< inside of an expression: "*"; else its type tells
+  /// "doc" and "extras" as ports: they are that only where the type is a function with inputs of these names.
+  std::vector<Port> free_keys = {};
 
   /// How messages name what it is.
   const std::string& label() const { return origin == Origin::node ? type : shown; }

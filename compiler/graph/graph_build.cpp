@@ -93,6 +93,7 @@ void GraphBuilder::read_node(const Member& member) {
   node.ports.reserve(json.members.size());
   for (const Member& entry : json.members) {
     const Json& value = entry.value;
+    if (entry.key == "extras" || entry.key == "doc") read_free_key(entry, node);
     if (entry.key == "extras") continue;
     if (entry.key == "type" || entry.key == "doc") {
       if (value.kind != Json::Kind::string) {
@@ -125,6 +126,22 @@ void GraphBuilder::read_node(const Member& member) {
   }
   graph_.nodes.push_back(std::move(node));
   if (is_expression) read_code(member, code);
+}
+
+void GraphBuilder::read_free_key(const Member& entry, Node& node) {
+  Diagnostics unheard;  // it may be anything
+  Port port{entry.key, Literal{}, key_place(entry), place_of(entry.value)};
+  const Json* target = entry.value.kind == Json::Kind::object ? entry.value.find("link") : nullptr;
+  if (target != nullptr && target->kind == Json::Kind::string) {
+    std::optional<Link> link = parse_link(document_.source, target->string, place_of(*target), unheard);
+    if (!link) return;
+    port.value = std::move(*link);
+  } else if (std::optional<Literal> literal = parse_literal(document_, entry.value, entry.key, unheard)) {
+    port.value = std::move(*literal);
+  } else {
+    return;
+  }
+  node.free_keys.push_back(std::move(port));
 }
 
 void GraphBuilder::read_code(const Member& member, const Json* code) {

@@ -37,6 +37,8 @@ class GraphBuilder {
   void check_value(const Input& input, const Json& json);
   void read_nodes(const Json& nodes);
   void read_node(const Member& member);
+  /// A key that is free, as a port; nothing if what stands in it could not stand in one.
+  void read_free_key(const Member& entry, Node& node);
   void read_code(const Member& member, const Json* code);
   void read_outputs(const Json& outputs);
   void read_passes(const Json& passes);

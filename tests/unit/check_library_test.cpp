@@ -28,6 +28,38 @@ TEST(CheckLibrary, NamesAndRelativePathsLeadToDocuments) {
   EXPECT_EQ(own->nodes[0].callee->nodes[0].callee->document, "library/math/square.json");
 }
 
+TEST(CheckLibrary, InputsCalledAsFreeKeysCanBeGiven) {
+  FrontEnd front_end;
+  front_end.library.add("library/odd.json", R"({"isoshade": 1, "function": "odd",
+    "inputs": {"extras": {"type": "float"}, "doc": {"type": "float", "value": 2}},
+    "nodes": {"n": {"type": "add", "in1": "extras", "in2": "doc"}}, "outputs": {"out": "n"}})");
+  const auto graph = front_end.check(R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
+    "nodes": {"a": {"type": "odd", "extras": "x", "doc": "x"}, "b": {"type": "odd", "extras": 0.5},
+              "c": {"type": "odd", "extras": {"link": "a"}},
+              "d": {"type": "add", "in1": "b", "in2": "c", "doc": "a remark", "extras": {"any": [1, "x"]}}},
+    "outputs": {"out": "d"}})");
+  ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
+  using From = check::Operand::From;
+  const auto from = [&](size_t node, size_t port) {
+    return graph->operands_of(graph->nodes[node])[port].from;
+  };
+  EXPECT_EQ(from(0, 0), From::input);
+  EXPECT_EQ(from(0, 1), From::input);
+  EXPECT_EQ(from(1, 0), From::words);
+  EXPECT_EQ(from(1, 1), From::words);
+  EXPECT_EQ(from(2, 0), From::node);
+  EXPECT_TRUE(front_end.diagnostics.all().empty()) << front_end.diagnostics.text();
+}
+
+TEST(CheckLibrary, AnInputCalledTypeHasAWayOut) {
+  FrontEnd front_end;
+  front_end.library.add("library/odd.json", R"({"isoshade": 1, "function": "odd",
+    "inputs": {"type": {"type": "float"}}, "outputs": {"out": "type"}})");
+  const std::string messages = front_end.messages(R"({"isoshade": 1, "function": "f",
+    "nodes": {"a": {"type": "odd"}}, "outputs": {"out": "a"}})");
+  EXPECT_NE(messages.find("the key \"type\" of a node is its type"), std::string::npos) << messages;
+}
+
 TEST(CheckLibrary, EveryDocumentIsCheckedOnce) {
   FrontEnd front_end;
   front_end.library.add("library/square.json", function("square", squared));
