@@ -157,8 +157,7 @@ std::vector<std::string_view> all_words() {
     for (const Ending& ending : table->endings) words.push_back(ending.example);
   }
   std::ranges::sort(words);
-  const auto repeated = std::ranges::unique(words);
-  words.erase(repeated.begin(), repeated.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
   return words;
 }
 
