@@ -19,7 +19,8 @@ if [ "$full" -eq 1 ]; then
   done
   export ISOSHADE_FULL=1
   ctest --preset asan --tests-regex '^Documents|DamagedFiles'
-  # Memory that nobody wrote, also by libraries that no sanitizer sees into.
-  ISOSHADE_DAMAGED=500 valgrind --quiet --error-exitcode=1 build/release/tests/images_fuzz_test
+  # Memory that nobody wrote, also by libraries that no sanitizer sees into. Without libjpeg's vector instructions: they
+  # compute on what lies behind a row, too, and valgrind does not see that no pixel is made of it (scene_jpeg_test does).
+  JSIMD_FORCENONE=1 ISOSHADE_DAMAGED=500 valgrind --quiet --error-exitcode=1 build/release/tests/images_fuzz_test
 fi
 ctest --preset release --parallel "$(nproc)"
