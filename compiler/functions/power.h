@@ -42,8 +42,8 @@ F pow(F x, F y) {
 }
 
 /// |x|^y with the sign of x.
-/// Domain: all floats, as pow of a magnitude, in each tier. -0 counts as 0 and 0 as positive: 0^0 is 1, and 0 to a negative
-/// power +inf.
+/// Domain: all floats, as pow of a magnitude, in each tier. -0 counts as 0 and 0 as positive: 0^0 is 1, and 0 to a
+/// negative power +inf.
 /// Error: 2 ULP for |x| in [1e-6, 1e6] and |y| <= 64; at most some 6 ULP beyond.
 template <class F>
 F safepower(F x, F y) {
