@@ -178,8 +178,9 @@ class Decoder {
       if (seen) return refuse("a channel has two scans");
       seen = true;
       // Later scans find no tables but the file's.
-      if (first && (info_.dc_huff_tbl_ptrs[component.dc_tbl_no] == nullptr ||
-                    info_.ac_huff_tbl_ptrs[component.ac_tbl_no] == nullptr))
+      const int dc = component.dc_tbl_no, ac = component.ac_tbl_no;  // up to 15, as the file has them
+      if (first && (dc >= NUM_HUFF_TBLS || ac >= NUM_HUFF_TBLS || info_.dc_huff_tbl_ptrs[dc] == nullptr ||
+                    info_.ac_huff_tbl_ptrs[ac] == nullptr))
         return refuse("it has no Huffman tables");
     }
     return true;

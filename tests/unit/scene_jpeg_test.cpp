@@ -180,6 +180,9 @@ TEST(Jpeg, WithoutTablesIsRefusedAlsoAfterOneThatHasThem) {
     }
   }
   EXPECT_EQ(reason_of(without(rgb_file(), dht)), "it has no Huffman tables");
+  std::string beyond = rgb_file();
+  beyond[segments(beyond, sos).at(0) + 6] = '\x5f';  // tables 5 and 15 of 4
+  EXPECT_EQ(reason_of(beyond), "it has no Huffman tables");
   // The tables of the first scan are there; those of the second are not.
   std::string second = scan_by_scan({0, 1, 2});
   const std::vector<size_t> tables = segments(second, dht);
