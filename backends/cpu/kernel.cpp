@@ -9,6 +9,7 @@
 
 #include "backends/cpu/lanes_headers.h"
 #include "backends/timed.h"
+#include "compiler/driver/target_limits.h"
 #include "compiler/support/check.h"
 #include "compiler/support/sha256.h"
 #include "compiler/support/visible.h"
@@ -116,6 +117,8 @@ std::optional<std::vector<const Kernel*>> KernelStore::kernels(
   std::vector<std::string> keys;
   std::vector<Missing> missing;
   for (const driver::Program* program : programs) {
+    if (!driver::within_limits(*program, driver::Target::cpu, driver::Division::native, diagnostics))
+      return std::nullopt;
     std::string text = cpp_(*program);
     keys.push_back(key_of(text));
     const std::string& key = keys.back();

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "compiler/driver/target_limits.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/check.h"
@@ -61,6 +62,10 @@ class InterpretingMachine final : public Machine {
   ir::Interpreter interpreter_;
 };
 
+bool bears(const Program& program, Diagnostics& diagnostics) {
+  return driver::within_limits(program, driver::Target::interpreter, driver::Division::native, diagnostics);
+}
+
 /// A program that is ready to run.
 class Runner {
  public:
@@ -87,7 +92,7 @@ class InterpreterDrawing final : public backends::Drawing {
   }
 
   bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
-            Diagnostics&) override {
+            Diagnostics& diagnostics) override {
     buffers_.bind(FrameBuffer::triangles, triangles);
     image.resize(window.width, window.height);
     std::vector<int32_t> visible(image.depth.size());
@@ -105,6 +110,7 @@ class InterpreterDrawing final : public backends::Drawing {
       const auto program =
           static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
       support::check(program < frame_.programs.size(), "an object has a program that the frame lacks");
+      if (!pixels.contains(program) && !bears(*frame_.programs[program], diagnostics)) return false;
       Runner& pixel = pixels.try_emplace(program, make_, *frame_.programs[program], buffers_).first->second;
       const int x = window.x + static_cast<int>(i) % window.width;
       const int y = window.y + static_cast<int>(i) / window.width;
@@ -129,12 +135,14 @@ class InterpreterBackend final : public backends::Backend {
   std::string_view name() const override { return name_; }
   std::string description() const override { return description_; }
 
-  bool transform(const Frame& frame, std::vector<std::vector<float>>& clip, Diagnostics&) override {
+  bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+                 Diagnostics& diagnostics) override {
     Buffers buffers;
     buffers.bind_frame(frame, frame.vertices);
     clip.resize(frame.draws.size());
     for (size_t d = 0; d < frame.draws.size(); ++d) {
       const Draw& draw = frame.draws[d];
+      if (!bears(*frame.programs[draw.vertex_program], diagnostics)) return false;
       Runner vertex(make_, *frame.programs[draw.vertex_program], buffers);
       clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
       for (uint32_t i = 0; i < draw.vertex_count; ++i) {
@@ -151,7 +159,8 @@ class InterpreterBackend final : public backends::Backend {
     return std::make_unique<InterpreterDrawing>(make_, frame, vertices);
   }
 
-  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics&) override {
+  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
+    if (!bears(*pass.program, diagnostics)) return false;
     Buffers buffers;
     buffers.bind(FrameBuffer::frame, pass.frame);
     buffers.bind(FrameBuffer::objects, pass.record);
@@ -171,7 +180,8 @@ class InterpreterBackend final : public backends::Backend {
   }
 
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
-                std::vector<int32_t>& outputs, Diagnostics&) override {
+                std::vector<int32_t>& outputs, Diagnostics& diagnostics) override {
+    if (!bears(program, diagnostics)) return false;
     Buffers buffers;
     buffers.bind(FrameBuffer::inputs, inputs);
     size_t width = 0;

@@ -11,6 +11,7 @@
 #include "backends/vulkan/limits.h"
 #include "backends/vulkan/shaders.h"
 #include "compiler/driver/driver.h"
+#include "compiler/driver/target_limits.h"
 #include "compiler/support/check.h"
 #include "compiler/support/visible.h"
 
@@ -101,6 +102,11 @@ std::string VulkanBackend::description() const {
 
 double VulkanBackend::build_seconds() const { return device_->build_seconds(); }
 
+std::optional<std::string> VulkanBackend::text_of(const Program& program, Diagnostics& diagnostics) const {
+  if (!driver::within_limits(program, driver::Target::vulkan, division_, diagnostics)) return std::nullopt;
+  return options_.glsl(program, division_);
+}
+
 /// Runs `work`; what Vulkan threw or the validation layers said becomes a diagnostic.
 bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()>& work) {
   bool succeeded = false;
@@ -148,7 +154,9 @@ bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>
       std::optional<PipelineIndex>& pipeline = pipelines[frame.draws[d].vertex_program];
       if (pipeline) continue;
       const Program& program = *frame.programs[frame.draws[d].vertex_program];
-      PipelineSource source{Target::buffer, 0, options_.glsl(program, division_), {}};
+      auto text = text_of(program, diagnostics);
+      if (!text) return false;
+      PipelineSource source{Target::buffer, 0, std::move(*text), {}};
       source.what = driver::description(program);
       pipeline = device_->pipeline(source, diagnostics);
       if (!pipeline) return false;
@@ -200,7 +208,9 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
         !upload(*device_, FrameBuffer::layers, pass.images, nullptr, diagnostics) ||
         !upload(*device_, FrameBuffer::layer_records, pass.image_records, nullptr, diagnostics))
       return false;
-    PipelineSource source{Target::color, 1, full_screen_vertex(), options_.glsl(*pass.program, division_)};
+    auto text = text_of(*pass.program, diagnostics);
+    if (!text) return false;
+    PipelineSource source{Target::color, 1, full_screen_vertex(), std::move(*text)};
     source.what = driver::description(*pass.program);
     const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;
@@ -228,10 +238,11 @@ bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> in
 
   return guarded(diagnostics, [&] {
     const auto attachments = static_cast<uint32_t>((result_words + 3) / 4);
-    std::string text = options_.glsl(program, division_);
+    auto text = text_of(program, diagnostics);
+    if (!text) return false;
     PipelineSource source =
-        in_vertex ? PipelineSource{Target::buffer, 0, std::move(text), {}}
-                  : PipelineSource{Target::words, attachments, full_screen_vertex(), std::move(text)};
+        in_vertex ? PipelineSource{Target::buffer, 0, std::move(*text), {}}
+                  : PipelineSource{Target::words, attachments, full_screen_vertex(), std::move(*text)};
     source.what = driver::description(program);
     const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;

@@ -67,6 +67,8 @@ class VulkanBackend : public backends::Backend {
   friend class VulkanDrawing;
 
   bool guarded(support::Diagnostics& diagnostics, const std::function<bool()>& work);
+  /// The text of a program; nothing where it is larger than a driver bears, which is reported.
+  std::optional<std::string> text_of(const driver::Program& program, support::Diagnostics& diagnostics) const;
   bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
   bool upload_frame(const backends::Frame& frame, std::span<const float> vertices,

@@ -115,8 +115,9 @@ class VulkanDrawing final : public backends::Drawing {
   }
 
   std::optional<PipelineIndex> pixel_pipeline(const driver::Program& program, Diagnostics& diagnostics) {
-    PipelineSource source{Target::color, 1, full_screen_vertex(),
-                          backend_.options_.glsl(program, backend_.division_)};
+    auto text = backend_.text_of(program, diagnostics);
+    if (!text) return std::nullopt;
+    PipelineSource source{Target::color, 1, full_screen_vertex(), std::move(*text)};
     source.what = driver::description(program);
     return backend_.device_->pipeline(source, diagnostics);
   }

@@ -41,8 +41,9 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
 
 /// What lowering made, through all passes. The reference takes it as authored, but for the positions of vertices: these
 /// are what every backend has.
-void finish(Program& program, uint32_t kernel, const Options& options) {
+void finish(Program& program, uint32_t kernel, const Options& options, support::Source source = nullptr) {
   program.entry = kernel;
+  program.source = std::move(source);
   if (options.reference && program.stage != Stage::vertex) return passes::derivatives(program.module);
   passes::Entries entries{kernel};
   const auto dump = [&](std::string_view pass, const ir::Module& after) {
@@ -130,7 +131,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
         lower::add_moving_vertex_kernel(program.module, offsets_of(typed, effect.parameters, effect.images),
                                         typed.graph.passes[pass].position_space);
   }
-  finish(program, kernel, options);
+  finish(program, kernel, options, typed.graph.source);
   return program;
 }
 
@@ -141,7 +142,7 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect&
   program.module.buffers = lower::frame_module().buffers;
   const uint32_t kernel = lower::add_pixel_kernel(
       program.module, offsets_of(typed, effect.parameters, effect.images), options.lights);
-  finish(program, kernel, options);
+  finish(program, kernel, options, typed.graph.source);
   return program;
 }
 
@@ -199,7 +200,7 @@ std::optional<Post> compile_post(const support::Source& source, const Options& o
   module.buffers = lower::frame_module().buffers;
   const uint32_t kernel = lower::add_post_kernel(module, prefixes, record);
   post.program = {lower::Stage::post, post.name, post.document, std::move(module), 0, {}, {}, options.tier};
-  finish(post.program, kernel, options);
+  finish(post.program, kernel, options, typed->graph.source);
   return post;
 }
 
@@ -213,7 +214,7 @@ std::optional<Program> compile_function(const support::Source& source, const Opt
   support::check(function != ir::none, "lowering made no function");
   Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {},
                   options.tier};
-  finish(program, lower::add_eval_kernel(program.module, function), options);
+  finish(program, lower::add_eval_kernel(program.module, function), options, typed->graph.source);
   for (const graph::Input& input : typed->graph.inputs) {
     program.inputs.push_back(field(input.name, input.type));
     program.inputs.back().min = input.min;

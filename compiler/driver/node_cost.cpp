@@ -8,6 +8,7 @@
 #include "compiler/check/check.h"
 #include "compiler/functions/library.h"
 #include "compiler/graph/document.h"
+#include "compiler/ir/expansion.h"
 #include "compiler/lower/lower.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/check.h"
@@ -29,29 +30,6 @@ ir::Module lowered(const nodes::Example& example) {
 }
 
 bool is_operation(ir::Opcode op) { return static_cast<int>(op) < ir::primitive_count; }
-
-/// Operations of a block on single numbers, with those of what it calls.
-class Counter {
- public:
-  explicit Counter(const ir::Module& module) : module_(module) {}
-
-  int64_t of_function(uint32_t index) { return of_block(module_.functions[index], 0); }
-
- private:
-  int64_t of_block(const ir::Function& function, ir::BlockId block) {
-    int64_t count = 0;
-    for (const ir::InstructionId id : function.blocks[block].instructions) {
-      const ir::Instruction& instruction = function.instructions[id];
-      if (is_operation(instruction.op)) count += function.type(instruction.first_result).width;
-      if (instruction.op == ir::Opcode::call) count += of_function(instruction.imm);
-      for (const ir::BlockId inner : instruction.blocks)
-        if (inner != ir::none) count += of_block(function, inner);
-    }
-    return count;
-  }
-
-  const ir::Module& module_;
-};
 
 std::string error_of_row(std::string_view row, functions::Tier tier) {
   const auto found = std::ranges::find(functions::variants(), row, &functions::Variant::row);
@@ -80,7 +58,7 @@ NodeCost cost_of(const nodes::Example& example, functions::Tier tier) {
   cost.calls.assign(calls.begin(), calls.end());
   passes::Entries entries{entry};
   passes::run(passes::optimisations(), module, entries, tier);
-  cost.operations = Counter(module).of_function(entries[0]);
+  cost.operations = static_cast<int64_t>(ir::expanded_operations(module, entries[0])[entries[0]]);
   return cost;
 }
 

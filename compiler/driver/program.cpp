@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/program.h"
 
+#include "compiler/emit/cpp.h"
 #include "compiler/emit/stages.h"
+#include "compiler/ir/expansion.h"
+#include "compiler/passes/cut_long.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/visible.h"
 
@@ -35,7 +38,12 @@ std::string glsl_with_vertex_eval(const Program& program, Division division) {
 }
 
 std::string cpp(const Program& program) {
-  return emit::cpp_stage(program.module, program.entry, program.stage, {program.document, program.name});
+  const emit::Heading heading{program.document, program.name};
+  if (ir::expanded_operations(program.module, program.entry)[program.entry] <= emit::large_program)
+    return emit::cpp_stage(program.module, program.entry, program.stage, heading);
+  ir::Module module = program.module;
+  passes::cut_long(module, emit::longest_in_large);
+  return emit::cpp_stage(module, program.entry, program.stage, heading);
 }
 
 }  // namespace isoshade::driver

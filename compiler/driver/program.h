@@ -11,6 +11,7 @@
 #include "compiler/functions/tier.h"
 #include "compiler/ir/module.h"
 #include "compiler/lower/stages.h"
+#include "compiler/support/source.h"
 
 namespace isoshade::driver {
 
@@ -35,6 +36,7 @@ struct Program {
   std::vector<Field> inputs;   ///< eval: input columns
   std::vector<Field> results;  ///< eval: output columns
   functions::Tier tier = functions::Tier::standard;
+  support::Source source = nullptr;  ///< of the document, for messages; null: it has none
 };
 
 /// How `/` and `sqrt` are computed: by the device, or by Newton steps and an exact integer residual.

@@ -1,15 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/cpp.h"
 
+#include <array>
+
 #include "compiler/emit/literal.h"
 #include "compiler/emit/printer.h"
+#include "compiler/ir/call_graph.h"
+#include "compiler/ir/expansion.h"
 
 namespace isoshade::emit {
 
 namespace {
 
+/// What a compiler makes of a program's functions.
+struct Code {
+  std::vector<bool>
+      called;  ///< by function: in the machine's code, too. In large programs those that are not small
+  uint64_t operations = 0;  ///< with those of inlined functions once for each call
+};
+
+Code code_of(const ir::Module& module, uint32_t entry) {
+  std::vector<bool> called(module.functions.size());
+  const uint64_t expanded = ir::expanded_operations(module, entry)[entry];
+  if (expanded <= large_program) return {called, expanded};
+  uint64_t sum = 0;
+  std::vector<uint64_t> inlined(module.functions.size());
+  const auto order = ir::callees_first(module, std::array{entry});
+  for (const uint32_t f : *order) {
+    const ir::Function& function = module.functions[f];
+    for (const ir::Block& block : function.blocks)
+      for (const ir::InstructionId id : block.instructions) {
+        const ir::Instruction& made = function.instructions[id];
+        const bool counts =
+            ir::is_primitive(made.op) || made.op == ir::Opcode::load || made.op == ir::Opcode::call;
+        inlined[f] += made.op == ir::Opcode::call && !called[made.imm] ? inlined[made.imm] : counts ? 1 : 0;
+      }
+    called[f] = f != entry && inlined[f] > most_inlined_in_large;
+    if (called[f] || f == entry) sum += inlined[f];
+  }
+  return {called, sum};
+}
+
 class Cpp final : public Language {
  public:
+  Cpp(const ir::Module& module, uint32_t entry)
+      : functions_(module.functions.data()), called_(code_of(module, entry).called) {}
+
   std::string_view declared_type(ir::Type type, bool uniform) const override {
     constexpr std::string_view one[] = {"const float", "const vec2<float>", "const vec3<float>",
                                         "const vec4<float>"};
@@ -96,7 +132,9 @@ class Cpp final : public Language {
   }
   void function_head(std::string& out, const ir::Function& function,
                      const FunctionText& text) const override {
-    out += "template <class F>\nISOSHADE_INLINE ";
+    const auto index = static_cast<size_t>(&function - functions_);
+    out += called_[index] ? "template <class F>\n[[gnu::noinline]] static "
+                          : "template <class F>\nISOSHADE_INLINE ";
     if (text.result_type.empty())
       out += type(function.results[0].type, false);
     else
@@ -114,6 +152,9 @@ class Cpp final : public Language {
 
  private:
   static std::string_view lanes_of(bool uniform) { return uniform ? "<float>" : "<F>"; }
+
+  const ir::Function* functions_;
+  std::vector<bool> called_;  ///< by function
 };
 
 constexpr std::string_view zero_head =
@@ -122,6 +163,10 @@ constexpr std::string_view zero_head =
 
 }  // namespace
 
+uint64_t cpp_operations(const ir::Module& module, uint32_t entry) {
+  return code_of(module, entry).operations;
+}
+
 std::string cpp_functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
   return cpp_functions(module, entry, texts);
@@ -129,7 +174,7 @@ std::string cpp_functions(const ir::Module& module, uint32_t entry) {
 
 std::string cpp_functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
   return std::string(uses_hidden_zero(module, entry) ? zero_head : "") +
-         print_functions(module, entry, Cpp(), texts);
+         print_functions(module, entry, Cpp(module, entry), texts);
 }
 
 std::string cpp_buffers(const ir::Module& module) {

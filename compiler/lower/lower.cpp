@@ -27,6 +27,11 @@ constexpr std::string_view names_of_stages[] = {
     "post",       "edges_at",       "edges_at_ddx", "edges_at_ddy", "attribute2",
     "attribute3", "attribute4"};
 
+/// SPIR-V takes 255 parameters of a function, and derivatives may add as many again. A function with more inputs than
+/// this takes them in structs.
+constexpr size_t most_plain_inputs = 100;
+constexpr size_t inputs_of_a_group = 100;
+
 /// A name that neither the stages nor library functions have.
 std::string authored_name(const std::string& name) {
   const bool taken = std::ranges::find(names_of_stages, name) != std::end(names_of_stages);
@@ -169,8 +174,13 @@ void ModuleLowering::add_function(const TypedGraph& graph, std::string name) {
   Parameters parameters{function};
   std::vector<size_t> first;
   const std::vector<std::vector<std::string>> names = parameter_names(graph);
-  for (size_t i = 0; i < names.size(); ++i)
-    first.push_back(parameters.add(names[i], graph.graph.inputs[i].type, "", false));
+  size_t count = 0;
+  for (const std::vector<std::string>& columns : names) count += columns.size();
+  for (size_t i = 0; i < names.size(); ++i) {
+    const size_t number = function.parameters.size() / inputs_of_a_group + 1;
+    const std::string group = count > most_plain_inputs ? "inputs_" + std::to_string(number) : "";
+    first.push_back(parameters.add(names[i], graph.graph.inputs[i].type, group, false));
+  }
   std::vector<std::pair<std::string, Type>> outputs;
   for (size_t i = 0; i < graph.outputs.size(); ++i)
     outputs.emplace_back(graph.graph.outputs[i].name, graph.outputs[i].needed);

@@ -8,6 +8,7 @@
 
 #include "backends/cpu/lanes_headers.h"
 #include "compiler/driver/driver.h"
+#include "compiler/driver/target_limits.h"
 #include "compiler/emit/spirv.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
@@ -27,9 +28,13 @@ class Writer {
 
   bool program(const std::string& stem, const driver::Program& program) {
     const bool vertex = program.stage == driver::Stage::vertex;
+    const auto division = arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
+    const auto bears = [&](driver::Target target) {
+      return driver::within_limits(program, target, division, diagnostics_);
+    };
+    if (wants("cpp") && !bears(driver::Target::cpu)) return false;
     if (wants("glsl") || wants("spirv")) {
-      const auto division =
-          arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
+      if (!bears(driver::Target::vulkan)) return false;
       const std::string text = driver::glsl(program, division);
       const std::string name = stem + (vertex ? ".vert" : ".frag");
       if (wants("glsl") && !write(name, text)) return false;

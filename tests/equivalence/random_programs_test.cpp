@@ -2,6 +2,7 @@
 // Programs made at random, rich in what drivers and compilers fold: the same bits on the interpreter, on Vulkan
 // and in C++. With ISOSHADE_FULL set there are many more; ISOSHADE_SEEDS=first,last runs those of a report again.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include "backends/cpu/backend.h"
 #include "backends/interpreter/backend.h"
 #include "compiler/driver/driver.h"
+#include "compiler/emit/cpp.h"
 #include "compiler/ir/builder.h"
 #include "compiler/ir/validator.h"
 #include "compiler/lower/stages.h"
@@ -193,6 +195,50 @@ TEST(RandomPrograms, AreIdenticalInVertexShaders) {
   expect_same_bits_on_vulkan(seeds(100, 2'000), driver::Division::native, vulkan::EvalStage::vertex);
 }
 #endif
+
+/// More operations than emit::large_program, of which late ones read early ones: a loop and a branch among them.
+driver::Program large_program() {
+  ir::RandomModule random(1);
+  ir::Module module = lower::frame_module();
+  ir::Function function;
+  function.name = "large";
+  for (const char* name : {"a", "b", "c"}) function.parameters.push_back({name, ir::float_type, "", false});
+  for (const char* name : {"i", "j"}) function.parameters.push_back({name, ir::int_type, "", false});
+  function.results = {{"sum", ir::float_type}, {"last", ir::vector_type(3)}};
+  module.functions.push_back(function);
+  ir::Builder b(module, 0);
+  std::vector<ValueId> made{b.parameter(0), b.parameter(1), b.parameter(2)};
+  const auto any = [&] { return made[random.below(static_cast<uint32_t>(made.size()))]; };
+  constexpr std::array operations{ir::Opcode::fadd, ir::Opcode::fsub, ir::Opcode::fmul};
+  const auto operate = [&](ValueId x, ValueId y) { return b.op(operations[random.below(3)], {x, y}); };
+  ValueId count = b.constant(1);
+  while (made.size() < emit::large_program / 2 + 300) {
+    made.push_back(operate(any(), made[made.size() - 1 - random.below(3)]));
+    if (made.size() % 1000 == 0) count = b.op(ir::Opcode::iadd, {count, b.constant(1)});
+    if (made.size() % 1000 == 500)
+      made.push_back(b.branch(b.op(ir::Opcode::flt, {any(), any()}), [&] { return std::vector{operate(any(), any())}; },
+                              [&] { return std::vector{operate(any(), any())}; })[0]);
+    if (made.size() % 2000 == 600)
+      made.push_back(b.loop(count, std::array{any()}, [&](ValueId, std::span<const ValueId> carried) {
+        return std::vector{operate(carried[0], any())};
+      })[0]);
+  }
+  ValueId sum = made[0];
+  for (const ValueId value : made) sum = b.op(ir::Opcode::fadd, {sum, value});
+  b.finish(std::array{sum, b.construct(std::array{made[made.size() - 1], made[made.size() - 2], any()})});
+  EXPECT_EQ(ir::validate(module), "");
+  return driver::finish_eval(std::move(module), 0, "large");
+}
+
+// They are cut into parts that call each other.
+TEST(RandomPrograms, LargeOnesAreIdenticalInCpp) {
+  const driver::Program program = large_program();
+  EXPECT_NE(driver::cpp(program).find("large_part_1"), std::string::npos);
+  support::Diagnostics diagnostics;
+  const auto cpu = cpu::create({}, diagnostics);
+  ASSERT_NE(cpu, nullptr) << diagnostics.text();
+  EXPECT_EQ(evaluate(*cpu, program), evaluate(*interpreter::create(), program));
+}
 
 TEST(RandomPrograms, AreIdenticalInCpp) {
   expect_same_bits(seeds(12, 1'000),

@@ -1,6 +1,7 @@
 # Tests of compiler/ir and compiler/passes.
 isoshade_test(ir_test
   SOURCES
+    unit/ir_expansion_test.cpp
     unit/ir_interpreter_test.cpp
     unit/ir_text_test.cpp
     unit/ir_uniformity_test.cpp
@@ -10,6 +11,7 @@ isoshade_test(ir_test
 
 isoshade_test(passes_test
   SOURCES
+    unit/passes_cut_long_test.cpp
     unit/passes_golden_test.cpp
     unit/passes_keep_bits_test.cpp
     unit/passes_test.cpp

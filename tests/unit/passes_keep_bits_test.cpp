@@ -11,6 +11,7 @@
 #include "compiler/ir/printer.h"
 #include "compiler/ir/validator.h"
 #include "compiler/passes/cse.h"
+#include "compiler/passes/cut_long.h"
 #include "compiler/passes/dce.h"
 #include "compiler/passes/decide.h"
 #include "compiler/passes/fold.h"
@@ -126,6 +127,16 @@ TEST(PassesKeepEveryBit, Decide) {
 
 TEST(PassesKeepEveryBit, HideFoldables) {
   expect_same_bits(3000, false, [](Module& m, uint64_t) { hide_foldables(m, {}); });
+}
+
+TEST(PassesKeepEveryBit, CutLong) {
+  size_t parts = 0;
+  expect_same_bits(2000, false, [&](Module& m, uint64_t seed) {
+    const size_t functions = m.functions.size();
+    cut_long(m, 2 + seed % 8);
+    parts += m.functions.size() - functions;
+  });
+  EXPECT_GT(parts, 2000u);
 }
 
 TEST(PassesKeepEveryBit, AnySequence) {

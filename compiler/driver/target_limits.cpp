@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/driver/target_limits.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "compiler/emit/cpp.h"
+#include "compiler/ir/expansion.h"
+#include "compiler/support/visible.h"
+
+namespace isoshade::driver {
+
+namespace {
+
+constexpr uint64_t operations_of_exact_division = 40;
+
+struct Limit {
+  std::string_view name;
+  uint64_t most;
+  std::string_view way_out;
+};
+
+Limit limit_of(Target target) {
+  switch (target) {
+    case Target::vulkan:
+      return {"a Vulkan driver, which expands all calls,", most_operations_on_vulkan,
+              "call less inside what is called several times; or use --backend cpu (compile: --target cpp), "
+              "which "
+              "keeps large functions as calls"};
+    case Target::cpu:
+      return {"the cpu backend", most_operations_on_cpu, "call less inside what is called several times"};
+    case Target::interpreter: break;
+  }
+  return {"the interpreter", most_operations_on_interpreter,
+          "call less inside what is called several times; or use --backend cpu"};
+}
+
+/// A node and what the values that come of it cost.
+struct Heaviest {
+  const ir::Origin* node = nullptr;
+  uint64_t operations = 0;
+};
+
+/// In the function, the origin of most operations.
+Heaviest heaviest_node(const ir::Function& function, const std::vector<uint64_t>& of_functions) {
+  std::vector<uint64_t> sums(function.origins.size());
+  for (const ir::Block& block : function.blocks)
+    for (const ir::InstructionId id : block.instructions) {
+      const ir::Instruction& made = function.instructions[id];
+      // What is in its blocks is gone through by itself.
+      if (made.blocks[0] == ir::none)
+        sums[made.origin] += ir::expanded_operations(function, made, of_functions);
+    }
+  if (sums.size() < 2) return {};
+  const auto most = std::max_element(sums.begin() + 1, sums.end());
+  return {&function.origins[static_cast<size_t>(most - sums.begin())], *most};
+}
+
+/// The call of most operations in a function; null if it calls nothing.
+const ir::Instruction* heaviest_call(const ir::Function& function,
+                                     const std::vector<uint64_t>& of_functions) {
+  const ir::Instruction* most = nullptr;
+  for (const ir::Block& block : function.blocks)
+    for (const ir::InstructionId id : block.instructions) {
+      const ir::Instruction& made = function.instructions[id];
+      if (made.op != ir::Opcode::call) continue;
+      if (most == nullptr || of_functions[made.imm] > of_functions[most->imm]) most = &made;
+    }
+  return most;
+}
+
+/// The document's own function, below the stages around it; null if there is none.
+const ir::Function* authored(const Program& program, const std::vector<uint64_t>& of_functions) {
+  const ir::Function* function = &program.module.functions[program.entry];
+  while (function->document.empty()) {
+    const ir::Instruction* call = heaviest_call(*function, of_functions);
+    if (call == nullptr) return nullptr;
+    function = &program.module.functions[call->imm];
+  }
+  return function;
+}
+
+/// Where a line of the document names a node.
+support::Span place_of(const support::Source& source, const ir::Origin& node) {
+  if (source == nullptr || node.line == 0) return {};
+  const std::string_view line = source->line(node.line);
+  const std::string name = "\"" + node.node + "\"";
+  size_t at = line.find(name + ":");
+  if (at == std::string_view::npos) at = line.find(name);
+  const bool found = at != std::string_view::npos;
+  const auto begin =
+      static_cast<uint32_t>(line.data() - source->text().data()) + static_cast<uint32_t>(found ? at : 0);
+  return {source, begin, begin + static_cast<uint32_t>(found ? name.size() : line.size())};
+}
+
+}  // namespace
+
+bool within_limits(const Program& program, Target target, Division division,
+                   support::Diagnostics& diagnostics) {
+  const uint64_t of_division = division == Division::exact ? operations_of_exact_division : 1;
+  const std::vector<uint64_t> of_functions =
+      ir::expanded_operations(program.module, program.entry, of_division);
+  const uint64_t operations = of_functions[program.entry];
+  const Limit limit = limit_of(target);
+  const uint64_t in_text = target == Target::cpu ? emit::cpp_operations(program.module, program.entry) : 0;
+  if (operations <= limit.most && in_text <= most_operations_in_cpp) return true;
+
+  const ir::Function* function = authored(program, of_functions);
+  const Heaviest heaviest = function != nullptr ? heaviest_node(*function, of_functions) : Heaviest{};
+  const bool known = heaviest.node != nullptr && heaviest.operations != 0;
+  support::Diagnostic& report =
+      diagnostics
+          .report(
+              support::Id::too_large, known ? place_of(program.source, *heaviest.node) : support::Span{},
+              operations <= limit.most
+                  ? fmt::format(
+                        "the C++ of the {} program of {} has {} operations; a compiler bears at most {}",
+                        name(program.stage), support::quote(program.name), in_text, most_operations_in_cpp)
+                  : fmt::format("with all calls expanded, the {} program of {} has {} operations; {} bears "
+                                "at most {}",
+                                name(program.stage), support::quote(program.name), operations, limit.name,
+                                limit.most))
+          .suggest(operations <= limit.most ? "use --backend interpreter" : std::string(limit.way_out));
+  if (known)
+    report.note(
+        fmt::format("{} of them are of node {}", heaviest.operations, support::quote(heaviest.node->node)));
+  return false;
+}
+
+}  // namespace isoshade::driver
