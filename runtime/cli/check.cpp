@@ -136,8 +136,10 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   Result result = Result::proved;
   const auto where = restrictions(*subjects, arguments.where, diagnostics);
   if (!where) return Result::error;
+  analysis::Effort effort;  // errors of all passes together take as long as those of one function
+  effort.error /= std::max<size_t>(subjects->size(), 1);
   for (const analysis::Subject& subject : *subjects) {
-    const analysis::Proof proof = analysis::prove(subject.tape, {}, *where);
+    const analysis::Proof proof = analysis::prove(subject.tape, effort, *where);
     if (proof.vacuous) {
       diagnostics.report(support::Id::out_of_range, "no input lies within all ranges that " +
                                                         support::quote(path) + " and --where give");
