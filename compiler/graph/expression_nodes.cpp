@@ -84,8 +84,10 @@ ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type ty
   }
   // Two arguments are two numbers, or all components but the last, and that.
   const bool all = tuple && arguments.size() == static_cast<size_t>(count);
-  if (all || (tuple && arguments.size() == 2))
-    return made_of("combine" + std::to_string(arguments.size()), name, std::move(arguments));
+  if (all || (tuple && arguments.size() == 2)) {
+    const std::string row = "combine" + std::to_string(arguments.size());
+    return made_of(row, name, std::move(arguments));
+  }
   return fail(place_of(name), type_text + " takes 1" +
                                   (count > 2  ? ", 2 or " + std::to_string(count) + " arguments"
                                    : tuple ? " or 2 arguments"
