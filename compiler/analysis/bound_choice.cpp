@@ -99,7 +99,8 @@ Outcome other(ir::Opcode op, const Bound& a, const Bound& b) {
     case bor: return {{std::max(a.lo, b.lo), std::max(a.hi, b.hi), differs}};
     case bnot: return {{1 - a.hi, 1 - a.lo, a.absolute}};
     case bxor:
-      if (a.is_point() && b.is_point()) return {exactly(a.lo != b.lo)};
+      // Known in floats; in exact arithmetic either may be the other.
+      if (a.is_point() && b.is_point()) return {{double(a.lo != b.lo), double(a.lo != b.lo), differs}};
       return {{0, 1, differs}};
     case iadd: return integer(a.lo + b.lo, a.hi + b.hi, a.absolute + b.absolute);
     case isub: return integer(a.lo - b.hi, a.hi - b.lo, a.absolute + b.absolute);

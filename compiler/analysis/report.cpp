@@ -72,6 +72,8 @@ std::string port_of(const Documents::Found& found, Breach breach) {
     case Breach::unknown: return "";
   }
   if (found.node == none || found.graph->nodes[found.node].row == nullptr) return "";
+  // Inside of an expression there are operands, no ports.
+  if (found.graph->graph.nodes[found.node].origin != graph::Node::Origin::node) return "";
   const std::vector<nodes::Port>& ports = found.graph->nodes[found.node].row->ports;
   const bool exists = std::ranges::find(ports, wanted, &nodes::Port::name) != ports.end();
   return exists ? std::string(wanted) : "";

@@ -185,7 +185,12 @@ void NodeInference::settle_by_links() {
       if (!is_value(i) || given(i).link == nullptr || port(i).type.variable == Variable::none) continue;
       if (is_untyped(i) != untyped) continue;
       const std::optional<Type> type = settled(i).type;
-      if (!type || !takes_as_color(work_, operand(i), *given(i).link, *type)) join(i, operand(i).type);
+      if (type && takes_as_color(work_, operand(i), *given(i).link, *type)) continue;
+      // Colours alone are wanted.
+      for (const Type color : {Type::color3, Type::color4})
+        if (port(i).type.accepts.has(color) && !port(i).type.accepts.has(operand(i).type))
+          takes_as_color(work_, operand(i), *given(i).link, color);
+      join(i, operand(i).type);
     }
   }
 }

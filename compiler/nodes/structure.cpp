@@ -92,21 +92,13 @@ void combine(Site& s) {
   s.out[0] = s.b.construct(std::span<const ir::ValueId>(components).first(count));
 }
 
-/// The result has one component more than the first port, and is a colour where that is one.
 std::optional<Refusal> one_more(std::span<const Type> types, std::span<const uint32_t>, Type out) {
-  const auto made = [](Type type) {
-    switch (type) {
-      case Type::vector2: return Type::vector3;
-      case Type::vector3: return Type::vector4;
-      case Type::color3: return Type::color4;
-      default: return Type::vector2;
-    }
-  };
-  if (made(types[0]) == out) return std::nullopt;
-  const std::string name(graph::type_name(made(types[0])));
+  const int count = float_count(types[0]) + 1;
+  if (float_count(out) == count) return std::nullopt;
   return Refusal{support::Id::type_mismatch, 2,
-                 "a " + std::string(graph::type_name(types[0])) + " and a float make a " + name + ", not a " +
-                     std::string(graph::type_name(out))};
+                 "a " + std::string(graph::type_name(types[0])) + " and a float are " + std::to_string(count) +
+                     " numbers, and a " + std::string(graph::type_name(out)) + " has " +
+                     std::to_string(float_count(out))};
 }
 
 std::optional<Refusal> columns_fit(std::span<const Type> types, std::span<const uint32_t>, Type out) {
@@ -176,9 +168,9 @@ std::vector<Row> structure_rows() {
       {"creatematrix",
        "A matrix of its columns: where it moves the x, y and z axes, and in a matrix44 the origin. Columns of three "
        "numbers in a matrix44 end with 0, the fourth with 1.",
-       {{"in1", column, "the first column", std::array{1.0f, 0.0f, 0.0f}},
-        {"in2", column, "the second column", std::array{0.0f, 1.0f, 0.0f}},
-        {"in3", column, "the third column", std::array{0.0f, 0.0f, 1.0f}},
+       {{"in1", column, "the first column"},
+        {"in2", column, "the second column"},
+        {"in3", column, "the third column"},
         {"in4", column, "the fourth column of a matrix44", std::array{0.0f, 0.0f, 0.0f}},
         {"to", name_of(matrix), "matrix33 or matrix44", "matrix33"}},
        matrix,

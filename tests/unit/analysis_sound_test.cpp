@@ -46,6 +46,18 @@ TEST(Sound, TheErrorOfACoordinateReachesTheTexel) {
       << "rounding moves to the next texel";
 }
 
+TEST(Sound, WhatMayTipTipsWhatComparesIt) {
+  // The sum loses up to a sixteenth, so that exact arithmetic may find another truth.
+  for (const char* code : {"((x + 1e6) - 1e6 > 0.5) != (y > 2) ? 1 : 0", "((x + 1e6) - 1e6 > 0.5) == (y > 2) ? 1 : 0",
+                           "((x + 1e6) - 1e6 > 0.5) && (y < 2) ? 1 : 0", "!((x + 1e6) - 1e6 > 0.5) ? 1 : 0 * y"}) {
+    const Proof proof = proof_of(
+        R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float", "min": 0, "max": 1},
+        "y": {"type": "float", "min": 0, "max": 1}}, "nodes": {"r": {"type": "expression", "code": ")" +
+        std::string(code) + R"(", "x": "x", "y": "y"}}, "outputs": {"out": "r"}})");
+    EXPECT_GE(proof.outputs[0].absolute, 1) << code;
+  }
+}
+
 TEST(Sound, WhatLiesBetweenTexelsMayBeRoundedBeyondThem) {
   EXPECT_GT(proof_of_image("t * 1", "t", "linear").outputs[0].hi, 1000);
   EXPECT_LT(proof_of_image("t * 1", "t", "linear").outputs[0].hi, 1000.01);

@@ -158,9 +158,9 @@ TEST(Expression, ErrorsPointIntoTheString) {
   EXPECT_EQ(error_of("vector4(x, y, x)", R"("x": "x", "y": "y")"),
             "0 bad-expression: vector4 takes 1, 2 or 4 arguments, not 3");
   EXPECT_EQ(error_of("vector3(x, y)", R"("x": "x", "y": "y")"),
-            "0 type-mismatch: a float and a float make a vector2, not a vector3");
-  EXPECT_EQ(error_of("color4(v, x)", R"("x": "x", "v": "v")"),
-            "0 type-mismatch: a vector3 and a float make a vector4, not a color4");
+            "0 type-mismatch: a float and a float are 2 numbers, and a vector3 has 3");
+  EXPECT_EQ(error_of("color4(v.xy, x)", R"("x": "x", "v": "v")"),
+            "0 type-mismatch: a vector2 and a float are 3 numbers, and a color4 has 4");
   EXPECT_EQ(error_of("integer(x, y)"), "0 bad-expression: integer takes 1 argument, not 2");
   EXPECT_EQ(error_of("matrix33(x)"), "0 bad-expression: matrix33 takes 3 arguments, its columns, not 1");
   EXPECT_EQ(error_of("filename(x)"), "0 bad-expression: an expression makes no filename");
@@ -198,6 +198,7 @@ TEST(Expression, PortsThatTheCodeDoesNotReadAreWarnedOf) {
 TEST(Expression, TuplesAreMadeOfATupleAndANumber) {
   EXPECT_EQ(value_of("vector4(v, 7)"), (Floats{1, 2, 5, 7}));
   EXPECT_EQ(value_of("color4(color3(v), x)"), (Floats{1, 2, 5, 3}));
+  EXPECT_EQ(value_of("color4(v, x)"), (Floats{1, 2, 5, 3}));
   EXPECT_EQ(value_of("vector3(v.xy, y)"), (Floats{1, 2, 4}));
   EXPECT_EQ(value_of("vector2(x, y)"), (Floats{3, 4}));
 }

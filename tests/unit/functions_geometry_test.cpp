@@ -155,8 +155,8 @@ TEST(Rotate2d, TurnsByQuartersExactly) {
     return words(rotate2d(vec<float, 2>{x, y}, functions::hidden(degrees)));
   };
   using Vec2 = vec<float, 2>;
-  for (float turns : {0.0f, 360.0f, -720.0f, 360000.0f, inf, nan})
-    EXPECT_EQ(turned(turns), words(Vec2{0.1f, 0.7f}));
+  for (float turns : {0.0f, 360.0f, -720.0f, 360000.0f}) EXPECT_EQ(turned(turns), words(Vec2{0.1f, 0.7f}));
+  for (float turns : {inf, -inf, nan}) EXPECT_EQ(turned(turns), words(Vec2{nan, nan}));
   EXPECT_EQ(turned(90), words(Vec2{0.7f, -0.1f}));
   EXPECT_EQ(turned(-90), words(Vec2{-0.7f, 0.1f}));
   EXPECT_EQ(turned(180), words(Vec2{-0.1f, -0.7f}));

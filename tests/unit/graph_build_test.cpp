@@ -305,8 +305,8 @@ TEST(Build, PassesMustMakeSense) {
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cull": "bak"})")),
             "unknown-choice: \"cull\" of a pass is one of none, back, front, not \"bak\" | \"bak\" | did you "
             "mean \"back\"?");
-  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": 1})")),
-            "wrong-type: \"color\" is a link, not a number | 1");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": true})")),
+            "wrong-type: \"color\" is a link, not a boolean | true");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x"}, {"name": "b", "color": "y"})")),
             "duplicate-name: two passes are called \"b\" | \"b\"");
   EXPECT_EQ(

@@ -94,6 +94,7 @@ TEST(Layering, FoldersIncludeOnlyWhatTheyLink) {
            matches(read(entry.path()), R"re((?:^|\n)\s*#\s*include\s+"([^"]*)")re")) {
         ++includes;
         const std::string folder = fs::path(header).parent_path().string();
+        if (folder.empty() && header.ends_with(".inc")) continue;  // made beside the folder's objects
         EXPECT_TRUE(allowed.count(folder))
             << entry.path() << " includes " << header << ", which isoshade_" << name << " does not link";
       }

@@ -22,9 +22,12 @@ Floats value_of(const std::string& node) {
 TEST(NodeValues, MatricesAreMadeOfColumns) {
   EXPECT_EQ(value_of(R"("type": "creatematrix", "in1": [1, 2, 3], "in2": [4, 5, 6], "in3": [7, 8, 9])"),
             (Floats{1, 2, 3, 4, 5, 6, 7, 8, 9}));
-  EXPECT_EQ(value_of(R"("type": "creatematrix")"), (Floats{1, 0, 0, 0, 1, 0, 0, 0, 1}));
-  EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in4": [7, 8, 9])"),
-            (Floats{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1}));
+  EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in1": [1, 2, 3], "in2": [4, 5, 6],
+                        "in3": [7, 8, 9])"),
+            (Floats{1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in1": [1, 2, 3], "in2": [4, 5, 6],
+                        "in3": [7, 8, 9], "in4": [10, 11, 12])"),
+            (Floats{1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0, 10, 11, 12, 1}));
   EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in1": [1, 2, 3, 4], "in2": [5, 6, 7, 8],
                         "in3": [9, 10, 11, 12], "in4": [13, 14, 15, 16])"),
             (Floats{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}));

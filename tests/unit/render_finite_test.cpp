@@ -64,12 +64,13 @@ class FiniteTest : public ::testing::Test {
   }
 
   /// Renders 32 x 32 pixels; what is told stands in diagnostics_.
-  backends::Image render(int bad, const std::string& more = "") {
+  backends::Image render(int bad, const std::string& more = "", float height = 2) {
     diagnostics_ = support::Diagnostics();
     const auto document = testing::document_of(
         testing::scene_text(
             R"("size": [32, 32],
-      "camera": {"type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": 2, "far": 100},
+      "camera": {"type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": )" +
+            std::to_string(height) + R"(, "far": 100},
       "objects": {"wall": {"mesh": {"type": "plane", "size": [2, 2]}, "effect": "cell.json",
         "transform": {"rotate": [90, 0, 0]}, "parameters": {"bad": )" +
             std::to_string(bad) + "}}}" + more),
@@ -78,6 +79,7 @@ class FiniteTest : public ::testing::Test {
     backends::Image image;
     if (!scene) return image;
     check::Library library;
+    library.allow_outside(true);
     render::Options options;
     options.compiler.library = &library;
     const auto plan = render::plan_frame(*scene, options, diagnostics_);
@@ -158,12 +160,9 @@ TEST_F(FiniteTest, BloomDoesNotSpreadThem) {
 }
 
 TEST_F(FiniteTest, BloomLimitsALoneBrightPixel) {
-  // A cell of one pixel.
-  const std::string small = R"(, "camera": {"type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0],
-    "height": 8, "far": 100})";
   const auto brightest_beside = [&](const std::string& firefly) {
     const backends::Image image =
-        render(3, small + bloom(R"(, "parameters": {"threshold": 1, "firefly": )" + firefly + "}"));
+        render(3, bloom(R"(, "parameters": {"threshold": 1, "firefly": )" + firefly + "}"), 8);  // a cell is a pixel
     EXPECT_EQ(image.width, 32) << diagnostics_.text();
     float brightest = 0;
     for (size_t i = 0; i < image.depth.size(); ++i)
