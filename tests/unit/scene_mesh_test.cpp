@@ -270,7 +270,7 @@ TEST(CornerNormals, AreOneForAllVerticesAtAPositionAndTheOutlineNormalWhereTheSu
   }
 }
 
-TEST(CornerNormals, ArePackedToWithinEightTenThousandthsOfARadian) {
+TEST(CornerNormals, ArePackedToWithinElevenTenThousandthsOfARadian) {
   const lanes::FpGuard guard;
   for (int i = 0; i < 20'000; ++i) {
     const float z = std::sin(0.37f * static_cast<float>(i)), angle = 1.7f * static_cast<float>(i);
@@ -278,7 +278,7 @@ TEST(CornerNormals, ArePackedToWithinEightTenThousandthsOfARadian) {
     const glm::vec3 v(ring * std::cos(angle), ring * std::sin(angle), z);
     const auto n = functions::octahedral_decode(functions::octahedral_encode({v.x, v.y, v.z}));
     const glm::vec3 unpacked = glm::normalize(glm::vec3(n[0], n[1], n[2]));
-    ASSERT_LE(glm::length(glm::cross(unpacked, v)), 8e-4f) << v.x << " " << v.y << " " << v.z;
+    ASSERT_LE(glm::length(glm::cross(unpacked, v)), 1.1e-3f) << v.x << " " << v.y << " " << v.z;
     ASSERT_GT(glm::dot(unpacked, v), 0);
   }
 }
