@@ -68,7 +68,7 @@ std::string_view first_sentence(std::string_view doc) {
 }
 
 std::string line_text(std::string_view name, std::string_view doc) {
-  return "  " + padded(std::string(name), 18) + std::string(first_sentence(doc)) + "\n";
+  return "  " + padded(std::string(name), 18) + " " + std::string(first_sentence(doc)) + "\n";
 }
 
 /// A cell of a table: no bars.
@@ -192,6 +192,40 @@ std::string domains_markdown() {
   return text;
 }
 
+/// "mix(x, y, z)"
+std::string call_text(const Row& function) {
+  std::string arguments;
+  for (const Port& port : function.ports) arguments += (arguments.empty() ? "" : ", ") + std::string(port.name);
+  return std::string(function.name) + "(" + arguments + ")";
+}
+
+/// The node that computes a function, or "".
+std::string_view node_of(const Row& function) {
+  for (const Row& row : table()) {
+    const auto* called = std::get_if<Function>(&row.lowering);
+    const auto* op = std::get_if<ir::Opcode>(&row.lowering);
+    const auto* other = std::get_if<ir::Opcode>(&function.lowering);
+    if (called != nullptr && called->row == function.name) return row.name;
+    if (op != nullptr && other != nullptr && *op == *other) return row.name;
+  }
+  return {};
+}
+
+std::string functions_markdown() {
+  std::string text = "| call | arguments | gives | node |\n|---|---|---|---|\n";
+  for (const Row& function : function_table()) {
+    if (function.group != "function") continue;  // an operator
+    std::string types;
+    for (const Port& port : function.ports)
+      types += (types.empty() ? "" : "; ") + std::string(port.name) + ": " + type_text(port.type);
+    const std::string_view node = node_of(function);
+    text += "| `" + call_text(function) + "` | " + cell(types) + " | " +
+            cell(types_text(function.outputs[0].type.accepts)) + " | " +
+            (node.empty() ? "" : "`" + std::string(node) + "`") + " |\n";
+  }
+  return text;
+}
+
 std::string table_markdown(std::span<const Row> library) {
   std::string text;
   std::string_view group;
@@ -211,7 +245,8 @@ std::string table_markdown(std::span<const Row> library) {
   };
   std::ranges::for_each(table(), add);
   std::ranges::for_each(library, add);
-  return text + "\n**domains**\n\n" + domains_markdown();
+  return text + "\n**functions of expressions**\n\n" + functions_markdown() + "\n**domains**\n\n" +
+         domains_markdown();
 }
 
 }  // namespace isoshade::nodes

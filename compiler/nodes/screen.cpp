@@ -64,9 +64,8 @@ std::vector<Row> screen_rows() {
        Vector3,
        WorldPosition{}},
       {"viewray",
-       "The way from the camera through the pixel's centre, in world space; as long as reaches one unit of "
-       "distance "
-       "along the view further.",
+       "Vector from the camera through the pixel's centre, in world space, scaled to advance one unit along the view "
+       "direction.",
        {},
        Vector3,
        Screen::view_ray},

@@ -98,7 +98,7 @@ std::optional<Refusal> one_more(std::span<const Type> types, std::span<const uin
   return Refusal{support::Id::type_mismatch, 2,
                  "a " + std::string(graph::type_name(types[0])) + " and a float are " + std::to_string(count) +
                      " numbers, and a " + std::string(graph::type_name(out)) + " has " +
-                     std::to_string(float_count(out))};
+                     std::to_string(float_count(out)) + ": \"to\" says what they make"};
 }
 
 std::optional<Refusal> columns_fit(std::span<const Type> types, std::span<const uint32_t>, Type out) {

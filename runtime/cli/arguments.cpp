@@ -15,6 +15,7 @@ namespace {
 constexpr const char* footer =
     "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check), not proved (check) or not\n"
     "finite (--fail-on-nan), 2 error.\n"
+    "The options of `isoshade --help` stand before or after the subcommand.\n"
     "\"-\" is standard input or output. Errors go to standard error.";
 
 bool parse_size(const std::string& text, Size& size) {
@@ -168,7 +169,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   app.fallthrough();
 
   Arguments parsed;
-  app.add_flag("-q,--quiet", parsed.common.quiet, "Print results and errors only");
+  app.add_flag("-q,--quiet", parsed.common.quiet, "Print results, warnings and errors only");
   std::string diagnostics = "text";
   app.add_option("--diagnostics", diagnostics, "How errors and warnings are told: text, or json for tools")
       ->check(CLI::IsMember({"text", "json"}))
@@ -332,7 +333,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   NodesArguments nodes;
   CLI::App* nodes_app = app.add_subcommand("nodes", "List the nodes of the language and the functions of the library, or tell all of one");
-  CLI::Option* node = nodes_app->add_option("NAME", nodes.name, "A node, or a function by its library name: its ports, ranges, cost and error");
+  CLI::Option* node = nodes_app->add_option("NAME", nodes.name, "A node: its ports, domain, cost and error; a function by its library name: its ports and ranges; a function of expressions: its arguments");
   nodes_app->add_flag("--markdown", nodes.markdown, "All nodes as the tables of graphs/README.md")
       ->excludes(node);
 

@@ -85,6 +85,14 @@ int nodes(const NodesArguments& arguments, const Common& common) {
     std::fputs(nodes::row_text(*function).c_str(), stdout);
     return success;
   }
+  const nodes::Row* called = nodes::find_function(arguments.name);
+  if (called != nullptr && called->group == "function") {
+    const std::string_view node = nodes::called_elsewhere(arguments.name, nodes::table());
+    std::string text = nodes::row_text(*called) + "  Called in expressions, its arguments in this order.\n";
+    if (!node.empty()) text += "  The node is " + std::string(node) + ".\n";
+    std::fputs(text.c_str(), stdout);
+    return success;
+  }
   std::vector<std::string_view> names;
   for (const nodes::Row& known : nodes::table()) names.push_back(known.name);
   for (const nodes::Row& known : library.rows()) names.push_back(known.name);

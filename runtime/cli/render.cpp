@@ -88,7 +88,9 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
                           diagnostics))
     return failure;
   render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
-  return arguments.fail_on_nan && !stats.non_finite.none() ? different : success;
+  if (!arguments.fail_on_nan || stats.non_finite.none()) return success;
+  std::fputs(not_finite_text, stderr);
+  return different;
 }
 
 }  // namespace

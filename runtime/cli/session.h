@@ -26,6 +26,9 @@ support::Diagnostics make_diagnostics(const Common& common, size_t limit = 50);
 /// error.
 bool flush(support::Diagnostics& diagnostics, const Common& common);
 
+/// Why --fail-on-nan ends with 1, also where its warnings are silenced.
+inline constexpr const char* not_finite_text = "--fail-on-nan: pixels are infinite or NaN\n";
+
 /// Progress for a person: to stderr, if that is a terminal and nobody asked for quiet.
 void progress(const Common& common, const std::string& line);
 

@@ -120,7 +120,9 @@ class Verifier {
       if (!render::render(*plan, *backends_[i].backend, images[i], stats, diagnostics_)) return failure;
       if (i > 0) continue;  // the others differ, or have the same
       render::warn_non_finite(scene, *plan, stats.non_finite, diagnostics_);
-      if (arguments_.fail_on_nan && !stats.non_finite.none()) result = different;
+      if (!arguments_.fail_on_nan || stats.non_finite.none()) continue;
+      std::fputs(not_finite_text, stderr);
+      result = different;
     }
     for (size_t i = 1; i < images.size(); ++i)
       result = std::max(result, compare_with_first(path, scene, images, i));

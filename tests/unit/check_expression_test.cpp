@@ -158,9 +158,9 @@ TEST(Expression, ErrorsPointIntoTheString) {
   EXPECT_EQ(error_of("vector4(x, y, x)", R"("x": "x", "y": "y")"),
             "0 bad-expression: vector4 takes 1, 2 or 4 arguments, not 3");
   EXPECT_EQ(error_of("vector3(x, y)", R"("x": "x", "y": "y")"),
-            "0 type-mismatch: a float and a float are 2 numbers, and a vector3 has 3");
+            "0 type-mismatch: a float and a float are 2 numbers, and a vector3 has 3: \"to\" says what they make");
   EXPECT_EQ(error_of("color4(v.xy, x)", R"("x": "x", "v": "v")"),
-            "0 type-mismatch: a vector2 and a float are 3 numbers, and a color4 has 4");
+            "0 type-mismatch: a vector2 and a float are 3 numbers, and a color4 has 4: \"to\" says what they make");
   EXPECT_EQ(error_of("integer(x, y)"), "0 bad-expression: integer takes 1 argument, not 2");
   EXPECT_EQ(error_of("matrix33(x)"), "0 bad-expression: matrix33 takes 3 arguments, its columns, not 1");
   EXPECT_EQ(error_of("filename(x)"), "0 bad-expression: an expression makes no filename");

@@ -135,7 +135,10 @@ TEST_F(Cli, ListsTheFunctionsOfTheLibraryAndTellsAllOfOne) {
 
 TEST_F(Cli, NamesNodesByWhatOthersCallThem) {
   EXPECT_NE(run("nodes lerp").text.find("did you mean \"mix\"?"), std::string::npos);
-  EXPECT_NE(run("nodes dot").text.find("did you mean \"dotproduct\"?"), std::string::npos);
+  const Outcome function = run("nodes dot");
+  EXPECT_EQ(function.exit, 0);
+  EXPECT_NE(function.text.find("dot (function)"), std::string::npos) << function.text;
+  EXPECT_NE(function.text.find("The node is dotproduct.\n"), std::string::npos) << function.text;
   EXPECT_NE(run("rendr a.json").text.find("Did you mean \"render\"?"), std::string::npos);
 }
 
