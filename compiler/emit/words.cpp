@@ -125,12 +125,15 @@ bool follows(std::string_view rest, Rest rule) {
 }
 
 bool is_of_family(std::string_view name, uint8_t scope, const Table& table) {
+  if (name.empty()) return false;
+  // Most names differ in their first or last letter already.
   for (const Family& family : table.families)
-    if ((family.where & scope) != 0 && name.starts_with(family.prefix) &&
+    if (family.prefix.front() == name.front() && (family.where & scope) != 0 && name.starts_with(family.prefix) &&
         follows(name.substr(family.prefix.size()), family.rest))
       return true;
   for (const Ending& ending : table.endings)
-    if ((ending.where & scope) != 0 && name.ends_with(ending.suffix)) return true;
+    if (ending.suffix.back() == name.back() && (ending.where & scope) != 0 && name.ends_with(ending.suffix))
+      return true;
   return false;
 }
 
