@@ -239,6 +239,17 @@ CacheContents Cache::clear() const {
   return contents();
 }
 
+namespace {
+
+/// The name is in it, so that an entry which stands under another one's name is none.
+std::string seal_of(const std::string& name, std::string_view contents) {
+  std::string sealed = name + "\n";
+  sealed += contents;
+  return std::string(seal_mark) + support::sha256(sealed);
+}
+
+}  // namespace
+
 std::optional<std::string> Cache::find(const std::string& name) const {
   const std::string path = folder_ + "/" + name;
   const File file(path, O_RDONLY);
@@ -247,7 +258,7 @@ std::optional<std::string> Cache::find(const std::string& name) const {
   if (file.read_all(text) && text.size() > seal_bytes) {
     const std::string_view contents = std::string_view(text).substr(0, text.size() - seal_bytes);
     const std::string_view seal = std::string_view(text).substr(contents.size());
-    if (seal == std::string(seal_mark) + support::sha256(contents)) {
+    if (seal == seal_of(name, contents)) {
       utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used just now
       return path;
     }
@@ -271,7 +282,7 @@ bool Cache::store(const std::string& name, const std::string& path, Diagnostics&
   }
   {
     File file(path, O_WRONLY | O_APPEND);
-    const std::string seal = std::string(seal_mark) + support::sha256(contents);
+    const std::string seal = seal_of(name, contents);
     if (!file.is_open() || !file.write_all(seal) || !file.sync() || !file.close())
       return report_unwritable(path, diagnostics);
   }

@@ -51,7 +51,7 @@ class Cache {
                                                    const CacheLimit& limit = {}) const;
 
   /// Makes the file, which lies in a workshop, the entry: it is on the disk before it appears under its name.
-  /// Appends a checksum, which neither ELF nor most other formats mind.
+  /// Appends a checksum of its name and contents, which neither ELF nor most other formats mind.
   bool store(const std::string& name, const std::string& file, support::Diagnostics& diagnostics) const;
 
   /// Deletes all entries, and workshops that no process uses any more; returns what is left.

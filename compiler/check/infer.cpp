@@ -12,6 +12,8 @@ using support::Id;
 using support::quote;
 
 std::string conversion_hint(const Link& link, Type to) {
+  if (to == Type::filename) return "link a parameter of type filename, or write a path";
+  if (nodes::matrix_types.has(to)) return "make a matrix of its columns by the node creatematrix";
   if (link.node != Link::unresolved) return "convert it: " + name_of(to) + "(...)";
   std::string text = link.name;
   for (const std::string& selector : link.selectors) text += "." + selector;

@@ -75,7 +75,7 @@ void Leftovers::clean_up() {
 void clean_up_on_signals() {
   list();  // made now, where there is memory
   sigemptyset(&awaited());
-  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU}) {
+  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU}) {
     struct sigaction now {};
     if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) sigaddset(&awaited(), signal);
   }

@@ -58,6 +58,17 @@ TEST(Cache, DoesNotFindAnEntryThatWasCutShortOrChanged) {
   EXPECT_TRUE(holds(*cache, "entry", "some contents"));
 }
 
+TEST(Cache, DoesNotFindAnEntryUnderTheNameOfAnother) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder.path(), diagnostics);
+  ASSERT_TRUE(store(*cache, "first", "the first", diagnostics));
+  ASSERT_TRUE(store(*cache, "second", "the second", diagnostics));
+  write_text(folder / "second", read_text(folder / "first"));
+  EXPECT_TRUE(cache->find("first"));
+  EXPECT_FALSE(cache->find("second"));
+}
+
 TEST(Cache, IsNeverSeenHalfWrittenByAnotherProcess) {
   const TestFolder folder;
   const std::string contents(200000, 'x');
