@@ -119,7 +119,7 @@ std::vector<Entry> entries_of(const Tape& tape, const std::vector<Unproved>& unp
     ++entry.operations;
     entry.callers.insert(place.caller);
   }
-  std::ranges::stable_partition(entries, &Entry::is_refuted);
+  std::stable_partition(entries.begin(), entries.end(), [](const Entry& entry) { return entry.is_refuted(); });
   return entries;
 }
 
