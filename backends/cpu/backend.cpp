@@ -11,7 +11,7 @@
 #include "backends/cpu/shade.h"
 #include "backends/cpu/workers.h"
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
 #include "runtime/raster/triangle.h"
 
@@ -191,7 +191,7 @@ std::vector<bool> CpuDrawing::programs_of(std::span<const int32_t> triangles) co
     last_object = object;
     const auto program =
         static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
-    support::check(program < seen.size(), "an object has a program that the frame lacks");
+    support::assert_that(program < seen.size(), "an object has a program that the frame lacks");
     seen[program] = true;
   }
   return seen;
@@ -272,7 +272,7 @@ bool CpuBackend::evaluate(const Program& program, std::span<const int32_t> input
 
 }  // namespace
 
-std::unique_ptr<backends::Backend> create(const Options& options, Diagnostics& diagnostics) {
+std::unique_ptr<backends::Backend> create(const CpuOptions& options, Diagnostics& diagnostics) {
   const std::optional<LaneCount> lanes =
       options.lanes.empty() ? widest_lane_count() : lane_count(options.lanes);
   if (!lanes || !lanes->available()) {

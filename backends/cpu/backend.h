@@ -11,7 +11,7 @@
 
 namespace isoshade::cpu {
 
-struct Options {
+struct CpuOptions {
   /// "1", "4", "8", "16", "8x2", "16x2"; empty: the fastest of the machine.
   std::string lanes;
   /// 0: as many as the machine has cores.
@@ -30,6 +30,6 @@ struct Options {
 
 /// Nothing if the lanes, the compiler or the cache cannot be had, which is reported. Id::no_compiler is the
 /// sign that the interpreter should serve instead.
-std::unique_ptr<backends::Backend> create(const Options& options, support::Diagnostics& diagnostics);
+std::unique_ptr<backends::Backend> create(const CpuOptions& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::cpu

@@ -10,7 +10,7 @@
 #include "backends/cpu/lanes_headers.h"
 #include "backends/timed.h"
 #include "compiler/driver/target_limits.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/sha256.h"
 #include "compiler/support/visible.h"
 
@@ -75,7 +75,7 @@ std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stag
       break;
     case driver::Stage::depth: support::bug("the CPU rasteriser computes depth itself");
   }
-  support::check(function != nullptr, "generated C++ exports no function of its stage");
+  support::assert_that(function != nullptr, "generated C++ exports no function of its stage");
   return kernel;
 }
 

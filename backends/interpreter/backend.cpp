@@ -10,7 +10,7 @@
 #include "compiler/driver/target_limits.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/raster/reference.h"
 #include "runtime/raster/triangle.h"
 
@@ -55,7 +55,7 @@ class InterpretingMachine final : public Machine {
   void bind(uint32_t buffer, std::span<const uint32_t> words) override { interpreter_.bind(buffer, words); }
   void run(uint32_t function, std::span<const uint32_t> arguments, std::span<uint32_t> results) override {
     const bool finished = interpreter_.run(function, arguments, results);
-    support::check(finished, "an interpreter without a limit stopped early");
+    support::assert_that(finished, "an interpreter without a limit stopped early");
   }
 
  private:
@@ -67,9 +67,9 @@ bool bears(const Program& program, Diagnostics& diagnostics) {
 }
 
 /// A program that is ready to run.
-class Runner {
+class StageRunner {
  public:
-  Runner(const MakeMachine& make, const Program& program, const Buffers& buffers)
+  StageRunner(const MakeMachine& make, const Program& program, const Buffers& buffers)
       : machine_(make(program)), entry_(program.entry) {
     for (uint32_t i = 0; i < program.module.buffers.size(); ++i) machine_->bind(i, buffers[i]);
   }
@@ -99,7 +99,7 @@ class InterpreterDrawing final : public backends::Drawing {
     raster::rasterize_reference(triangles, raster::box_at(window.x, window.y, window.width, window.height),
                                 visible, image.depth);
 
-    std::map<size_t, Runner> pixels;
+    std::map<size_t, StageRunner> pixels;
     for (size_t i = 0; i < visible.size(); ++i) {
       float* color = image.rgba.data() + 4 * i;
       if (visible[i] < 0) {
@@ -109,9 +109,9 @@ class InterpreterDrawing final : public backends::Drawing {
       const int object = raster::triangle_at(triangles.data(), visible[i]).object();
       const auto program =
           static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
-      support::check(program < frame_.programs.size(), "an object has a program that the frame lacks");
+      support::assert_that(program < frame_.programs.size(), "an object has a program that the frame lacks");
       if (!pixels.contains(program) && !bears(*frame_.programs[program], diagnostics)) return false;
-      Runner& pixel = pixels.try_emplace(program, make_, *frame_.programs[program], buffers_).first->second;
+      StageRunner& pixel = pixels.try_emplace(program, make_, *frame_.programs[program], buffers_).first->second;
       const int x = window.x + static_cast<int>(i) % window.width;
       const int y = window.y + static_cast<int>(i) / window.width;
       std::array<uint32_t, 4> result;
@@ -143,7 +143,7 @@ class InterpreterBackend final : public backends::Backend {
     for (size_t d = 0; d < frame.draws.size(); ++d) {
       const Draw& draw = frame.draws[d];
       if (!bears(*frame.programs[draw.vertex_program], diagnostics)) return false;
-      Runner vertex(make_, *frame.programs[draw.vertex_program], buffers);
+      StageRunner vertex(make_, *frame.programs[draw.vertex_program], buffers);
       clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
       for (uint32_t i = 0; i < draw.vertex_count; ++i) {
         std::array<uint32_t, 4> position;
@@ -166,7 +166,7 @@ class InterpreterBackend final : public backends::Backend {
     buffers.bind(FrameBuffer::objects, pass.record);
     buffers.bind(FrameBuffer::layers, pass.images);
     buffers.bind(FrameBuffer::layer_records, pass.image_records);
-    Runner runner(make_, *pass.program, buffers);
+    StageRunner runner(make_, *pass.program, buffers);
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
     size_t next = 0;
     for (int y = 0; y < pass.height; ++y) {
@@ -187,7 +187,7 @@ class InterpreterBackend final : public backends::Backend {
     size_t width = 0;
     for (const driver::Field& field : program.results) width += static_cast<size_t>(field.words);
     outputs.resize(rows * width);
-    Runner eval(make_, program, buffers);
+    StageRunner eval(make_, program, buffers);
     std::vector<uint32_t> results(width);
     for (size_t row = 0; row < rows; ++row) {
       eval.run({static_cast<int>(row)}, results);

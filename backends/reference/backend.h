@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reference backend: graphs as their authors wrote them, in arithmetic of 57 digits. What all other backends agree
-// on is measured against it. It takes programs compiled with driver::Options::reference.
+// on is measured against it. It takes programs compiled with driver::CompileOptions::reference.
 #pragma once
 
 #include <memory>

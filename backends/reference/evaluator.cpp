@@ -7,12 +7,12 @@
 
 #include "backends/reference/functions.h"
 #include "compiler/ir/evaluate.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::reference {
 
 using ir::Opcode;
-using support::check;
+using support::assert_that;
 
 namespace {
 
@@ -90,7 +90,7 @@ Evaluator::Evaluator(const ir::Module& module)
     : module_(module), buffers_(module.buffers.size()), frames_(module.functions.size()) {}
 
 void Evaluator::run(uint32_t function, std::span<const Cell> arguments, std::span<Cell> results) {
-  Frame& frame = frame_of(function);
+  CallFrame& frame = frame_of(function);
   const ir::Block& body = frame.function->blocks[0];
   size_t next = 0;
   for (const ir::ValueId parameter : body.parameters)
@@ -103,8 +103,8 @@ void Evaluator::run(uint32_t function, std::span<const Cell> arguments, std::spa
       results[next++] = frame.cells[frame.first[result] + i];
 }
 
-Evaluator::Frame& Evaluator::frame_of(uint32_t function) {
-  Frame& frame = frames_[function];
+Evaluator::CallFrame& Evaluator::frame_of(uint32_t function) {
+  CallFrame& frame = frames_[function];
   if (frame.function != nullptr) return frame;
   frame.function = &module_.functions[function];
   if (frame.function->is_declaration()) frame.variant = &functions::variant_of(*frame.function);
@@ -117,7 +117,7 @@ Evaluator::Frame& Evaluator::frame_of(uint32_t function) {
   return frame;
 }
 
-void Evaluator::block(Frame& frame, ir::BlockId id) {
+void Evaluator::block(CallFrame& frame, ir::BlockId id) {
   for (const ir::InstructionId made : frame.function->blocks[id].instructions)
     instruction(frame, frame.function->instructions[made]);
 }
@@ -125,8 +125,8 @@ void Evaluator::block(Frame& frame, ir::BlockId id) {
 namespace {
 
 /// Copies the cells of values to those of others, one after the other.
-template <class Frame>
-void copy(Frame& frame, std::span<const ir::ValueId> from, ir::ValueId to) {
+template <class CallFrame>
+void copy(CallFrame& frame, std::span<const ir::ValueId> from, ir::ValueId to) {
   for (const ir::ValueId value : from) {
     const uint32_t width = frame.function->type(value).width;
     std::copy_n(&frame.cells[frame.first[value]], width, &frame.cells[frame.first[to]]);
@@ -136,7 +136,7 @@ void copy(Frame& frame, std::span<const ir::ValueId> from, ir::ValueId to) {
 
 }  // namespace
 
-void Evaluator::instruction(Frame& frame, const ir::Instruction& made) {
+void Evaluator::instruction(CallFrame& frame, const ir::Instruction& made) {
   const auto operands = frame.function->operands_of(made);
   Cell* const result = made.result_count == 0 ? nullptr : &frame.cells[frame.first[made.first_result]];
   switch (made.op) {
@@ -163,8 +163,8 @@ void Evaluator::instruction(Frame& frame, const ir::Instruction& made) {
   }
 }
 
-void Evaluator::primitive(Frame& frame, const ir::Instruction& made) {
-  check(ir::is_primitive(made.op), "the reference met an op that a pass had to replace");
+void Evaluator::primitive(CallFrame& frame, const ir::Instruction& made) {
+  assert_that(ir::is_primitive(made.op), "the reference met an op that a pass had to replace");
   const auto operands = frame.function->operands_of(made);
   const bool chooses = ir::info(made.op).rule == ir::Rule::choose;
   const uint32_t to = frame.first[made.first_result];
@@ -177,9 +177,9 @@ void Evaluator::primitive(Frame& frame, const ir::Instruction& made) {
   }
 }
 
-void Evaluator::load(Frame& frame, const ir::Instruction& made) {
+void Evaluator::load(CallFrame& frame, const ir::Instruction& made) {
   const std::span<const uint32_t> words = buffers_[made.imm];
-  check(!words.empty(), "the reference loads from a buffer that is empty");
+  assert_that(!words.empty(), "the reference loads from a buffer that is empty");
   const uint32_t index = frame.cells[frame.first[frame.function->operands_of(made)[0]]].word;
   const uint32_t word = words[std::min<size_t>(index, words.size() - 1)];
   Cell& to = frame.cells[frame.first[made.first_result]];
@@ -187,8 +187,8 @@ void Evaluator::load(Frame& frame, const ir::Instruction& made) {
   if (frame.function->type(made.first_result).is_float()) to.number = float_of(word);
 }
 
-void Evaluator::call(Frame& frame, const ir::Instruction& made) {
-  Frame& callee = frame_of(made.imm);
+void Evaluator::call(CallFrame& frame, const ir::Instruction& made) {
+  CallFrame& callee = frame_of(made.imm);
   if (callee.variant != nullptr) return call_library(frame, *callee.variant, made);
   const ir::Block& body = callee.function->blocks[0];
   const auto operands = frame.function->operands_of(made);
@@ -201,7 +201,7 @@ void Evaluator::call(Frame& frame, const ir::Instruction& made) {
                 &frame.cells[frame.first[made.first_result + i]]);
 }
 
-void Evaluator::call_library(Frame& frame, const functions::Variant& variant, const ir::Instruction& made) {
+void Evaluator::call_library(CallFrame& frame, const functions::Variant& variant, const ir::Instruction& made) {
   std::vector<Real> arguments, results;
   for (const ir::ValueId operand : frame.function->operands_of(made))
     for (uint32_t i = 0; i < frame.function->type(operand).width; ++i)
@@ -212,7 +212,7 @@ void Evaluator::call_library(Frame& frame, const functions::Variant& variant, co
     frame.cells[frame.first[made.first_result] + i].number = results[i];
 }
 
-void Evaluator::loop(Frame& frame, const ir::Instruction& made) {
+void Evaluator::loop(CallFrame& frame, const ir::Instruction& made) {
   const auto operands = frame.function->operands_of(made);
   const ir::Block& body = frame.function->blocks[made.blocks[0]];
   const uint32_t count = frame.cells[frame.first[operands[0]]].word;

@@ -37,25 +37,25 @@ class Evaluator {
 
  private:
   /// The values of a function. Calls are acyclic, so that each has only one at a time.
-  struct Frame {
+  struct CallFrame {
     const ir::Function* function = nullptr;
     const functions::Variant* variant = nullptr;  ///< which declaration it is, if it is one
     std::vector<uint32_t> first;                  ///< by value: its first cell
     std::vector<Cell> cells;
   };
 
-  Frame& frame_of(uint32_t function);
-  void block(Frame& frame, ir::BlockId id);
-  void instruction(Frame& frame, const ir::Instruction& made);
-  void primitive(Frame& frame, const ir::Instruction& made);
-  void load(Frame& frame, const ir::Instruction& made);
-  void call(Frame& frame, const ir::Instruction& made);
-  void call_library(Frame& frame, const functions::Variant& variant, const ir::Instruction& made);
-  void loop(Frame& frame, const ir::Instruction& made);
+  CallFrame& frame_of(uint32_t function);
+  void block(CallFrame& frame, ir::BlockId id);
+  void instruction(CallFrame& frame, const ir::Instruction& made);
+  void primitive(CallFrame& frame, const ir::Instruction& made);
+  void load(CallFrame& frame, const ir::Instruction& made);
+  void call(CallFrame& frame, const ir::Instruction& made);
+  void call_library(CallFrame& frame, const functions::Variant& variant, const ir::Instruction& made);
+  void loop(CallFrame& frame, const ir::Instruction& made);
 
   const ir::Module& module_;
   std::vector<std::span<const uint32_t>> buffers_;
-  std::vector<Frame> frames_;
+  std::vector<CallFrame> frames_;
 };
 
 }  // namespace isoshade::reference

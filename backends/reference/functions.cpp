@@ -7,7 +7,7 @@
 
 #include "backends/reference/rows.h"
 #include "compiler/functions/signatures.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::reference {
 
@@ -89,7 +89,7 @@ const std::vector<Entry>& entries() {
 #define FUNCTION(name, signature, ulp, domain, reference, unit) \
   add_row<rows::name##_row>(out, functions::Signatures<float>::signature{});
 #include "compiler/functions/functions.def"
-    support::check(out.size() == functions::variants().size(), "functions of which there is no reference");
+    support::assert_that(out.size() == functions::variants().size(), "functions of which there is no reference");
     return out;
   }();
   return table;

@@ -12,7 +12,7 @@
 #include "backends/vulkan/shaders.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::vulkan {
@@ -84,7 +84,7 @@ std::vector<std::vector<VertexChunk>> vertex_runs(const Frame& frame, size_t cap
 
 }  // namespace
 
-VulkanBackend::VulkanBackend(Options options, std::unique_ptr<Device> device)
+VulkanBackend::VulkanBackend(VulkanOptions options, std::unique_ptr<Device> device)
     : options_(std::move(options)), device_(std::move(device)) {
   if (options_.glsl) return;
   options_.glsl = options_.eval_stage == EvalStage::vertex ? driver::glsl_with_vertex_eval : driver::glsl;
@@ -223,7 +223,7 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
 bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                              std::vector<int32_t>& outputs, Diagnostics& diagnostics) {
   const size_t input_words = words(program.inputs), result_words = words(program.results);
-  support::check(inputs.size() == rows * input_words, "an eval table of a wrong size");
+  support::assert_that(inputs.size() == rows * input_words, "an eval table of a wrong size");
   const bool in_vertex = options_.eval_stage == EvalStage::vertex;
   if (result_words > max_result_words && !in_vertex) {
     diagnostics
@@ -267,7 +267,7 @@ bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> in
   });
 }
 
-std::unique_ptr<VulkanBackend> create(const Options& options, Diagnostics& diagnostics) {
+std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, Diagnostics& diagnostics) {
   try {
     auto device = Device::open(options.device, diagnostics);
     if (!device) return nullptr;

@@ -23,7 +23,7 @@ class Device;
 /// Where eval programs run. Pixels are computed in fragment shaders, positions in vertex shaders.
 enum class EvalStage : uint8_t { fragment, vertex };
 
-struct Options {
+struct VulkanOptions {
   /// A device's index or a part of its name, case ignored. Empty: the first software device (lavapipe), else
   /// the first device.
   std::string device;
@@ -61,8 +61,8 @@ class VulkanBackend : public backends::Backend {
   driver::Division division() const { return division_; }
 
  private:
-  friend std::unique_ptr<VulkanBackend> create(const Options& options, support::Diagnostics& diagnostics);
-  VulkanBackend(Options options, std::unique_ptr<Device> device);
+  friend std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, support::Diagnostics& diagnostics);
+  VulkanBackend(VulkanOptions options, std::unique_ptr<Device> device);
 
   friend class VulkanDrawing;
 
@@ -76,7 +76,7 @@ class VulkanBackend : public backends::Backend {
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
                         support::Diagnostics& diagnostics);
 
-  Options options_;
+  VulkanOptions options_;
   std::unique_ptr<Device> device_;
   Probe probe_;
   driver::Division division_ = driver::Division::exact;
@@ -84,6 +84,6 @@ class VulkanBackend : public backends::Backend {
 
 /// Opens a device and probes it. Null, with a diagnostic, where there is no such device, or where it fails a
 /// check and the options do not allow that. Not thread-safe: one thread at a time uses a backend.
-std::unique_ptr<VulkanBackend> create(const Options& options, support::Diagnostics& diagnostics);
+std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::vulkan

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "backends/vulkan/device_impl.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::vulkan {
 

@@ -6,7 +6,7 @@
 #include "backends/vulkan/device.h"
 #include "backends/vulkan/shaders.h"
 #include "compiler/driver/driver.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/raster/triangle.h"
 
 namespace isoshade::vulkan {
@@ -28,7 +28,7 @@ std::vector<Box> bounds_of_programs(const Frame& frame, const Window& window,
     const raster::Triangle triangle = raster::triangle_at(triangles.data(), i);
     const auto object = static_cast<size_t>(triangle.object());
     const auto program = static_cast<size_t>(frame.objects[object + lower::object_word::program]);
-    support::check(program < bounds.size(), "an object has a program that the frame lacks");
+    support::assert_that(program < bounds.size(), "an object has a program that the frame lacks");
     const Box covered = raster::bounds(triangle).within(area);
     if (covered.empty()) continue;
     Box& box = bounds[program];

@@ -42,7 +42,7 @@ bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, int index);
 
-/// The index of the device that `selector` means, see Options::device; -1 if none, with a diagnostic that lists
+/// The index of the device that `selector` means, see VulkanOptions::device; -1 if none, with a diagnostic that lists
 /// what there is.
 int choose(const Instance& instance, std::string_view selector, support::Diagnostics& diagnostics);
 

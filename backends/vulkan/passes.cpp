@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "backends/vulkan/device_impl.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::vulkan {
 
@@ -36,9 +36,9 @@ void copy(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image,
   commands.copyImageToBuffer(*image, vk::ImageLayout::eTransferSrcOptimal, *to.buffer, copy);
 }
 
-class Pass {
+class PassEncoder {
  public:
-  Pass(const vk::raii::CommandBuffer& commands, const vk::raii::RenderPass& pass,
+  PassEncoder(const vk::raii::CommandBuffer& commands, const vk::raii::RenderPass& pass,
        const vk::raii::Framebuffer& framebuffer, const vk::Rect2D& whole_area,
        std::span<const vk::ClearValue> clear)
       : commands_(commands) {
@@ -49,9 +49,9 @@ class Pass {
                               .pClearValues = clear.data()},
                              vk::SubpassContents::eInline);
   }
-  ~Pass() { commands_.endRenderPass(); }
-  Pass(const Pass&) = delete;
-  Pass& operator=(const Pass&) = delete;
+  ~PassEncoder() { commands_.endRenderPass(); }
+  PassEncoder(const PassEncoder&) = delete;
+  PassEncoder& operator=(const PassEncoder&) = delete;
 
  private:
   const vk::raii::CommandBuffer& commands_;
@@ -81,7 +81,7 @@ void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output
   Buffer& results = impl_->buffers[output_binding];
   impl_->reserve(results, output.size_bytes(), vk::MemoryPropertyFlagBits::eHostCached);
   impl_->submit([&](const vk::raii::CommandBuffer& commands) {
-    const Pass pass(commands, impl_->render_pass(Target::buffer, 0), impl_->no_target, area(1, 1), {});
+    const PassEncoder pass(commands, impl_->render_pass(Target::buffer, 0), impl_->no_target, area(1, 1), {});
     for (const Call& call : calls) impl_->record(commands, call);
   });
   std::memcpy(output.data(), results.data, output.size_bytes());
@@ -136,11 +136,11 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
         const vk::ClearValue backdrop{
             vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
         {
-          const Pass pass(commands, impl_->render_pass(Target::visibility, 1), frame.visibility,
+          const PassEncoder pass(commands, impl_->render_pass(Target::visibility, 1), frame.visibility,
                           area(frame.width, frame.height), nothing);
           for (const Call& call : visibility) record(commands, call);
         }
-        const Pass pass(commands, impl_->render_pass(Target::color, 1), frame.shading,
+        const PassEncoder pass(commands, impl_->render_pass(Target::color, 1), frame.shading,
                         area(frame.width, frame.height), {&backdrop, 1});
         for (const Call& call : color) record(commands, call);
       }
@@ -170,7 +170,7 @@ void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span
     impl_->submit([&](const vk::raii::CommandBuffer& commands) {
       if (first == 0) {
         const vk::ClearValue nothing{};
-        const Pass pass(commands, impl_->render_pass(Target::color, 1), frame.shading, area(width, height),
+        const PassEncoder pass(commands, impl_->render_pass(Target::color, 1), frame.shading, area(width, height),
                         {&nothing, 1});
         impl_->record(commands, call);
       }
@@ -203,7 +203,7 @@ TableTarget& Device::Impl::prepare_table(uint32_t attachments, int height) {
 
 void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows, size_t record_words,
                        std::span<int32_t> output) {
-  support::check(rows > 0 && rows <= max_table_rows && output.size() == rows * record_words,
+  support::assert_that(rows > 0 && rows <= max_table_rows && output.size() == rows * record_words,
                  "a table chunk of a wrong size");
   const int height = static_cast<int>((rows + table_width - 1) / table_width);
   const TableTarget& table = impl_->prepare_table(attachments, height);
@@ -216,7 +216,7 @@ void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows
   impl_->submit([&](const vk::raii::CommandBuffer& commands) {
     {
       const std::vector<vk::ClearValue> nothing(attachments, vk::ClearValue{});
-      const Pass pass(commands, impl_->render_pass(Target::words, attachments), table.framebuffer,
+      const PassEncoder pass(commands, impl_->render_pass(Target::words, attachments), table.framebuffer,
                       area(table_width, height), nothing);
       impl_->record(commands, call);
     }

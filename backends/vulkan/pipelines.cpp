@@ -5,7 +5,7 @@
 #include "backends/timed.h"
 #include "backends/vulkan/device_impl.h"
 #include "compiler/emit/spirv.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::vulkan {
 

@@ -3,7 +3,7 @@
 
 #include "backends/vulkan/limits.h"
 #include "compiler/emit/glsl.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/lanes/scalar.h"
 
 namespace isoshade::vulkan {

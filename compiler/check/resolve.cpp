@@ -41,7 +41,7 @@ bool resolve_link(Work& work, const Link& link, Operand& operand) {
   const std::string_view near = support::nearest(link.name, names);
   if (near.empty()) return false;
   const graph::Graph::Name name = graph.names.at(std::string(near));
-  const graph::Place place =
+  const graph::TextRange place =
       name.is_input ? graph.inputs[name.index].name_place : graph.nodes[name.index].id_place;
   report.suggest("did you mean " + quote(near) + " (" +
                  (name.is_input ? std::string(input_word(graph)) : "node") + ", line " +

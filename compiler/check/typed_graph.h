@@ -39,7 +39,7 @@ struct Operand {
 /// A path written in a port: relative to the document; empty: no file.
 struct File {
   std::string path;
-  graph::Place place;
+  graph::TextRange place;
 };
 
 struct TypedGraph;

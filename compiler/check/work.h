@@ -45,8 +45,8 @@ struct Work {
     return std::ranges::any_of(
         graph().inputs, [](const graph::Input& input) { return input.any && input.type != Type::floating; });
   }
-  support::Span span(graph::Place place) const { return graph().span(place); }
-  support::Diagnostic& report(support::Id id, graph::Place place, std::string message) {
+  support::Span span(graph::TextRange place) const { return graph().span(place); }
+  support::Diagnostic& report(support::Id id, graph::TextRange place, std::string message) {
     return diagnostics.report(id, span(place), std::move(message));
   }
 };

@@ -11,7 +11,7 @@ constexpr int column_width = 220, row_height = 17, gap = 14;
 
 }  // namespace
 
-std::vector<BoxLayers::Place> BoxLayers::places() const {
+std::vector<BoxLayers::BoxPosition> BoxLayers::places() const {
   const size_t count = rows_.size();
   std::vector<std::vector<size_t>> followers(count);
   std::vector<size_t> awaited(count), column(count);
@@ -35,7 +35,7 @@ std::vector<BoxLayers::Place> BoxLayers::places() const {
     columns[column[box]].push_back(box);
   }
   // A box lies beside the mean of what it reads, as far as those above it in its column leave room.
-  std::vector<Place> places(count, Place{0, 0});
+  std::vector<BoxPosition> places(count, BoxPosition{0, 0});
   std::vector<double> sum(count), wanted(count);
   std::vector<size_t> read(count);
   for (size_t c = 0; c < columns.size(); ++c) {

@@ -16,11 +16,11 @@ class BoxLayers {
   void add_link(size_t from, size_t to) { links_.push_back({from, to}); }
 
   /// The middle of a box, in points, y upwards.
-  struct Place {
+  struct BoxPosition {
     int x, y;
   };
   /// Of each box. Links must form no circle.
-  std::vector<Place> places() const;
+  std::vector<BoxPosition> places() const;
 
  private:
   struct Link {

@@ -8,7 +8,7 @@
 #include "compiler/lower/screen.h"
 #include "compiler/passes/derivatives.h"
 #include "compiler/passes/pipeline.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::driver {
 
@@ -19,7 +19,7 @@ using support::Diagnostics;
 /// JSON text -> Document -> Graph -> TypedGraph; of the kind `wanted`, if there is one.
 std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& source,
                                                     std::optional<graph::DocumentKind> wanted,
-                                                    const Options& options, Diagnostics& diagnostics) {
+                                                    const CompileOptions& options, Diagnostics& diagnostics) {
   const auto document = graph::parse_document(source, diagnostics);
   if (!document) return nullptr;
   if (options.dump) options.dump("document", [&] { return dump_document(*document); });
@@ -41,7 +41,7 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
 
 /// What lowering made, through all passes. The reference takes it as authored, but for the positions of vertices: these
 /// are what every backend has.
-void finish(Program& program, uint32_t kernel, const Options& options, support::Source source = nullptr) {
+void finish(Program& program, uint32_t kernel, const CompileOptions& options, support::Source source = nullptr) {
   program.entry = kernel;
   program.source = std::move(source);
   if (options.reference && program.stage != Stage::vertex) return passes::derivatives(program.module);
@@ -119,7 +119,7 @@ lower::FieldOffsets offsets_of(const check::TypedGraph& typed, const std::vector
 }
 
 Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
-                       const Options& options) {
+                       const CompileOptions& options) {
   Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
   uint32_t kernel = 0;
   if (typed.position_of(pass) == nullptr) {
@@ -136,7 +136,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
 }
 
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
-                      const Options& options) {
+                      const CompileOptions& options) {
   Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}, options.tier};
   program.module = lower::lower(typed, {pass});
   program.module.buffers = lower::frame_module().buffers;
@@ -153,12 +153,12 @@ std::optional<graph::DocumentKind> kind_of(const support::Source& source, Diagno
   return document ? graph::document_kind(*document, diagnostics) : std::nullopt;
 }
 
-std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const Options& options,
+std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const CompileOptions& options,
                                                         Diagnostics& diagnostics) {
   return read_graph(source, std::nullopt, options, diagnostics);
 }
 
-std::optional<Effect> compile_effect(const support::Source& source, const Options& options,
+std::optional<Effect> compile_effect(const support::Source& source, const CompileOptions& options,
                                      Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
@@ -172,7 +172,7 @@ std::optional<Effect> compile_effect(const support::Source& source, const Option
   return effect;
 }
 
-std::optional<Post> compile_post(const support::Source& source, const Options& options,
+std::optional<Post> compile_post(const support::Source& source, const CompileOptions& options,
                                  Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::post, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
@@ -204,14 +204,14 @@ std::optional<Post> compile_post(const support::Source& source, const Options& o
   return post;
 }
 
-std::optional<Program> compile_function(const support::Source& source, const Options& options,
+std::optional<Program> compile_function(const support::Source& source, const CompileOptions& options,
                                         Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::function, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
   ir::Module module = lower::lower(*typed);
   module.buffers = lower::frame_module().buffers;
   const uint32_t function = module.find(lower::entry_name(*typed));
-  support::check(function != ir::none, "lowering made no function");
+  support::assert_that(function != ir::none, "lowering made no function");
   Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {},
                   options.tier};
   finish(program, lower::add_eval_kernel(program.module, function), options, typed->graph.source);

@@ -20,7 +20,7 @@ namespace isoshade::driver {
 /// Called with what a stage made, as text. Stages: document, graph, typed, lower, then each pass by its name.
 using Dump = std::function<void(std::string_view stage, const std::function<std::string()>& text)>;
 
-struct Options {
+struct CompileOptions {
   check::Library* library = nullptr;  ///< where sub-graphs come from; required
   lower::LightKinds lights;           ///< the kinds that the scene has
   /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and no optimisation;
@@ -40,7 +40,7 @@ struct Image {
 };
 
 /// One pass of an effect.
-struct Pass {
+struct EffectPass {
   std::string name;
   graph::Cull cull = graph::Cull::back;
   graph::DepthTest depth = graph::DepthTest::nearer;
@@ -55,7 +55,7 @@ struct Effect {
   std::string document;
   std::vector<Field> parameters;  ///< with defaults, in the order of the object's record
   std::vector<Image> images;      ///< one word each in the record, after the parameters
-  std::vector<Pass> passes;
+  std::vector<EffectPass> passes;
 };
 
 /// A full-screen effect.
@@ -76,19 +76,19 @@ struct Post {
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
 /// The graph of a function or effect document, checked: the front half of the pipeline.
-std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const Options& options,
+std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const CompileOptions& options,
                                                         support::Diagnostics& diagnostics);
 
 /// `source` is an effect document.
-std::optional<Effect> compile_effect(const support::Source& source, const Options& options,
+std::optional<Effect> compile_effect(const support::Source& source, const CompileOptions& options,
                                      support::Diagnostics& diagnostics);
 
 /// `source` is a post document.
-std::optional<Post> compile_post(const support::Source& source, const Options& options,
+std::optional<Post> compile_post(const support::Source& source, const CompileOptions& options,
                                  support::Diagnostics& diagnostics);
 
 /// `source` is a function document; the program is its eval kernel.
-std::optional<Program> compile_function(const support::Source& source, const Options& options,
+std::optional<Program> compile_function(const support::Source& source, const CompileOptions& options,
                                         support::Diagnostics& diagnostics);
 
 /// The visibility pass's program, the same for every scene.

@@ -11,7 +11,7 @@
 #include "compiler/ir/expansion.h"
 #include "compiler/lower/lower.h"
 #include "compiler/passes/pipeline.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::driver {
 
@@ -33,7 +33,7 @@ bool is_operation(ir::Opcode op) { return static_cast<int>(op) < ir::primitive_c
 
 std::string error_of_row(std::string_view row, functions::Tier tier) {
   const auto found = std::ranges::find(functions::variants(), row, &functions::Variant::row);
-  support::check(found != functions::variants().end(), row);
+  support::assert_that(found != functions::variants().end(), row);
   const functions::Accuracy& accuracy = found->accuracy[static_cast<size_t>(tier)];
   return fmt::format("{:g} ULP{}", accuracy.ulp,
                      accuracy.unit == "result"         ? ""

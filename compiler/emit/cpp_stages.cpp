@@ -6,7 +6,7 @@
 #include "compiler/emit/result_words.h"
 #include "compiler/emit/stages.h"
 #include "compiler/ir/expansion.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::emit {
 
@@ -137,7 +137,7 @@ std::string cpp_stage(const ir::Module& module, uint32_t entry, lower::Stage sta
   text.append(head).append(cpp_buffers(module)).append("\n");
   std::vector<FunctionText> texts;
   text.append(cpp_functions(module, entry, texts)).append(tail_head);
-  support::check(texts[entry].name == name(stage), "a stage calls its kernel by its name");
+  support::assert_that(texts[entry].name == name(stage), "a stage calls its kernel by its name");
   std::string signature, body;
   switch (stage) {
     case lower::Stage::vertex:

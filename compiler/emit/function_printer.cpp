@@ -2,7 +2,7 @@
 #include "compiler/emit/function_printer.h"
 
 #include "compiler/ir/uniformity.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::emit {
 
@@ -341,7 +341,7 @@ class FunctionPrinter {
   void print_loop(const ir::Instruction& instruction) {
     const auto operands = function_.operands_of(instruction);
     const ir::Block& body = function_.blocks[instruction.blocks[0]];
-    support::check(uniform_[operands[0]], "a loop's count is uniform");
+    support::assert_that(uniform_[operands[0]], "a loop's count is uniform");
     declare_results(instruction);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
       const ir::ValueId value = instruction.first_result + i;

@@ -5,7 +5,7 @@
 #include "compiler/emit/result_words.h"
 #include "compiler/emit/stages.h"
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::emit {
 
@@ -200,7 +200,7 @@ std::string glsl_stage(const ir::Module& module, uint32_t entry, lower::Stage st
       body = post_main();
       break;
   }
-  support::check(texts[entry].name == name(stage), "a stage calls its kernel by its name");
+  support::assert_that(texts[entry].name == name(stage), "a stage calls its kernel by its name");
   if (uses_hidden_zero(module, entry)) interface.append(binding(2)).append(zero);
   text.append(buffers_of(module, used)).append(interface).append("\n");
   text.append(functions).append("\n").append(body);

@@ -8,7 +8,7 @@
 #include "compiler/emit/function_printer.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/lower/lower.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::emit {
 
@@ -104,7 +104,7 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
                             std::vector<FunctionText>& texts) {
   const std::array entries{entry};
   const auto order = ir::callees_first(module, entries);
-  support::check(order.has_value(), "calls are cyclic");
+  support::assert_that(order.has_value(), "calls are cyclic");
   texts.assign(module.functions.size(), {});
   Names globals(Scope::global);
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);

@@ -8,7 +8,7 @@
 #include <spirv-tools/libspirv.hpp>
 #include <string_view>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::emit {
@@ -67,7 +67,7 @@ void forbid_contraction(std::vector<uint32_t>& spirv) {
   std::vector<uint32_t> decorations;
   for (size_t i = header_words; i < spirv.size();) {
     const Instruction instruction(spirv[i]);
-    support::check(instruction.words != 0, "glslang made SPIR-V without end");
+    support::assert_that(instruction.words != 0, "glslang made SPIR-V without end");
     if (types == 0 && instruction.opcode >= first_type && instruction.opcode <= last_type) types = i;
     if (is_float_arithmetic(instruction.opcode))
       decorations.insert(decorations.end(), {3u << 16 | op_decorate, spirv[i + 2], no_contraction});
@@ -128,7 +128,7 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
   glslang::GlslangToSpv(*program.getIntermediate(stage), spirv, &options);
   forbid_contraction(spirv);
   if (const std::string wrong = validate(spirv); !wrong.empty()) return refuse(wrong);
-  support::check(preserves_nan(spirv), "a shader without SignedZeroInfNanPreserve 32");
+  support::assert_that(preserves_nan(spirv), "a shader without SignedZeroInfNanPreserve 32");
   return spirv;
 }
 

@@ -11,7 +11,7 @@
 #include "compiler/functions/calls.h"
 #include "compiler/functions/signatures.h"
 #include "compiler/functions/slopes.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::functions {
 namespace {
@@ -53,7 +53,7 @@ DerivativeRule& rule_of(Rules& rules, std::string_view row, Types<T...>) {
   std::vector<ir::Type> types;
   (Flat<T>::types(types), ...);
   const Variant* variant = find(row, types);
-  support::check(variant != nullptr && variant->results.size() == 1, "a derivative of no such function");
+  support::assert_that(variant != nullptr && variant->results.size() == 1, "a derivative of no such function");
   return rules[variant];
 }
 

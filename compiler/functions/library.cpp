@@ -11,7 +11,7 @@
 #include "compiler/functions/calls.h"
 #include "compiler/functions/signatures.h"
 #include "compiler/functions/tiers.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::functions {
 
@@ -106,7 +106,7 @@ void set_accuracy(std::vector<Variant>& table, std::string_view row, Tier tier, 
 template <class Body, class First, class... Rest>
 void add_tier(std::vector<Variant>& table, std::string_view row, Types<First, Rest...>) {
   auto variant = std::ranges::find(table, row, &Variant::row);
-  support::check(variant != table.end(), row);
+  support::assert_that(variant != table.end(), row);
   set_accuracy(table, row, Body::tier, Body::accuracy);
   set_body<Body>(*variant, First{});
   if constexpr (!Body::on_floats) (set_body<Body>(*++variant, Rest{}), ...);

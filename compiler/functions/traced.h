@@ -8,7 +8,7 @@
 #include <span>
 
 #include "compiler/ir/builder.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/lanes/lanes.h"
 
 namespace isoshade::functions::traced {
@@ -55,7 +55,7 @@ template <class... T>
 ir::Builder& builder_of(const T&... values) {
   ir::Builder* found = nullptr;
   ((found = found ? found : builder_in(values)), ...);
-  support::check(found != nullptr, "a traced operation on literals alone");
+  support::assert_that(found != nullptr, "a traced operation on literals alone");
   return *found;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/graph/code_text.h"
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::graph {
 namespace {
@@ -63,7 +63,7 @@ CodeText::CodeText(const Document& document, const Json& string) : text_(string.
     for (size_t i = 0; i < length && offsets_.size() < text_.size(); ++i)
       offsets_.push_back(string.begin + static_cast<uint32_t>(at));
     at += written;
-    support::check(at < raw.size(), "a string is longer than it is written");
+    support::assert_that(at < raw.size(), "a string is longer than it is written");
   }
   offsets_.push_back(string.begin + static_cast<uint32_t>(at));
 }

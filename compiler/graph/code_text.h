@@ -27,7 +27,7 @@ class CodeText {
   /// The first token at or after `from`, an offset in the decoded string.
   Token next(uint32_t from) const;
   /// Bytes of the decoded string as a place in the document, whatever escapes stand before and in them.
-  Place place(uint32_t begin, uint32_t end) const { return {offsets_[begin], offsets_[end]}; }
+  TextRange place(uint32_t begin, uint32_t end) const { return {offsets_[begin], offsets_[end]}; }
 
  private:
   const std::string& text_;

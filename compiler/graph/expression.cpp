@@ -44,7 +44,7 @@ constexpr Binary binaries[] = {{"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {"<",
 
 }  // namespace
 
-ExpressionParser::Operand ExpressionParser::fail(Place place, std::string message, std::string_view fix) {
+ExpressionParser::Operand ExpressionParser::fail(TextRange place, std::string message, std::string_view fix) {
   if (!failed_) {
     support::Diagnostic& report =
         diagnostics_.report(Id::bad_expression, graph_.span(place), std::move(message));
@@ -86,7 +86,7 @@ ExpressionParser::Operand ExpressionParser::choice() {
     Operand then = choice();
     expect(":", "between the two results of \"?\"");
     Operand other = choice();
-    const Place place{condition.place.begin, other.place.end};
+    const TextRange place{condition.place.begin, other.place.end};
     condition = operation("?:", sign, place,
                           {{"the condition", std::move(condition)},
                            {"the first result", std::move(then)},
@@ -103,7 +103,7 @@ ExpressionParser::Operand ExpressionParser::binary(int precedence) {
     if (row == std::end(binaries) || row->precedence < precedence) break;
     const Token sign = advance();
     Operand right = binary(row->precedence + 1);
-    const Place place{left.place.begin, right.place.end};
+    const TextRange place{left.place.begin, right.place.end};
     left = operation(row->text, sign, place,
                      {{"the left side", std::move(left)}, {"the right side", std::move(right)}});
   }
@@ -116,7 +116,7 @@ ExpressionParser::Operand ExpressionParser::unary() {
   const Token sign = advance();
   Operand operand = too_deep() ? Operand{} : unary();
   --depth_;
-  const Place place{place_of(sign).begin, operand.place.end};
+  const TextRange place{place_of(sign).begin, operand.place.end};
   if (sign.text == "+") return operand;
   if (sign.text == "!") return operation("!", sign, place, {{"the operand", std::move(operand)}});
   auto* literal = std::get_if<Literal>(&operand.value);
@@ -153,7 +153,7 @@ ExpressionParser::Operand ExpressionParser::postfix() {
 }
 
 ExpressionParser::Operand ExpressionParser::primary() {
-  const Place start = place_of(token_);
+  const TextRange start = place_of(token_);
   switch (token_.kind) {
     case CodeText::Kind::number: return number();
     case CodeText::Kind::name: {
@@ -190,7 +190,7 @@ ExpressionParser::Operand ExpressionParser::number() {
 }
 
 ExpressionParser::Operand ExpressionParser::port_or_constant(const Token& name) {
-  const Place place = place_of(name);
+  const TextRange place = place_of(name);
   if (name.text == "true" || name.text == "false") return {boolean_literal(name.text == "true"), place};
   const auto found = std::ranges::find(made_.ports, name.text, &Port::name);
   if (found == made_.ports.end()) {
@@ -228,7 +228,7 @@ ExpressionParser::Operand ExpressionParser::call(const Token& name) {
   }
   expect(")", "after the arguments");
   --depth_;
-  const Place place = since(place_of(name));
+  const TextRange place = since(place_of(name));
   if (const std::optional<Type> type = find_type(name.text))
     return type_call(name, *type, std::move(arguments), place);
   std::string reference;

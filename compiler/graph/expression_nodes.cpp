@@ -17,7 +17,7 @@ Literal string_literal(std::string_view text) {
 }  // namespace
 
 uint32_t ExpressionParser::add(std::string_view type, Node::Origin origin, std::string_view shown,
-                               Place place) {
+                               TextRange place) {
   if (graph_.expression_nodes == max_expression_nodes && !failed_) {
     diagnostics_.report(Id::too_large, graph_.span(place),
                         "the expressions of a document are more than " +
@@ -43,17 +43,17 @@ void ExpressionParser::give(uint32_t node, std::string_view port, std::string_vi
       {std::string(port), std::move(operand.value), operand.place, operand.place, std::string(shown)});
 }
 
-ExpressionParser::Operand ExpressionParser::link_to(uint32_t node, Place place) const {
+ExpressionParser::Operand ExpressionParser::link_to(uint32_t node, TextRange place) const {
   return {Link{graph_.nodes[node].shown, {}, place, node}, place};
 }
 
-ExpressionParser::Operand ExpressionParser::handed_on(Value value, std::string_view shown, Place place) {
+ExpressionParser::Operand ExpressionParser::handed_on(Value value, std::string_view shown, TextRange place) {
   const uint32_t node = add("constant", Node::Origin::operation, shown, place);
   give(node, "value", "the value", {std::move(value), place});
   return link_to(node, place);
 }
 
-ExpressionParser::Operand ExpressionParser::operation(std::string_view row, const Token& sign, Place place,
+ExpressionParser::Operand ExpressionParser::operation(std::string_view row, const Token& sign, TextRange place,
                                                       std::vector<Part> parts) {
   const uint32_t node = add(row, Node::Origin::call, row == "?:" ? row : sign.text, place_of(sign));
   for (size_t i = 0; i < parts.size(); ++i)
@@ -62,7 +62,7 @@ ExpressionParser::Operand ExpressionParser::operation(std::string_view row, cons
 }
 
 ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type type,
-                                                      std::vector<Operand> arguments, Place place) {
+                                                      std::vector<Operand> arguments, TextRange place) {
   const std::string type_text(name.text);
   const int count = float_count(type);
   const bool tuple = count >= 2 && count <= 4;
@@ -97,7 +97,7 @@ ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type ty
 
 ExpressionParser::Operand ExpressionParser::made_of(std::string_view row, const Token& name,
                                                     std::vector<Operand> arguments) {
-  const Place place = since(place_of(name));
+  const TextRange place = since(place_of(name));
   const uint32_t node = add(row, Node::Origin::operation, name.text, place_of(name));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const std::string position = std::to_string(i + 1);

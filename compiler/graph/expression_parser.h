@@ -33,7 +33,7 @@ class ExpressionParser {
   using Value = std::variant<Literal, Link>;
   struct Operand {
     Value value = Literal{};
-    Place place;
+    TextRange place;
   };
 
   Operand choice();
@@ -44,23 +44,23 @@ class ExpressionParser {
   Operand number();
   Operand port_or_constant(const Token& name);
   Operand call(const Token& name);
-  Operand type_call(const Token& name, Type type, std::vector<Operand> arguments, Place place);
+  Operand type_call(const Token& name, Type type, std::vector<Operand> arguments, TextRange place);
 
   /// A node of `row` with the arguments as in1, in2, ... and the type `name` as "to".
   Operand made_of(std::string_view row, const Token& name, std::vector<Operand> arguments);
 
   /// Appends a node; `shown` is what stands for it in the code.
-  uint32_t add(std::string_view type, Node::Origin origin, std::string_view shown, Place place);
+  uint32_t add(std::string_view type, Node::Origin origin, std::string_view shown, TextRange place);
   void give(uint32_t node, std::string_view port, std::string_view shown, Operand operand);
   /// An operator's node; `shown` has what its operands are called.
   struct Part {
     std::string_view shown;
     Operand operand;
   };
-  Operand operation(std::string_view row, const Token& sign, Place place, std::vector<Part> parts);
+  Operand operation(std::string_view row, const Token& sign, TextRange place, std::vector<Part> parts);
   /// A node that hands on a value, so that it can be linked to.
-  Operand handed_on(Value value, std::string_view shown, Place place);
-  Operand link_to(uint32_t node, Place place) const;
+  Operand handed_on(Value value, std::string_view shown, TextRange place);
+  Operand link_to(uint32_t node, TextRange place) const;
   void become_root(Operand result);
 
   bool is(std::string_view symbol) const {
@@ -79,10 +79,10 @@ class ExpressionParser {
   /// What to write for a sign of other languages that stands here.
   std::string_view way_out() const;
   /// Reports the first error only: what follows is read in a wrong light.
-  Operand fail(Place place, std::string message, std::string_view fix = {});
+  Operand fail(TextRange place, std::string message, std::string_view fix = {});
   bool too_deep();
-  Place place_of(const Token& token) const { return code_.place(token.begin, token.end); }
-  Place since(Place first) const { return {first.begin, code_.place(last_end_, last_end_).begin}; }
+  TextRange place_of(const Token& token) const { return code_.place(token.begin, token.end); }
+  TextRange since(TextRange first) const { return {first.begin, code_.place(last_end_, last_end_).begin}; }
 
   Graph& graph_;
   uint32_t root_;

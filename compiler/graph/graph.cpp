@@ -121,7 +121,7 @@ std::optional<DocumentKind> document_kind(const Document& document, Diagnostics&
   return kind;
 }
 
-std::optional<Link> parse_link(const support::Source& source, std::string_view text, Place place,
+std::optional<Link> parse_link(const support::Source& source, std::string_view text, TextRange place,
                                Diagnostics& diagnostics) {
   Link link{{}, {}, place};
   size_t parts = 0;

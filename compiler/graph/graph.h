@@ -50,7 +50,7 @@ int float_count(Type type);
 bool is_id(std::string_view text);
 
 /// A range of bytes in the document; Graph::span makes a Span of it.
-struct Place {
+struct TextRange {
   uint32_t begin = 0, end = 0;
 };
 
@@ -79,7 +79,7 @@ struct Link {
 
   std::string name;                    ///< of a node, input or parameter
   std::vector<std::string> selectors;  ///< at most two: an output port, a swizzle, or both in this order
-  Place place;                         ///< of the string
+  TextRange place;                         ///< of the string
   uint32_t node = unresolved;          ///< or inside of an expression, the node itself
 };
 
@@ -88,7 +88,7 @@ struct Link {
 struct Port {
   std::string name;
   std::variant<Literal, Link> value;
-  Place name_place, place;
+  TextRange name_place, place;
   std::string shown = {};  ///< inside of an expression: "the left side"
 };
 
@@ -101,7 +101,7 @@ struct Node {
   };
   std::string id, type, doc;  ///< type: of the node library, or a function document's name or path
   std::vector<Port> ports;    ///< in the order written
-  Place id_place, type_place, place;
+  TextRange id_place, type_place, place;
   Origin origin = Origin::node;
   std::string shown = {};  ///< inside of an expression: "*"; else its type tells
   /// "doc" and "extras" as ports: they are that only where the type is a function with inputs of these names.
@@ -128,14 +128,14 @@ struct Input {
   std::optional<float> min, max;  ///< of each component
   std::vector<std::string>
       names;  ///< of the values 0, 1, ... of an integer, which has no others then; or none
-  Place name_place, place, value_place;
+  TextRange name_place, place, value_place;
 };
 
 /// An output of a function ("out", ...) or post ("color").
 struct Output {
   std::string name;
   Link link;
-  Place name_place;
+  TextRange name_place;
 };
 
 enum class Cull : uint8_t { none, back, front };
@@ -152,7 +152,7 @@ struct Pass {
   PositionSpace position_space = PositionSpace::world;
   std::optional<uint32_t> enabled;  ///< in Graph::inputs: it is drawn where that parameter is not 0
   Link color;                       ///< surface output
-  Place place;
+  TextRange place;
 };
 
 /// The output of a post, and the image that it goes over.
@@ -161,14 +161,14 @@ inline constexpr std::string_view post_output = "color";
 /// An image that a post reads beside the one that it goes over.
 struct InputImage {
   std::string name;
-  Place place;
+  TextRange place;
 };
 
 struct Graph {
   support::Source source;
   DocumentKind kind = DocumentKind::function;  ///< never scene
   std::string name, doc;
-  Place name_place;
+  TextRange name_place;
   std::vector<Input> inputs;
   std::vector<Node> nodes;
   std::vector<Output> outputs;          ///< of a function or post, at least one
@@ -186,7 +186,7 @@ struct Graph {
   };
   std::unordered_map<std::string, Name> names;
 
-  support::Span span(Place place) const { return {source, place.begin, place.end}; }
+  support::Span span(TextRange place) const { return {source, place.begin, place.end}; }
   /// Whether it has inputs of any type: these are all of one type, which each call settles.
   bool is_generic() const { return std::ranges::any_of(inputs, &Input::any); }
 };
@@ -195,7 +195,7 @@ struct Graph {
 std::optional<Graph> build_graph(const Document& document, support::Diagnostics& diagnostics);
 
 /// Takes a string apart as a link; reports one that has not the form of a link.
-std::optional<Link> parse_link(const support::Source& source, std::string_view text, Place place,
+std::optional<Link> parse_link(const support::Source& source, std::string_view text, TextRange place,
                                support::Diagnostics& diagnostics);
 
 /// The number that is meant by the name of one of an input's values, as a literal; nothing for other names.

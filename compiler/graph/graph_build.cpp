@@ -14,7 +14,7 @@ using support::Id;
 using support::quote;
 using Need = ObjectReader::Need;
 
-void GraphBuilder::check_id(std::string_view id, Place place, std::string_view what) {
+void GraphBuilder::check_id(std::string_view id, TextRange place, std::string_view what) {
   if (is_id(id)) return;
   diagnostics_.report(Id::bad_id, graph_.span(place), quote(id) + " cannot name " + std::string(what))
       .note(id.size() > 128 ? "names have at most 128 characters"
@@ -62,7 +62,7 @@ std::optional<Link> GraphBuilder::color(const Json& json) {
   Literal type;
   type.kind = Literal::Kind::string;
   type.string = count == 3 ? "color3" : "color4";
-  const Place place = place_of(json);
+  const TextRange place = place_of(json);
   Node node;
   node.id = node.shown = "color";
   node.type = "constant";

@@ -10,8 +10,8 @@
 
 namespace isoshade::graph {
 
-inline Place place_of(const Json& json) { return {json.begin, json.end}; }
-inline Place key_place(const Member& member) { return {member.key_begin, member.key_end}; }
+inline TextRange place_of(const Json& json) { return {json.begin, json.end}; }
+inline TextRange key_place(const Member& member) { return {member.key_begin, member.key_end}; }
 
 class GraphBuilder {
  public:
@@ -23,7 +23,7 @@ class GraphBuilder {
   std::optional<Graph> build(DocumentKind kind);
 
  private:
-  void check_id(std::string_view id, Place place, std::string_view what);
+  void check_id(std::string_view id, TextRange place, std::string_view what);
   /// Enters an input or a node under its name.
   void enter(const Member& member, std::string_view what, Graph::Name name);
 

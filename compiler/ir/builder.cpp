@@ -4,11 +4,11 @@
 #include <bit>
 #include <cmath>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::ir {
 
-using support::check;
+using support::assert_that;
 
 std::optional<Type> result_type(Opcode op, std::span<const Type> operands) {
   if (is_derivative(op))
@@ -38,7 +38,7 @@ std::optional<Type> result_type(Opcode op, std::span<const Type> operands) {
 
 Builder::Builder(Module& module, uint32_t function) : module_(module), function_(function) {
   Function& f = this->function();
-  check(f.is_declaration(), "the function already has a body");
+  assert_that(f.is_declaration(), "the function already has a body");
   new_block();
   for (const Parameter& parameter : f.parameters) f.blocks[0].parameters.push_back(new_value(parameter.type));
 }
@@ -89,26 +89,26 @@ ValueId Builder::constant(int32_t value) { return constant_bits(int_type, static
 ValueId Builder::constant(bool value) { return constant_bits(bool_type, value ? 1 : 0); }
 
 ValueId Builder::op(Opcode op, std::span<const ValueId> operands) {
-  check(is_primitive(op) || is_derivative(op), "not a primitive op");
+  assert_that(is_primitive(op) || is_derivative(op), "not a primitive op");
   std::array<Type, 3> types;
-  check(operands.size() <= types.size(), "too many operands");
+  assert_that(operands.size() <= types.size(), "too many operands");
   for (size_t i = 0; i < operands.size(); ++i) types[i] = type(operands[i]);
   const auto result = result_type(op, std::span(types).first(operands.size()));
-  check(result.has_value(), ir::name(op));
+  assert_that(result.has_value(), ir::name(op));
   const std::array results{*result};
   return function().instructions[append(op, 0, operands, results)].first_result;
 }
 
 ValueId Builder::construct(std::span<const ValueId> components) {
   if (components.size() == 1) return components[0];
-  check(components.size() >= 2 && components.size() <= 4, "a vector has 2 to 4 components");
-  for (ValueId component : components) check(type(component) == float_type, "components are floats");
+  assert_that(components.size() >= 2 && components.size() <= 4, "a vector has 2 to 4 components");
+  for (ValueId component : components) assert_that(type(component) == float_type, "components are floats");
   const std::array results{vector_type(static_cast<int>(components.size()))};
   return function().instructions[append(Opcode::construct, 0, components, results)].first_result;
 }
 
 ValueId Builder::extract(ValueId vector, uint32_t component) {
-  check(type(vector).is_float() && component < type(vector).width, "no such component");
+  assert_that(type(vector).is_float() && component < type(vector).width, "no such component");
   if (type(vector).width == 1) return vector;
   const std::array operands{vector};
   const std::array results{float_type};
@@ -116,7 +116,7 @@ ValueId Builder::extract(ValueId vector, uint32_t component) {
 }
 
 ValueId Builder::load(uint32_t buffer, ValueId index) {
-  check(type(index) == int_type, "an index is an int");
+  assert_that(type(index) == int_type, "an index is an int");
   const std::array operands{index};
   const std::array results{Type{module_.buffers[buffer].element, 1}};
   return function().instructions[append(Opcode::load, buffer, operands, results)].first_result;
@@ -132,16 +132,16 @@ std::vector<ValueId> results_of(const Instruction& instruction) {
 
 std::vector<ValueId> Builder::call(uint32_t callee, std::span<const ValueId> arguments) {
   const Function& target = module_.functions[callee];
-  check(target.parameters.size() == arguments.size(), "wrong number of arguments");
+  assert_that(target.parameters.size() == arguments.size(), "wrong number of arguments");
   for (size_t i = 0; i < arguments.size(); ++i)
-    check(type(arguments[i]) == target.parameters[i].type, "wrong type of argument");
+    assert_that(type(arguments[i]) == target.parameters[i].type, "wrong type of argument");
   std::vector<Type> results;
   for (const Result& result : target.results) results.push_back(result.type);
   return results_of(function().instructions[append(Opcode::call, callee, arguments, results)]);
 }
 
 BlockId Builder::enter() {
-  check(++depth_ <= max_block_depth, "blocks nest too deep");
+  assert_that(++depth_ <= max_block_depth, "blocks nest too deep");
   return block_;
 }
 
@@ -151,7 +151,7 @@ void Builder::leave(BlockId outer) {
 }
 
 std::vector<ValueId> Builder::branch(ValueId condition, const Body& then, const Body& other) {
-  check(type(condition) == bool_type, "a condition is a bool");
+  assert_that(type(condition) == bool_type, "a condition is a bool");
   const BlockId outer = enter();
   const std::array<BlockId, 2> blocks{new_block(), new_block()};
   const std::array<const Body*, 2> bodies{&then, &other};
@@ -167,7 +167,7 @@ std::vector<ValueId> Builder::branch(ValueId condition, const Body& then, const 
     return types;
   };
   const std::vector<Type> types = types_of(blocks[0]);
-  check(types == types_of(blocks[1]), "both sides yield the same types");
+  assert_that(types == types_of(blocks[1]), "both sides yield the same types");
   const std::array operands{condition};
   Instruction& instruction = function().instructions[append(Opcode::branch, 0, operands, types)];
   instruction.blocks = blocks;
@@ -175,7 +175,7 @@ std::vector<ValueId> Builder::branch(ValueId condition, const Body& then, const 
 }
 
 std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initial, const LoopBody& body) {
-  check(type(count) == int_type, "a count is an int");
+  assert_that(type(count) == int_type, "a count is an int");
   std::vector<Type> types;
   for (ValueId value : initial) types.push_back(type(value));
   const BlockId outer = enter();
@@ -188,9 +188,9 @@ std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initi
   block_ = inner;
   std::vector<ValueId> yields = body(index, carried);
   leave(outer);
-  check(yields.size() == types.size(), "a loop yields what it carries");
+  assert_that(yields.size() == types.size(), "a loop yields what it carries");
   for (size_t i = 0; i < yields.size(); ++i)
-    check(type(yields[i]) == types[i], "a loop yields what it carries");
+    assert_that(type(yields[i]) == types[i], "a loop yields what it carries");
   function().blocks[inner].yields = std::move(yields);
   std::vector<ValueId> operands{count};
   operands.insert(operands.end(), initial.begin(), initial.end());
@@ -201,9 +201,9 @@ std::vector<ValueId> Builder::loop(ValueId count, std::span<const ValueId> initi
 
 void Builder::finish(std::span<const ValueId> results) {
   Function& f = function();
-  check(block_ == 0 && results.size() == f.results.size(), "wrong number of results");
+  assert_that(block_ == 0 && results.size() == f.results.size(), "wrong number of results");
   for (size_t i = 0; i < results.size(); ++i)
-    check(type(results[i]) == f.results[i].type, "wrong type of result");
+    assert_that(type(results[i]) == f.results[i].type, "wrong type of result");
   f.blocks[0].yields.assign(results.begin(), results.end());
 }
 

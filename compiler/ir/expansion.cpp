@@ -5,7 +5,7 @@
 #include <array>
 
 #include "compiler/ir/call_graph.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::ir {
 
@@ -41,7 +41,7 @@ uint64_t expanded_operations(const Function& function, const Instruction& instru
 
 std::vector<uint64_t> expanded_operations(const Module& module, uint32_t entry, uint64_t of_division) {
   const auto order = callees_first(module, std::array{entry});
-  support::check(order.has_value(), "a function calls itself");
+  support::assert_that(order.has_value(), "a function calls itself");
   std::vector<uint64_t> of_functions(module.functions.size());
   for (const uint32_t f : *order)
     if (!module.functions[f].is_declaration())

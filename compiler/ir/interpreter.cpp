@@ -8,19 +8,19 @@
 #include "compiler/ir/call_graph.h"
 #include "compiler/ir/evaluate.h"
 #include "compiler/ir/printer.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/lanes/float_rules.h"
 
 namespace isoshade::ir {
 
-using support::check;
+using support::assert_that;
 
 // Turns one function, whose callees are compiled, into steps.
 class Interpreter::Compiler {
  public:
   Compiler(Interpreter& interpreter, uint32_t function)
       : out_(interpreter), function_(interpreter.module_.functions[function]) {
-    check(!function_.is_declaration(), "the interpreter met a function without body: " + function_.name);
+    assert_that(!function_.is_declaration(), "the interpreter met a function without body: " + function_.name);
     registers_.assign(function_.values.size(), none);
     Compiled compiled;
     compiled.entry = here();
@@ -89,7 +89,7 @@ class Interpreter::Compiler {
   }
 
   void primitive(const Instruction& instruction) {
-    check(is_primitive(instruction.op), "the interpreter met an op that a pass had to replace");
+    assert_that(is_primitive(instruction.op), "the interpreter met an op that a pass had to replace");
     std::array<uint32_t, 3> from{};
     const auto operands = function_.operands_of(instruction);
     for (size_t i = 0; i < operands.size(); ++i) from[i] = registers_[operands[i]];
@@ -175,7 +175,7 @@ bool Interpreter::run(uint32_t function, std::span<const uint32_t> arguments, st
   if (compiled_[function].entry == none) {
     const std::array entries{function};
     const auto order = callees_first(module_, entries);
-    check(order.has_value(), "a function calls itself");
+    assert_that(order.has_value(), "a function calls itself");
     for (uint32_t callee : *order)
       if (compiled_[callee].entry == none) Compiler(*this, callee);
   }
@@ -183,10 +183,10 @@ bool Interpreter::run(uint32_t function, std::span<const uint32_t> arguments, st
   size_t word = 0;
   for (const Slot& slot : compiled.parameters)
     for (uint32_t i = 0; i < slot.type.width; ++i, ++word) {
-      check(word < arguments.size(), "too few argument words");
+      assert_that(word < arguments.size(), "too few argument words");
       registers_[slot.first + i] = slot.type.is_float() ? flush_denormal(arguments[word]) : arguments[word];
     }
-  check(word == arguments.size(), "too many argument words");
+  assert_that(word == arguments.size(), "too many argument words");
   {
     const lanes::FpGuard guard;
     if (!execute(compiled.entry)) return false;
@@ -194,11 +194,11 @@ bool Interpreter::run(uint32_t function, std::span<const uint32_t> arguments, st
   word = 0;
   for (const Slot& slot : compiled.results)
     for (uint32_t i = 0; i < slot.type.width; ++i, ++word) {
-      check(word < results.size(), "too few result words");
+      assert_that(word < results.size(), "too few result words");
       const uint32_t bits = registers_[slot.first + i];
       results[word] = slot.type.is_float() ? canonical_nan(bits) : bits;
     }
-  check(word == results.size(), "too many result words");
+  assert_that(word == results.size(), "too many result words");
   return true;
 }
 

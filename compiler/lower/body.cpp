@@ -5,7 +5,7 @@
 
 #include "compiler/functions/library.h"
 #include "compiler/lower/sampling.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::lower {
 namespace {
@@ -188,7 +188,7 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
   std::array<uint32_t, most> settings{};
   const std::span<const Operand> operands = graph_.operands_of(node);
   const size_t count = operands.size();
-  support::check(count <= most, "a row has more ports than are provided for");
+  support::assert_that(count <= most, "a row has more ports than are provided for");
   for (size_t i = 0; i < count; ++i) {
     in[i] = read(operands[i]);
     types[i] = operands[i].needed;

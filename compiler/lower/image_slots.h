@@ -22,7 +22,7 @@ struct ImageSlot {
   std::string name;       ///< of the parameter or the node; no other slot is called so, nor another parameter
   std::string parameter;  ///< that has the path; empty: the path is the document's
   std::string path;       ///< what the document says; relative to it; empty: none
-  graph::Place place;     ///< where it says so
+  graph::TextRange place;     ///< where it says so
   Decoding decoding = Decoding::linear;
   bool mips = false;  ///< levels of half the size are read too
 };

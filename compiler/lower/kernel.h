@@ -10,7 +10,7 @@
 #include "compiler/functions/calls.h"
 #include "compiler/functions/interpolation.h"
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::lower {
 
@@ -63,7 +63,7 @@ class Kernel {
 
   std::vector<ir::ValueId> call(std::string_view function, std::initializer_list<ir::ValueId> arguments) {
     const uint32_t callee = b.module().find(function);
-    support::check(callee != ir::none, function);
+    support::assert_that(callee != ir::none, function);
     return b.call(callee, std::span(arguments));
   }
 
@@ -73,7 +73,7 @@ class Kernel {
  private:
   static uint32_t new_function(ir::Module& module, std::string name, std::vector<ir::Parameter> parameters,
                                std::vector<ir::Result> results) {
-    support::check(module.find(name) == ir::none, name);
+    support::assert_that(module.find(name) == ir::none, name);
     ir::Function function;
     function.name = std::move(name);
     function.parameters = std::move(parameters);

@@ -9,7 +9,7 @@
 
 #include "compiler/lower/body.h"
 #include "compiler/lower/sampling.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::lower {
 namespace {
@@ -357,13 +357,13 @@ std::string entry_name(const TypedGraph& graph) {
 ir::Module lower(const TypedGraph& graph, const LowerOptions& options) {
   if (graph.graph.kind == DocumentKind::function) return ModuleLowering(options.nodes).lower_function(graph);
   if (graph.graph.kind == DocumentKind::post) return ModuleLowering(options.nodes).lower_post(graph);
-  support::check(options.pass < graph.graph.passes.size(), "the effect has no such pass");
+  support::assert_that(options.pass < graph.graph.passes.size(), "the effect has no such pass");
   const Operand* position = graph.position_of(options.pass);
   if (options.part == PassPart::color) {
     return ModuleLowering(options.nodes)
         .lower_pass(graph, graph.outputs[options.pass], shade_name, {"color", ir::vector_type(4)});
   }
-  support::check(position != nullptr, "the pass moves no vertices");
+  support::assert_that(position != nullptr, "the pass moves no vertices");
   return ModuleLowering(options.nodes)
       .lower_pass(graph, *position, move_vertex_name, {"position", ir::vector_type(3)});
 }

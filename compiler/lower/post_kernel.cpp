@@ -156,7 +156,7 @@ uint32_t add_post_kernel(ir::Module& module, const std::vector<std::string>& ima
   for (size_t i = 0; i < images.size(); ++i)
     define(images[i] + "_at", image_word::color + static_cast<int>(i));
   const uint32_t post_process = module.find(post_name);
-  support::check(post_process != ir::none, "no post_process");
+  support::assert_that(post_process != ir::none, "no post_process");
 
   Kernel k(module, "post", {int_parameter("x"), uniform_int("y")}, {{"color", ir::vector_type(4)}});
   ScreenPoint screen(k, images);
@@ -172,7 +172,7 @@ uint32_t add_post_kernel(ir::Module& module, const std::vector<std::string>& ima
       int offset = -1;
       for (const auto& [name, word] : record)
         if (name == key) offset = word;
-      support::check(offset >= 0, key);
+      support::assert_that(offset >= 0, key);
       arguments.push_back(k.named(parameter.name, load_field(k, parameter.type, first, offset)));
     } else {
       arguments.push_back(screen.field(parameter));

@@ -68,11 +68,11 @@ ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& su
     const Int time(k.b, k.b.constant(frame_word::time));
     return k.named(parameter.name, k.load(FrameBuffer::frame, time)).value;
   }
-  support::check(parameter.group == "parameters" || parameter.group == "images", parameter.name);
+  support::assert_that(parameter.group == "parameters" || parameter.group == "images", parameter.name);
   int offset = -1;
   for (const auto& [name, word] : parameters)
     if (name == parameter.name) offset = word;
-  support::check(offset >= 0, parameter.name);
+  support::assert_that(offset >= 0, parameter.name);
   return k.named(parameter.name, load_field(k, parameter.type, object, offset));
 }
 
@@ -147,7 +147,7 @@ uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parame
                                   graph::PositionSpace space) {
   define_texture_reads(module);
   const uint32_t move_vertex = module.find(move_vertex_name);
-  support::check(move_vertex != ir::none, "no move_vertex");
+  support::assert_that(move_vertex != ir::none, "no move_vertex");
   Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
            {{"clip", ir::vector_type(4)}});
   const Int object = k.integer(1);
@@ -188,7 +188,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
     define_light_at(module, light_at, lights);
   define_texture_reads(module);
   const uint32_t shade = module.find("shade");
-  support::check(shade != ir::none, "no shade");
+  support::assert_that(shade != ir::none, "no shade");
   Kernel k(module, "pixel",
            {int_parameter("x"), int_parameter("y"), int_parameter("triangle"), uniform_int("object"),
             uniform_int("light_count")},
@@ -199,7 +199,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, Li
   std::vector<ir::ValueId> arguments;
   for (const ir::Parameter& parameter : wanted) {
     const bool is_count = parameter.group.empty();
-    support::check(!is_count || parameter.name == "light_count", parameter.name);
+    support::assert_that(!is_count || parameter.name == "light_count", parameter.name);
     arguments.push_back(is_count ? k.b.parameter(4) : argument(k, parameter, surface, object, parameters));
   }
   k.b.finish(k.b.call(shade, arguments));

@@ -8,7 +8,7 @@
 
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::nodes {
 namespace {
@@ -70,7 +70,7 @@ void add_row(std::vector<Row>& rows, std::string_view name, std::string_view sig
   std::vector<PortType> types;
   for (const std::string_view code : codes) {
     const std::optional<PortType> type = type_of(code);
-    support::check(type.has_value(), code);
+    support::assert_that(type.has_value(), code);
     types.push_back(*type);
   }
   // A result that no argument settles is no colour.

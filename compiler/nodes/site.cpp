@@ -5,14 +5,14 @@
 #include <bit>
 
 #include "compiler/functions/library.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::nodes {
 
-using support::check;
+using support::assert_that;
 
 Value::Value(std::span<const ir::ValueId> ids) : count(static_cast<uint8_t>(ids.size())) {
-  check(ids.size() <= columns.size(), "a value has at most four columns");
+  assert_that(ids.size() <= columns.size(), "a value has at most four columns");
   std::ranges::copy(ids, columns.begin());
 }
 
@@ -29,7 +29,7 @@ int column_count(Type type) {
 ir::Type ir_type(Type type) {
   if (type == Type::boolean) return ir::bool_type;
   if (type == Type::integer) return ir::int_type;
-  check(column_count(type) > 0, "a text is no value");
+  assert_that(column_count(type) > 0, "a text is no value");
   return ir::vector_type(graph::float_count(type) / column_count(type));
 }
 

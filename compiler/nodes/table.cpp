@@ -3,7 +3,7 @@
 
 #include <unordered_map>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::nodes {
 
@@ -34,7 +34,7 @@ const std::vector<Row>& table() {
 const Row* find(std::string_view name) {
   static const std::unordered_map<std::string_view, const Row*> by_name = [] {
     std::unordered_map<std::string_view, const Row*> map;
-    for (const Row& row : table()) support::check(map.emplace(row.name, &row).second, row.name);
+    for (const Row& row : table()) support::assert_that(map.emplace(row.name, &row).second, row.name);
     return map;
   }();
   const auto found = by_name.find(name);

@@ -4,13 +4,13 @@
 #include <utility>
 
 #include "compiler/ir/call_graph.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 
 void dce(ir::Module& module, std::vector<uint32_t>& entries) {
   const auto order = ir::callees_first(module, entries);
-  support::check(order.has_value(), "a function calls itself");
+  support::assert_that(order.has_value(), "a function calls itself");
   std::vector<uint32_t> moved(module.functions.size(), ir::none);
   std::vector<ir::Function> kept;
   for (uint32_t function : *order) {

@@ -12,7 +12,7 @@
 #include "compiler/functions/derivatives.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/passes/tangents.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 
@@ -33,7 +33,7 @@ class Differentiation {
     std::vector<uint32_t> all(module_.functions.size());
     std::iota(all.begin(), all.end(), 0);
     const auto order = callees_first(module_, all);
-    support::check(order.has_value(), "a function calls itself");
+    support::assert_that(order.has_value(), "a function calls itself");
     for (const uint32_t f : *order)
       if (asks(module_.functions[f])) rewrite(f);
   }
@@ -241,7 +241,7 @@ Values Differentiation::changes_of_call(Builder& b, const Instruction& made, con
   Values changes(made.result_count, none);
   if (!any(results)) return changes;
   if (is_source(made.imm)) {
-    support::check(is_derivative(way.op),
+    support::assert_that(is_derivative(way.op),
                    "what changes of itself lies below a function that is differentiated");
     return b.call(source_of(made.imm, way.suffix), arguments);
   }
@@ -294,7 +294,7 @@ uint32_t Differentiation::change_function(uint32_t function, const Marks& parame
 
 void Differentiation::build_by_rule(Builder& b, const functions::DerivativeRule& rule,
                                     const Marks& parameters) {
-  support::check(parameters.size() <= rule.size(), "a rule of too many arguments");
+  support::assert_that(parameters.size() <= rule.size(), "a rule of too many arguments");
   Values arguments;
   for (size_t i = 0; i < parameters.size(); ++i) arguments.push_back(b.parameter(i));
   ValueId sum = none;
@@ -306,7 +306,7 @@ void Differentiation::build_by_rule(Builder& b, const functions::DerivativeRule&
     const ValueId part = rule[i](b, arguments, change);
     sum = sum == none ? part : b.op(Opcode::fadd, {sum, part});
   }
-  support::check(sum != none, "a function changes with no argument");
+  support::assert_that(sum != none, "a function changes with no argument");
   b.finish(std::array{sum});
 }
 

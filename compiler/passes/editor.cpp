@@ -7,7 +7,7 @@
 
 #include "compiler/ir/builder.h"
 #include "compiler/ir/float_bits.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 
@@ -117,7 +117,7 @@ ValueId Editor::make(Opcode op, std::span<const ValueId> operands) {
   std::array<Type, 3> types;
   for (size_t i = 0; i < operands.size(); ++i) types[i] = f_.type(operands[i]);
   const auto type = result_type(op, std::span(types).first(operands.size()));
-  support::check(type.has_value(), "a pass made operands that do not fit");
+  support::assert_that(type.has_value(), "a pass made operands that do not fit");
   return append(op, 0, operands, *type);
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compiler/functions/library.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 
@@ -18,7 +18,7 @@ void exact_division(ir::Module& module) {
       std::vector<ir::Type> types;
       for (ir::ValueId operand : function.operands_of(instruction)) types.push_back(function.type(operand));
       const auto* variant = functions::find(types.size() == 2 ? "div_exact" : "sqrt_exact", types);
-      support::check(variant != nullptr, "no exact division of this type");
+      support::assert_that(variant != nullptr, "no exact division of this type");
       const uint32_t callee = functions::declare(module, *variant);
       ir::Instruction& call = module.functions[f].instructions[i];
       call.op = ir::Opcode::call;

@@ -69,7 +69,7 @@ KnownRange arithmetic(Opcode op, KnownRange a, KnownRange b, bool same) {
     case Opcode::fneg: return {-a.hi, -a.lo};
     case Opcode::fabs: return magnitude(a);
     case Opcode::floor: return {std::floor(a.lo), std::floor(a.hi)};
-    case Opcode::itof: return {analysis::rounded(a.lo), analysis::rounded(a.hi)};
+    case Opcode::itof: return {prove::rounded(a.lo), prove::rounded(a.hi)};
     default: return any_of(ir::info(op).rule == ir::Rule::to_float ? Scalar::floating : Scalar::integer);
   }
 }
@@ -134,7 +134,7 @@ const RangeWalker::Library& RangeWalker::library_of(uint32_t function) {
   library->row = variant.row;
   library->chooses =
       variant.row == "min" || variant.row == "max" || variant.row == "clamp" || variant.row == "saturate";
-  library->rule = analysis::find_rule(variant.row);
+  library->rule = prove::find_rule(variant.row);
   return *library;
 }
 
@@ -268,9 +268,9 @@ KnownRanges RangeWalker::by_rule(const RangeFrame& frame, const ir::Instruction&
   const ir::Function& f = *frame.function;
   const ir::Type type = f.type(made.first_result);
   KnownRanges out = any(type);
-  const bool componentwise = analysis::is_componentwise(library.row);
+  const bool componentwise = prove::is_componentwise(library.row);
   for (uint32_t c = 0; c < type.width; ++c) {
-    std::vector<analysis::Bound> arguments;
+    std::vector<prove::Bound> arguments;
     bool known = true;
     for (const ir::ValueId operand : f.operands_of(made)) {
       const uint32_t width = f.type(operand).width;
@@ -278,13 +278,13 @@ KnownRanges RangeWalker::by_rule(const RangeFrame& frame, const ir::Instruction&
         if (componentwise && k != std::min(c, width - 1)) continue;
         const KnownRange& range = frame.values[operand][k];
         known = known && range;
-        if (known) arguments.push_back(analysis::between(range.lo, range.hi));
+        if (known) arguments.push_back(prove::between(range.lo, range.hi));
       }
     }
     if (!known) continue;
-    const analysis::Outcome outcome =
-        analysis::bound_of(*library.rule, arguments, componentwise ? 0 : c, tier_);
-    if (outcome.breach == analysis::Breach::none) out[c] = {outcome.bound.lo, outcome.bound.hi};
+    const prove::Outcome outcome =
+        prove::bound_of(*library.rule, arguments, componentwise ? 0 : c, tier_);
+    if (outcome.breach == prove::Breach::none) out[c] = {outcome.bound.lo, outcome.bound.hi};
   }
   return out;
 }

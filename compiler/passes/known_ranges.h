@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/analysis/rules.h"
+#include "compiler/prove/rules.h"
 #include "compiler/functions/tier.h"
 #include "compiler/ir/module.h"
 
@@ -54,7 +54,7 @@ class RangeWalker {
  private:
   struct Library {
     std::string_view row;
-    const analysis::Rule* rule = nullptr;  ///< null: its body tells
+    const prove::Rule* rule = nullptr;  ///< null: its body tells
     bool chooses = false;                  ///< min, max, clamp or saturate
   };
   const Library& library_of(uint32_t function);

@@ -15,7 +15,7 @@
 #include "compiler/passes/hide_foldables.h"
 #include "compiler/passes/renumber.h"
 #include "compiler/passes/specialize.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 
@@ -34,7 +34,7 @@ void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries); }
 void run_hide(ir::Module& m, Entries& entries, Tier) { hide_foldables(m, entries); }
 void run_exact_division(ir::Module& m, Entries&, Tier) { exact_division(m); }
 
-constexpr Pass optimisation_table[] = {
+constexpr ModulePass optimisation_table[] = {
     {"derivatives", run_derivatives,
      "no other pass knows of ddx and ddy; functions have rules while calls are calls"},
     {"renumber", run_renumber,
@@ -53,7 +53,7 @@ constexpr Pass optimisation_table[] = {
     {"dce", run_dce, "no function that folding made useless, callees before callers"},
 };
 
-constexpr Pass division_table[] = {
+constexpr ModulePass division_table[] = {
     {"exact_division", run_exact_division, "calls instead of the two ops"},
     {"expand", run_expand, "the called functions"},
     {"fold", run_fold,
@@ -73,12 +73,12 @@ constexpr bool always_check = true;
 
 }  // namespace
 
-std::span<const Pass> optimisations() { return optimisation_table; }
-std::span<const Pass> division_lowering() { return division_table; }
+std::span<const ModulePass> optimisations() { return optimisation_table; }
+std::span<const ModulePass> division_lowering() { return division_table; }
 
-void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, Tier tier, const Dump& dump,
+void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, Tier tier, const Dump& dump,
          bool check) {
-  for (const Pass& pass : passes) {
+  for (const ModulePass& pass : passes) {
     pass.run(module, entries, tier);
     if (dump) dump(pass.name, module);
     if (!check && !always_check) continue;

@@ -16,7 +16,7 @@ namespace isoshade::passes {
 using Entries = std::vector<uint32_t>;
 
 /// One line of a pipeline.
-struct Pass {
+struct ModulePass {
   std::string_view name;
   void (*run)(ir::Module&, Entries&, functions::Tier);
   std::string_view reason;  ///< why it stands where it stands
@@ -24,16 +24,16 @@ struct Pass {
 
 /// From what lowering made to what is printed: no declaration, nothing dead, nothing that a driver would
 /// fold.
-std::span<const Pass> optimisations();
+std::span<const ModulePass> optimisations();
 /// After `optimisations`, for devices whose `/` and `sqrt` are not correctly rounded.
-std::span<const Pass> division_lowering();
+std::span<const ModulePass> division_lowering();
 
 /// Called after each pass with its name.
 using Dump = std::function<void(std::string_view pass, const ir::Module&)>;
 
 /// Runs the passes in order; library functions get their bodies of the tier. With `check` (always in debug builds) a pass that leaves an invalid module is a
 /// bug.
-void run(std::span<const Pass> passes, ir::Module& module, Entries& entries, functions::Tier tier,
+void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, functions::Tier tier,
          const Dump& dump = {}, bool check = false);
 
 }  // namespace isoshade::passes

@@ -13,14 +13,14 @@ namespace {
 using namespace ir;
 
 // Where a value is defined.
-struct Place {
+struct ValuePosition {
   BlockId block = none;
   InstructionId instruction = none;  ///< whose result it is, or whose block's parameter; none: the function's
   uint32_t position = 0;             ///< among the results or parameters
   bool is_parameter = false;
 };
 
-void find_places(const Function& f, std::vector<Place>& places) {
+void find_places(const Function& f, std::vector<ValuePosition>& places) {
   places.assign(f.values.size(), {});
   const auto enter = [&](const auto& self, BlockId block, InstructionId owner) -> void {
     const std::vector<ValueId>& parameters = f.blocks[block].parameters;
@@ -39,12 +39,12 @@ void find_places(const Function& f, std::vector<Place>& places) {
 // alive.
 class Liveness {
  public:
-  void find(const Function& f, const std::vector<Place>& places) {
+  void find(const Function& f, const std::vector<ValuePosition>& places) {
     f_ = &f;
     live_.assign(f.values.size(), false);
     for (ValueId value : f.blocks[0].yields) mark(value);
     while (!work_.empty()) {
-      const Place& place = places[work_.back()];
+      const ValuePosition& place = places[work_.back()];
       work_.pop_back();
       if (place.instruction != none) follow(place);
     }
@@ -63,7 +63,7 @@ class Liveness {
     work_.push_back(value);
   }
 
-  void follow(const Place& place) {
+  void follow(const ValuePosition& place) {
     const Instruction& made = f_->instructions[place.instruction];
     const auto operands = f_->operands_of(made);
     if (made.op == Opcode::branch) {
@@ -158,7 +158,7 @@ class Renumberer {
   }
 
   void reach(ValueId value, BlockId block, std::vector<ValueId>& outer) {
-    const Place& place = places_[value];
+    const ValuePosition& place = places_[value];
     if (place.block != block) return outer.push_back(value);
     if (place.is_parameter || reached_[place.instruction]) return;
     reached_[place.instruction] = true;
@@ -249,7 +249,7 @@ class Renumberer {
   }
 
   Function* f_ = nullptr;
-  std::vector<Place> places_;  ///< by value
+  std::vector<ValuePosition> places_;  ///< by value
   Liveness live_;
   std::vector<Visit> path_;
   std::vector<char> reached_;                      ///< by instruction

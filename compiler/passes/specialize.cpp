@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compiler/passes/fold.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::passes {
 
@@ -82,7 +82,7 @@ void Tangents::copy(const Instruction& made) {
     case Opcode::ddy:
       for (const Way& way : ways_)
         if (way.op == made.op) result = change(way, from_.operands_of(made)[0]);
-      support::check(result != none, "a derivative in what is differentiated");
+      support::assert_that(result != none, "a derivative in what is differentiated");
       return;
     default: result = b_.op(made.op, operands);
   }

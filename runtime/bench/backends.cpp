@@ -3,7 +3,7 @@
 
 #include "backends/cpu/backend.h"
 #include "backends/cpu/lane_count.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
 #endif
@@ -25,13 +25,13 @@ auto remembered(Make make) {
   };
 }
 
-bool add_cpu(const Options& options, std::vector<Contestant>& all, Diagnostics& diagnostics) {
+bool add_cpu(const BenchOptions& options, std::vector<Contestant>& all, Diagnostics& diagnostics) {
   std::vector<std::string> lanes = options.lanes;
   if (lanes.empty())
     for (const cpu::LaneCount& count : cpu::lane_counts())
       if (count.available()) lanes.emplace_back(count.name);
   for (const std::string& count : lanes) {
-    cpu::Options cpu;
+    cpu::CpuOptions cpu;
     cpu.lanes = count;
     cpu.threads = options.threads;
     cpu.compiler = options.compiler;
@@ -45,9 +45,9 @@ bool add_cpu(const Options& options, std::vector<Contestant>& all, Diagnostics& 
 }
 
 #ifdef ISOSHADE_VULKAN
-bool add_vulkan(const Options& options, const BuiltIns* built_ins, std::vector<Contestant>& all,
+bool add_vulkan(const BenchOptions& options, const BuiltIns* built_ins, std::vector<Contestant>& all,
                 Diagnostics& diagnostics) {
-  vulkan::Options vulkan;
+  vulkan::VulkanOptions vulkan;
   vulkan.device = options.device;
   vulkan.glsl = remembered([built_ins](const driver::Program& program, driver::Division division) {
     if (built_ins == nullptr) return driver::glsl(program, division);
@@ -81,7 +81,7 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
   constexpr std::string_view close = "\n}\n";
   for (size_t at = 0; at < definitions.size();) {
     const size_t end = definitions.find(close, at) + close.size();
-    support::check(end >= close.size(), "a definition without its end");
+    support::assert_that(end >= close.size(), "a definition without its end");
     std::string definition = definitions.substr(at, end - at);
     at = end;
     const size_t line = definition.rfind('\n', definition.find(" {\n"));
@@ -89,7 +89,7 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
     const std::string_view head =
         std::string_view(definition).substr(start, definition.find(" {\n", start) + 2 - start);
     const std::string_view name = defined_name(head);
-    support::check(!name.empty(), definition);
+    support::assert_that(!name.empty(), definition);
     // The generated definition's line: type, name, parenthesis.
     const size_t call = glsl.find(" " + std::string(name) + "(");
     if (call == std::string::npos) continue;  // this tier has no call of it
@@ -99,7 +99,7 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
   return glsl;
 }
 
-std::vector<Contestant> contestants(const Options& options, [[maybe_unused]] const BuiltIns& built_ins,
+std::vector<Contestant> contestants(const BenchOptions& options, [[maybe_unused]] const BuiltIns& built_ins,
                                     Diagnostics& diagnostics) {
   std::vector<Contestant> all;
   bool good = add_cpu(options, all, diagnostics);

@@ -24,7 +24,7 @@ struct Contestant {
 
 /// The cpu at each lane count, vulkan, and vulkan with built-ins. They keep the texts of programs, which must outlive
 /// them, so that a second run of a program makes none. Empty, with diagnostics, where one cannot be had.
-std::vector<Contestant> contestants(const Options& options, const BuiltIns& built_ins,
+std::vector<Contestant> contestants(const BenchOptions& options, const BuiltIns& built_ins,
                                     support::Diagnostics& diagnostics);
 
 /// A GLSL text with these definitions instead of its own of the same names, and free to be optimised.

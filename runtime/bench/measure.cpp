@@ -45,7 +45,7 @@ size_t words_of(const std::vector<driver::Field>& fields) {
   return words;
 }
 
-std::optional<Prepared> prepare(const Subject& subject, const Options& options, check::Library& library,
+std::optional<Prepared> prepare(const Subject& subject, const BenchOptions& options, check::Library& library,
                                 Diagnostics& diagnostics) {
   Prepared made{subject, {}, {}, {}, 0, {}, {}};
   for (const Tier tier : functions::tiers) {
@@ -108,7 +108,7 @@ double quantile(const std::vector<double>& sorted, double q) {
 
 class Bench {
  public:
-  Bench(const Options& options, Diagnostics& diagnostics)
+  Bench(const BenchOptions& options, Diagnostics& diagnostics)
       : options_(options), diagnostics_(diagnostics), library_(options.library) {}
 
   std::optional<Report> run() {
@@ -219,7 +219,7 @@ class Bench {
     return true;
   }
 
-  const Options& options_;
+  const BenchOptions& options_;
   Diagnostics& diagnostics_;
   check::Library library_;
   std::vector<std::unique_ptr<Prepared>> prepared_;
@@ -234,7 +234,7 @@ class Bench {
 
 }  // namespace
 
-std::optional<Report> measure(const Options& options, Diagnostics& diagnostics) {
+std::optional<Report> measure(const BenchOptions& options, Diagnostics& diagnostics) {
   return Bench(options, diagnostics).run();
 }
 

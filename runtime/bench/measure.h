@@ -12,7 +12,7 @@
 
 namespace isoshade::bench {
 
-struct Options {
+struct BenchOptions {
   std::string graphs;            ///< the folder with library/ and source_forms/
   std::string library;           ///< the folder of library documents
   std::string filter;            ///< a part of the effects' names; empty: all
@@ -55,7 +55,7 @@ struct Report {
 };
 
 /// Times are interleaved: each repetition visits every point. Nothing, with diagnostics, where something cannot run.
-std::optional<Report> measure(const Options& options, support::Diagnostics& diagnostics);
+std::optional<Report> measure(const BenchOptions& options, support::Diagnostics& diagnostics);
 
 /// Whether every point but the built-ins computed the same bits as the others of its effect, form and precision.
 bool all_identical(const Report& report);

@@ -28,7 +28,7 @@ constexpr Size exact{96, 54};
 
 class SceneBench {
  public:
-  SceneBench(const Options& options, const std::vector<Contestant>& devices, std::deque<render::Plan>& plans,
+  SceneBench(const BenchOptions& options, const std::vector<Contestant>& devices, std::deque<render::Plan>& plans,
              Report& report, Diagnostics& diagnostics)
       : options_(options),
         devices_(devices),
@@ -93,7 +93,7 @@ class SceneBench {
 
  private:
   const render::Plan* plan(const scene::Scene& scene, Size size, Tier tier, bool reference = false) {
-    render::Options options;
+    render::PlanOptions options;
     options.width = size.width;
     options.height = size.height;
     options.compiler.library = &library_;
@@ -126,7 +126,7 @@ class SceneBench {
     return bits;
   }
 
-  const Options& options_;
+  const BenchOptions& options_;
   const std::vector<Contestant>& devices_;
   std::deque<render::Plan>& plans_;
   Report& report_;
@@ -137,7 +137,7 @@ class SceneBench {
 
 }  // namespace
 
-bool measure_scenes(const Options& options, const std::vector<Contestant>& devices,
+bool measure_scenes(const BenchOptions& options, const std::vector<Contestant>& devices,
                     std::deque<render::Plan>& plans, Report& report, Diagnostics& diagnostics) {
   for (const char* name : scenes) {
     if (std::string_view(name).find(options.filter) == std::string_view::npos) continue;

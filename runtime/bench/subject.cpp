@@ -9,7 +9,7 @@
 #include "backends/reference/functions.h"
 #include "compiler/graph/document.h"
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::bench {
 
@@ -136,7 +136,7 @@ std::optional<driver::Program> compile(const Subject& subject, functions::Tier t
     return driver::finish_eval(row_module(*subject.variant), 0, subject.effect, tier);
   const support::Source source = graph::read_source(subject.document, diagnostics);
   if (source == nullptr) return std::nullopt;
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   options.tier = tier;
   return driver::compile_function(source, options, diagnostics);
@@ -147,7 +147,7 @@ driver::Program idle_program(const driver::Program& program) {
   ir::Function function;
   function.name = "idle";
   const auto type_of = [](const driver::Field& field) {
-    support::check(field.words <= 4, "an eval column of a matrix");
+    support::assert_that(field.words <= 4, "an eval column of a matrix");
     return ir::vector_type(field.words);
   };
   for (const driver::Field& field : program.inputs)
@@ -179,7 +179,7 @@ std::optional<std::vector<reference::Real>> exact_results(const Subject& subject
   if (subject.variant == nullptr) {
     const support::Source source = graph::read_source(subject.document, diagnostics);
     if (source == nullptr) return std::nullopt;
-    driver::Options options;
+    driver::CompileOptions options;
     options.library = &library;
     options.reference = true;
     const auto program = driver::compile_function(source, options, diagnostics);

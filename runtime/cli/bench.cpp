@@ -40,8 +40,8 @@ bool draw_picture(const std::string& gnuplot, const std::string& script, support
   return false;
 }
 
-bench::Options options_of(const BenchArguments& arguments, const Common& common) {
-  bench::Options options;
+bench::BenchOptions options_of(const BenchArguments& arguments, const Common& common) {
+  bench::BenchOptions options;
   options.library = library_root(common);
   options.graphs = fs::path(options.library).parent_path().string();
   options.filter = arguments.only;

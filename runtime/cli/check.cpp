@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <set>
 
-#include "compiler/analysis/document.h"
+#include "compiler/prove/document.h"
 #include "compiler/driver/driver.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
@@ -31,8 +31,8 @@ std::string number_below(double value) {
 }
 
 /// "error at most 1e-06, at most 3.5 ULP and 1.2e-38"
-std::string error_text(const analysis::Bound& bound) {
-  if (bound.absolute > analysis::largest) return "error unknown";
+std::string error_text(const prove::Bound& bound) {
+  if (bound.absolute > prove::largest) return "error unknown";
   const double ulps = bound.relative * 0x1p24;
   std::string text = "error at most " + number_above(bound.absolute);
   if (!(ulps > 0 && ulps < 1e6)) return text;
@@ -41,20 +41,20 @@ std::string error_text(const analysis::Bound& bound) {
   return bound.slack > 0 ? text + " and " + number_above(bound.slack) : text;
 }
 
-bool tells_less(const analysis::Bound& a, const analysis::Bound& b) {
+bool tells_less(const prove::Bound& a, const prove::Bound& b) {
   return a.absolute > b.absolute || std::min(a.relative, 1.0) > std::min(b.relative, 1.0);
 }
 
-void print_bounds(const analysis::Tape& tape, const analysis::Proof& proof) {
+void print_bounds(const prove::Tape& tape, const prove::Proof& proof) {
   const auto node = [&](uint32_t operation) {
     return support::quote(tape.places[tape.operations[operation].place].node);
   };
   bool tips = false;
   for (size_t i = 0; i < tape.outputs.size(); ++i) {
-    const analysis::Bound &bound = proof.outputs[i], &followed = proof.followed[i];
-    const bool differs = proof.lost[i] == analysis::none && tells_less(bound, followed);
+    const prove::Bound &bound = proof.outputs[i], &followed = proof.followed[i];
+    const bool differs = proof.lost[i] == prove::none && tells_less(bound, followed);
     std::string error = error_text(followed);
-    if (proof.lost[i] != analysis::none) error += ", lost at node " + node(proof.lost[i]);
+    if (proof.lost[i] != prove::none) error += ", lost at node " + node(proof.lost[i]);
     if (differs) error += "; where rounding tips a branch, " + error_text(bound);
     tips = tips || differs;
     std::printf("  %s in [%s, %s], %s\n", tape.outputs[i].name.c_str(), number_below(bound.lo).c_str(),
@@ -72,7 +72,7 @@ std::string counted(size_t count, std::string_view what) {
 }
 
 /// "not proved, 2 refuted, 1 undecided; ..."
-std::string summary(const analysis::Proof& proof, const analysis::NotProved& counts) {
+std::string summary(const prove::Proof& proof, const prove::NotProved& counts) {
   std::string text =
       "not proved" + counted(counts.refuted, "refuted") + counted(counts.undecided, "undecided");
   text += counted(counts.later, "undecided that read what these give");
@@ -83,11 +83,11 @@ std::string summary(const analysis::Proof& proof, const analysis::NotProved& cou
 }
 
 /// The counterexamples as rows of a table for `isoshade eval`.
-std::string table_of(const analysis::Tape& tape, const analysis::Proof& proof) {
+std::string table_of(const prove::Tape& tape, const prove::Proof& proof) {
   std::string text;
   for (size_t i = 0; i < tape.inputs.size(); ++i) text += (i == 0 ? "" : ",") + tape.inputs[i].name;
   text += "\n";
-  for (const analysis::Unproved& unproved : proof.unproved) {
+  for (const prove::Unproved& unproved : proof.unproved) {
     for (size_t i = 0; i < unproved.counterexample.size(); ++i) {
       const uint32_t word = unproved.counterexample[i];
       text += i == 0 ? "" : ",";
@@ -101,14 +101,14 @@ std::string table_of(const analysis::Tape& tape, const analysis::Proof& proof) {
 }
 
 /// What of `where` the subjects have; nothing, and a report, if some name is in none of them.
-std::optional<std::vector<analysis::Restriction>> restrictions(const std::vector<analysis::Subject>& subjects,
+std::optional<std::vector<prove::Restriction>> restrictions(const std::vector<prove::Subject>& subjects,
                                                                const std::vector<NamedRange>& where,
                                                                support::Diagnostics& diagnostics) {
   std::vector<std::string> known;
-  for (const analysis::Subject& subject : subjects)
-    for (std::string& name : analysis::sides_of(subject.tape)) known.push_back(std::move(name));
+  for (const prove::Subject& subject : subjects)
+    for (std::string& name : prove::sides_of(subject.tape)) known.push_back(std::move(name));
   const std::vector<std::string_view> names(known.begin(), known.end());
-  std::vector<analysis::Restriction> all;
+  std::vector<prove::Restriction> all;
   for (const NamedRange& range : where) {
     all.push_back({range.name, {static_cast<double>(range.lo), static_cast<double>(range.hi)}});
     if (std::ranges::find(known, range.name) != known.end()) continue;
@@ -124,22 +124,22 @@ enum class Result : uint8_t { proved, not_proved, error };
 Result check_one(const std::string& path, const CheckArguments& arguments, const Common& common,
                  support::Diagnostics& diagnostics) {
   check::Library library = make_library(common);
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return Result::error;
   const auto typed = driver::check_document(source, options, diagnostics);
   if (typed == nullptr) return Result::error;
   if (!arguments.output.empty() && !may_write(arguments.output, diagnostics)) return Result::error;
-  const auto subjects = analysis::subjects_of(*typed, diagnostics, arguments.precision);
+  const auto subjects = prove::subjects_of(*typed, diagnostics, arguments.precision);
   if (!subjects) return Result::error;
   Result result = Result::proved;
   const auto where = restrictions(*subjects, arguments.where, diagnostics);
   if (!where) return Result::error;
-  analysis::Effort effort;  // errors of all passes together take as long as those of one function
+  prove::Effort effort;  // errors of all passes together take as long as those of one function
   effort.error /= std::max<size_t>(subjects->size(), 1);
-  for (const analysis::Subject& subject : *subjects) {
-    const analysis::Proof proof = analysis::prove(subject.tape, effort, *where);
+  for (const prove::Subject& subject : *subjects) {
+    const prove::Proof proof = prove::prove(subject.tape, effort, *where);
     if (proof.vacuous) {
       diagnostics.report(support::Id::out_of_range, "no input lies within all ranges that " +
                                                         support::quote(path) + " and --where give");
@@ -151,8 +151,8 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
     std::string outcome = "proved";
     if (!proved) {
       result = Result::not_proved;
-      const auto detail = common.json ? analysis::Detail::all : analysis::Detail::brief;
-      outcome = summary(proof, analysis::report(*typed, subject, proof, diagnostics, detail));
+      const auto detail = common.json ? prove::Detail::all : prove::Detail::brief;
+      outcome = summary(proof, prove::report(*typed, subject, proof, diagnostics, detail));
     }
     std::printf("%s%s: %s\n", path.c_str(), is_effect ? (", " + subject.name).c_str() : "", outcome.c_str());
     if (proved && !common.quiet) print_bounds(subject.tape, proof);

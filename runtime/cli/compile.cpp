@@ -136,7 +136,7 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
     reflection["images"].push_back(row);
   }
   for (size_t i = 0; i < effect.passes.size(); ++i) {
-    const driver::Pass& pass = effect.passes[i];
+    const driver::EffectPass& pass = effect.passes[i];
     const std::string stem = pass_stem(effect, i);
     constexpr const char* culls[] = {"none", "back", "front"};
     ordered_json row{{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}};
@@ -180,7 +180,7 @@ bool write_function(const driver::Program& program, std::string_view precision, 
 int compile(const CompileArguments& arguments, const Common& common) {
   support::Diagnostics diagnostics = make_diagnostics(common);
   check::Library library = make_library(common);
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   options.tier = arguments.precision;
   int dumped = 0;

@@ -15,7 +15,7 @@ namespace {
 bool print_device(const vulkan::DeviceInfo& device, support::Diagnostics& diagnostics) {
   std::printf("%d  %s\n   driver %s, Vulkan %s%s\n", device.index, device.name.c_str(), device.driver.c_str(),
               device.api.c_str(), device.cpu ? ", software" : "");
-  vulkan::Options options;
+  vulkan::VulkanOptions options;
   options.device = std::to_string(device.index);
   options.allow_unproven = true;
   const auto backend = vulkan::create(options, diagnostics);

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "compiler/driver/drawing.h"
+#include "compiler/driver/diagram.h"
 #include "compiler/driver/driver.h"
 #include "compiler/support/process.h"
 #include "compiler/support/temporary.h"
@@ -65,7 +65,7 @@ bool draw_to_file(const DrawArguments& arguments, const Common& common, support:
     return false;
   }
   check::Library library = make_library(common);
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
   if (source == nullptr) return false;

@@ -14,7 +14,7 @@ bool evaluate(const EvalArguments& arguments, const Common& common, support::Dia
   const std::vector<std::string> read = {arguments.function, arguments.inputs};
   if (!read_standard_input_once(read, diagnostics)) return false;
   check::Library library = make_library(common);
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   options.reference = arguments.backend == "reference";
   options.tier = arguments.precision;

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <unistd.h>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/leftovers.h"
 #include "compiler/support/memory.h"
 #include "runtime/cli/arguments.h"

@@ -64,7 +64,7 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
   auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
   if (!scene) return failure;
   check::Library library = make_library(common);
-  render::Options options;
+  render::PlanOptions options;
   if (arguments.size) {
     options.width = arguments.size->width;
     options.height = arguments.size->height;

@@ -91,7 +91,7 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
   if (name == "reference") return reference::create();
   if (name == "vulkan") {
 #ifdef ISOSHADE_VULKAN
-    vulkan::Options options;
+    vulkan::VulkanOptions options;
     options.device = choice.device;
     if (!choice.division.empty())
       options.division = choice.division == "exact" ? driver::Division::exact : driver::Division::native;
@@ -102,7 +102,7 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
     return nullptr;
 #endif
   }
-  cpu::Options options;
+  cpu::CpuOptions options;
   options.lanes = choice.lanes;
   options.threads = choice.threads;
   options.compiler = choice.compiler;

@@ -100,7 +100,7 @@ class Verifier {
   }
 
   int verify_size(const std::string& path, const scene::Scene& scene, Size size) {
-    render::Options options;
+    render::PlanOptions options;
     options.width = size.width;
     options.height = size.height;
     options.compiler.library = &library_;

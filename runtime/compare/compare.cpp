@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/sha256.h"
 
@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "hashes are over littl
 
 void check_whole(const backends::Image& image) {
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  support::check(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "image of odd size");
+  support::assert_that(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "image of odd size");
 }
 
 /// Floats in ascending order: negative ones are turned round and come first.

@@ -25,7 +25,7 @@ uint32_t ulp_distance(float a, float b);
 uint32_t ulp_distance(const Pixel& a, const Pixel& b);
 
 struct Comparison {
-  struct Place {
+  struct DifferingPixel {
     int x = 0, y = 0;  ///< from the left and from the top
     Pixel a{}, b{};
   };
@@ -34,7 +34,7 @@ struct Comparison {
   int64_t pixels = 0;
   int64_t differing = 0;
   uint32_t largest_ulp = 0;
-  std::optional<Place> first;  ///< in the order of the rows
+  std::optional<DifferingPixel> first;  ///< in the order of the rows
 
   bool identical() const { return same_size && differing == 0; }
 };

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <memory>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/raster/tile.h"
@@ -44,7 +44,7 @@ support::Diagnostic& warn_drawn(const scene::Scene& scene, const Plan& plan, con
   if (report.object < 0) return diagnostics.report(Id::not_finite, found + "is the mean of finite samples");
   const std::vector<backends::Draw>& draws = plan.frame.draws;
   const auto draw = std::ranges::lower_bound(draws, report.object, {}, &backends::Draw::object);
-  support::check(draw != draws.end() && draw->object == report.object, "a triangle is of no draw");
+  support::assert_that(draw != draws.end() && draw->object == report.object, "a triangle is of no draw");
   const DrawOrigin& origin = plan.origins[static_cast<size_t>(draw - draws.begin())];
   const scene::Object& object = scene.objects[origin.object];
   return diagnostics

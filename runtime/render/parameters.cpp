@@ -6,7 +6,7 @@
 #include <span>
 
 #include "compiler/graph/files.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/host_math.h"
 
@@ -32,7 +32,7 @@ std::optional<Found> find_field(const driver::Effect& effect, const std::string&
   for (const driver::Field& field : effect.parameters) {
     if (field.name == name) {
       const std::optional<Type> type = graph::find_type(field.type);
-      support::check(type.has_value(), "a parameter of a type that does not exist");
+      support::assert_that(type.has_value(), "a parameter of a type that does not exist");
       return Found{&field, *type, word};
     }
     word += static_cast<size_t>(field.words);

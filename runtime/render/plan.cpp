@@ -59,7 +59,7 @@ size_t word_of(const driver::Effect& effect, size_t parameter) {
 
 class Planner {
  public:
-  Planner(const Scene& scene, const Options& options, Diagnostics& diagnostics)
+  Planner(const Scene& scene, const PlanOptions& options, Diagnostics& diagnostics)
       : scene_(scene), options_(options), diagnostics_(diagnostics) {}
 
   std::optional<Plan> plan();
@@ -83,16 +83,16 @@ class Planner {
   /// One copy of an object and where it stands.
   struct Copy {
     Instance instance;
-    Place place;
+    ObjectTransforms place;
     bool outside;  ///< of the view: passes that leave vertices in their place draw nothing
   };
   void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
   /// The draw is the frame's until the next one is placed.
-  backends::Draw& place_draw(const Place& place, const PassPrograms& programs, const MeshPart& part,
+  backends::Draw& place_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
                              const std::vector<float>& parameters);
 
   const Scene& scene_;
-  const Options& options_;
+  const PlanOptions& options_;
   Diagnostics& diagnostics_;
   Plan plan_;
   scene::View view_;
@@ -108,7 +108,7 @@ class Planner {
 };
 
 bool Planner::compile_effects() {
-  driver::Options options = options_.compiler;
+  driver::CompileOptions options = options_.compiler;
   options.lights = kinds_of(scene_.lights);
   std::map<std::string, size_t> known;
   bool good = true;
@@ -128,7 +128,7 @@ bool Planner::compile_effects() {
   // Only now, when no effect moves any more.
   for (const driver::Effect& effect : plan_.effects) {
     std::vector<PassPrograms>& programs = programs_of_effect_.emplace_back();
-    for (const driver::Pass& pass : effect.passes)
+    for (const driver::EffectPass& pass : effect.passes)
       programs.push_back({add_program(pass.vertex), add_program(pass.pixel)});
   }
   return true;
@@ -269,7 +269,7 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
   const glm::vec3& scale = object.transform.scale;
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
   for (size_t p = 0; p < effect.passes.size(); ++p) {
-    const driver::Pass& pass = effect.passes[p];
+    const driver::EffectPass& pass = effect.passes[p];
     const bool unseen = copy.outside && !pass.moves_vertices;
     bool left_out = false;
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
@@ -289,7 +289,7 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
   }
 }
 
-backends::Draw& Planner::place_draw(const Place& place, const PassPrograms& programs, const MeshPart& part,
+backends::Draw& Planner::place_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
                                     const std::vector<float>& parameters) {
   const size_t first = plan_.frame.objects.size();
   append_object(place, programs.pixel, parameters, plan_.frame.objects);
@@ -313,7 +313,7 @@ void Planner::place_object(size_t o) {
   std::vector<PassSkips> skipped(effect.passes.size());
   for (int64_t i = 0; i < count; ++i) {
     const Instance instance = scene::instance(object, i);
-    const Place place = place_of(object, instance, view_);
+    const ObjectTransforms place = place_of(object, instance, view_);
     const bool outside = options_.skip && outside_view(mesh.low, mesh.high, place.projected,
                                                        plan_.frame.width, plan_.frame.height);
     place_copy(o, {instance, place, outside}, skipped);
@@ -372,7 +372,7 @@ std::optional<Plan> Planner::plan() {
 
 }  // namespace
 
-std::optional<Plan> plan_frame(const Scene& scene, const Options& options, Diagnostics& diagnostics) {
+std::optional<Plan> plan_frame(const Scene& scene, const PlanOptions& options, Diagnostics& diagnostics) {
   return Planner(scene, options, diagnostics).plan();
 }
 

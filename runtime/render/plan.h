@@ -20,17 +20,17 @@ inline constexpr int64_t max_drawn_vertices = 8'000'000;   ///< 16 bytes each, a
 inline constexpr int64_t max_drawn_triangles = 8'000'000;  ///< 64 bytes each, once clipped and snapped
 inline constexpr int64_t max_object_words = 16'000'000;    ///< of all records
 
-struct Options {
+struct PlanOptions {
   int width = 0;  ///< of the image; 0: the scene's own size
   int height = 0;
   bool skip = true;          ///< leave out what cannot be seen; off, the image has the same bits
-  driver::Options compiler;  ///< `lights` is set by the scene
+  driver::PlanOptions compiler;  ///< `lights` is set by the scene
 };
 
 /// What a draw of the frame is of.
 struct DrawOrigin {
   uint32_t object;  ///< in Scene::objects
-  const driver::Pass* pass;
+  const driver::EffectPass* pass;
 };
 
 /// A frame and all that it points into; made once, drawn by as many backends as are asked. Can be moved: what
@@ -55,7 +55,7 @@ struct Plan {
 /// scene; all parts before the next pass.
 /// Reports effects that do not compile, parameters that an effect has not or that do not fit, and scenes
 /// beyond the limits.
-std::optional<Plan> plan_frame(const scene::Scene& scene, const Options& options,
+std::optional<Plan> plan_frame(const scene::Scene& scene, const PlanOptions& options,
                                support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::render

@@ -16,13 +16,13 @@ void store_rows(const Matrix& matrix, int rows, float* words) {
 
 }  // namespace
 
-Place place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view) {
+ObjectTransforms place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view) {
   const glm::mat4 model = scene::model_matrix(object, instance);
   return {model, scene::affine_inverse(model), scene::multiply(view.projection, model),
           scene::normal_matrix(model)};
 }
 
-void append_object(const Place& place, uint32_t pixel_program, std::span<const float> parameters,
+void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::span<const float> parameters,
                    std::vector<float>& objects) {
   namespace word = lower::object_word;
   const size_t first = objects.size();

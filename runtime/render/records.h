@@ -15,16 +15,16 @@
 namespace isoshade::render {
 
 /// Where a copy of an object stands.
-struct Place {
+struct ObjectTransforms {
   glm::mat4 model;      ///< object space -> world space
   glm::mat4 inverse;    ///< world space -> object space
   glm::mat4 projected;  ///< object space -> clip space
   glm::mat3 normal;     ///< normals: object space -> world space, of any length
 };
-Place place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view);
+ObjectTransforms place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view);
 
 /// Appends a record of lower::object_word, with the words of its parameters.
-void append_object(const Place& place, uint32_t pixel_program, std::span<const float> parameters,
+void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::span<const float> parameters,
                    std::vector<float>& objects);
 
 /// The words of lower::frame_word, for an image of this size.

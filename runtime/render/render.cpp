@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/memory.h"
 #include "compiler/support/release.h"
 #include "runtime/raster/clip.h"
@@ -56,14 +56,14 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
   };
   std::vector<std::vector<float>> clip;
   if (!backend.transform(frame, clip, diagnostics)) return false;
-  support::check(clip.size() == frame.draws.size(), "a backend transformed another number of draws");
+  support::assert_that(clip.size() == frame.draws.size(), "a backend transformed another number of draws");
   stats.transform_seconds = lap();
 
   std::vector<float> vertices = frame.vertices;
   std::vector<int32_t> triangles;
   for (size_t d = 0; d < frame.draws.size(); ++d) {
     const backends::Draw& draw = frame.draws[d];
-    support::check(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
+    support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
     raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, to_raster(draw.cull), draw.object, draw.over},
                           frame.width, frame.height, vertices, triangles);
     support::release(clip[d]);

@@ -25,7 +25,7 @@ void report_skips(const scene::Object& object, const driver::Effect& effect, int
       passes, [&](const PassSkips& pass) { return pass.unseen == passes.front().unseen; });
   if (alike) report(passes.front().unseen, copies, "copies", "", "outside of the view");
   for (size_t p = 0; p < passes.size(); ++p) {
-    const driver::Pass& pass = effect.passes[p];
+    const driver::EffectPass& pass = effect.passes[p];
     if (!alike) report(passes[p].unseen, copies, "copies", pass.name, "outside of the view");
     if (!pass.enabled) continue;
     const driver::Field& field = effect.parameters[*pass.enabled];

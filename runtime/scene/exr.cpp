@@ -14,7 +14,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/exr_chunks.h"
 #include "runtime/scene/exr_file.h"
@@ -210,7 +210,7 @@ std::string reason_of(const std::exception& exception) {
 
 std::string exr(const ImageView& image) {
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  support::check(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "exr: image of odd size");
+  support::assert_that(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "exr: image of odd size");
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer buffer;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/mesh_builder.h"

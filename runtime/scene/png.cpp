@@ -6,7 +6,7 @@
 #include <new>
 #include <spng.h>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/scene/image_codecs.h"
 #include "runtime/scene/scene.h"
 
@@ -24,7 +24,7 @@ Context new_context(int flags) {
 }  // namespace
 
 std::string png(int width, int height, std::span<const uint8_t> rgba) {
-  support::check(rgba.size() == size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height),
+  support::assert_that(rgba.size() == size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height),
                  "png: image of odd size");
   const Context context = new_context(SPNG_CTX_ENCODER);
   spng_ihdr header{};

@@ -79,7 +79,7 @@ isoshade_test(fog_test
 target_compile_definitions(fog_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
 
-isoshade_test(proved_test SOURCES accuracy/proved_test.cpp LINKS isoshade_analysis LABEL accuracy)
+isoshade_test(proved_test SOURCES accuracy/proved_test.cpp LINKS isoshade_prove LABEL accuracy)
 target_compile_definitions(proved_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
 isoshade_test(bound_test
@@ -87,7 +87,7 @@ isoshade_test(bound_test
     accuracy/bound_test.cpp
     accuracy/real_tape.cpp
     accuracy/subject.cpp
-  LINKS isoshade_analysis isoshade_cpu isoshade_interpreter isoshade_reference
+  LINKS isoshade_prove isoshade_cpu isoshade_interpreter isoshade_reference
     $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
   LABEL accuracy
   TIMEOUT 300)
@@ -102,7 +102,7 @@ isoshade_test(soundness_test
     accuracy/random_graph.cpp
     accuracy/real_tape.cpp
     accuracy/soundness_test.cpp
-  LINKS isoshade_analysis isoshade_interpreter isoshade_reference
+  LINKS isoshade_prove isoshade_interpreter isoshade_reference
   LABEL accuracy
   TIMEOUT 7200)
 target_compile_definitions(soundness_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

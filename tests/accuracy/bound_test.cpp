@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
-#include "compiler/analysis/document.h"
+#include "compiler/prove/document.h"
 #include "runtime/lanes/lanes.h"
 #include "tests/accuracy/real_tape.h"
 #include "tests/accuracy/subject.h"
@@ -14,10 +14,10 @@ namespace isoshade::accuracy {
 namespace {
 
 namespace fs = std::filesystem;
-using analysis::Bound;
-using analysis::Box;
-using analysis::Proof;
-using analysis::Tape;
+using prove::Bound;
+using prove::Box;
+using prove::Proof;
+using prove::Tape;
 using reference::Real;
 
 constexpr int points = 400;
@@ -36,8 +36,8 @@ class Measurement {
 
   /// Of the outputs, over all inputs for which the restrictions hold; without and with following branches.
   Verdict run(const std::vector<Bound>& own, const std::vector<Bound>& followed,
-              const std::vector<analysis::Restriction>& where = {}, int count = points) {
-    for (const std::vector<uint32_t>& inputs : analysis::samples(tape_, evaluator_.whole(), count)) {
+              const std::vector<prove::Restriction>& where = {}, int count = points) {
+    for (const std::vector<uint32_t>& inputs : prove::samples(tape_, evaluator_.whole(), count)) {
       for (const bool follow : {false, true}) {
         {
           const lanes::FpGuard guard;
@@ -59,8 +59,8 @@ class Measurement {
   }
 
  private:
-  bool holds(const std::vector<analysis::Restriction>& where, const std::vector<uint32_t>& inputs) const {
-    for (const analysis::Restriction& r : where) {
+  bool holds(const std::vector<prove::Restriction>& where, const std::vector<uint32_t>& inputs) const {
+    for (const prove::Restriction& r : where) {
       for (size_t s = 0; s < evaluator_.side_count(); ++s) {
         if (evaluator_.side_name(s) != r.name) continue;
         const uint32_t word = s < inputs.size() ? inputs[s] : runner_.word(evaluator_.operation_of(s));
@@ -110,9 +110,9 @@ class Measurement {
   }
 
   const Tape& tape_;
-  analysis::Runner runner_;
+  prove::TapeRunner runner_;
   RealTape exact_;
-  analysis::Evaluator evaluator_;
+  prove::Evaluator evaluator_;
   Verdict verdict_;
 };
 
@@ -131,10 +131,10 @@ TEST_P(ShippedGraph, ErrsNowhereByMoreThanItsBound) {
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
   const auto graph = front_end.check_file(GetParam());
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
-  const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics);
+  const auto subjects = prove::subjects_of(*graph, front_end.diagnostics);
   ASSERT_TRUE(subjects);
-  for (const analysis::Subject& subject : *subjects) {
-    const Proof proof = analysis::prove(subject.tape);
+  for (const prove::Subject& subject : *subjects) {
+    const Proof proof = prove::prove(subject.tape);
     if (!proof.unproved.empty()) continue;
     const Verdict verdict = Measurement(subject.tape).run(proof.outputs, proof.followed);
     EXPECT_EQ(verdict.wrong, "") << subject.name;
@@ -152,15 +152,15 @@ std::string name_of(const testing::TestParamInfo<std::string>& info) {
 INSTANTIATE_TEST_SUITE_P(Each, ShippedGraph, testing::ValuesIn(documents()), name_of);
 
 struct Proved {
-  analysis::Subject subject;
+  prove::Subject subject;
   Proof proof;
 };
 
 Proved proved(const std::string& document) {
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
-  auto subjects = analysis::subjects_of(*front_end.check_file(graph_path(document)), front_end.diagnostics);
+  auto subjects = prove::subjects_of(*front_end.check_file(graph_path(document)), front_end.diagnostics);
   Proved proved{std::move(subjects->front()), {}};
-  proved.proof = analysis::prove(proved.subject.tape);
+  proved.proof = prove::prove(proved.subject.tape);
   return proved;
 }
 
@@ -175,8 +175,8 @@ TEST(Bound, HoldsInEveryTier) {
         "c": {"type": "expression", "code": "length(v + vector3(5)) * normalize(v + vector3(5))", "v": "v"}},
         "outputs": {"a": "a", "b": "b", "c": "c"}})=");
     ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
-    const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics, tier);
-    const Proof proof = analysis::prove(subjects->front().tape);
+    const auto subjects = prove::subjects_of(*graph, front_end.diagnostics, tier);
+    const Proof proof = prove::prove(subjects->front().tape);
     ASSERT_TRUE(proof.unproved.empty()) << functions::tier_name(tier);
     const Verdict verdict = Measurement(subjects->front().tape).run(proof.outputs, proof.followed);
     EXPECT_EQ(verdict.wrong, "") << functions::tier_name(tier);
@@ -188,13 +188,13 @@ TEST(Bound, HoldsInEveryTier) {
 }
 
 TEST(Bound, HoldsWhereInputsAreRestricted) {
-  const std::vector<analysis::Restriction> where = {
+  const std::vector<prove::Restriction> where = {
       {"n_dot_l", {0.1, 1}}, {"n_dot_v", {0.1, 1}}, {"roughness", {0.1, 1}}, {"h2", {0.1, 4.1}}};
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
   const auto graph = front_end.check_file(graph_path("library/brdf/cook_torrance"));
-  const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics);
+  const auto subjects = prove::subjects_of(*graph, front_end.diagnostics);
   const Tape& tape = subjects->front().tape;
-  const Proof proof = analysis::prove(tape, {}, where);
+  const Proof proof = prove::prove(tape, {}, where);
   for (size_t o = 0; o < 3; ++o) EXPECT_LT(proof.outputs[o].absolute, 1) << "of up to 1000";
   const Verdict verdict = Measurement(tape).run(proof.outputs, proof.followed, where, 5000);
   EXPECT_EQ(verdict.wrong, "");
@@ -221,10 +221,10 @@ TEST(Tape, ComputesWhatTheBackendsCompute) {
     const Proved it = proved(document);
     const Tape& tape = it.subject.tape;
     const Subject subject = Subject::document(document);
-    analysis::Runner runner(tape);
+    prove::TapeRunner runner(tape);
     RealTape exact(tape, runner);
     for (const std::vector<uint32_t>& inputs :
-         analysis::samples(tape, analysis::Evaluator(tape).whole(), 50)) {
+         prove::samples(tape, prove::Evaluator(tape).whole(), 50)) {
       std::vector<float> row;
       for (const uint32_t word : inputs) row.push_back(std::bit_cast<float>(word));
       const std::vector<float> floats = subject.on_one_backend(row);

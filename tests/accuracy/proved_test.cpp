@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "compiler/analysis/document.h"
+#include "compiler/prove/document.h"
 #include "tests/unit/front_end.h"
 
 namespace isoshade {
@@ -39,13 +39,13 @@ std::vector<std::string> documents() {
 class ShippedGraph : public testing::TestWithParam<std::string> {};
 
 /// "proved", "refuted at node (division by zero)" or "open at node (...)".
-std::string outcome_of(const analysis::Subject& subject) {
-  const analysis::Proof proof = analysis::prove(subject.tape);
+std::string outcome_of(const prove::Subject& subject) {
+  const prove::Proof proof = prove::prove(subject.tape);
   EXPECT_LE(proof.steps, most_work) << subject.name << " takes too long to prove";
   if (proof.vacuous) return "vacuous";
   std::string outcome = proof.unproved.empty() ? "proved" : "";
-  for (const analysis::Unproved& u : proof.unproved) {
-    const analysis::Operation& operation = subject.tape.operations[u.operation];
+  for (const prove::Unproved& u : proof.unproved) {
+    const prove::Operation& operation = subject.tape.operations[u.operation];
     outcome += (outcome.empty() ? "" : "; ") +
                std::string(u.counterexample.empty() ? "open at " : "refuted at ") +
                subject.tape.places[operation.place].node + " (" + std::string(words(u.breach)) + ")";
@@ -57,9 +57,9 @@ TEST_P(ShippedGraph, IsProved) {
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
   const auto graph = front_end.check_file((graphs / GetParam()).string());
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
-  const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics);
+  const auto subjects = prove::subjects_of(*graph, front_end.diagnostics);
   ASSERT_TRUE(subjects) << front_end.diagnostics.text();
-  for (const analysis::Subject& subject : *subjects) {
+  for (const prove::Subject& subject : *subjects) {
     const std::string outcome = outcome_of(subject);
     if (GetParam().starts_with("source_forms/"))
       EXPECT_EQ(outcome.find("open at"), std::string::npos) << subject.name << ": " << outcome;
@@ -79,7 +79,7 @@ TEST(ShippedGraphs, OfTheSourceAreRefutedWhereTheyBreak) {
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
   const auto graph = front_end.check_file((graphs / "source_forms/ggx_d.json").string());
   ASSERT_NE(graph, nullptr);
-  const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics);
+  const auto subjects = prove::subjects_of(*graph, front_end.diagnostics);
   EXPECT_EQ(outcome_of(subjects->front()), "refuted at d (division by zero)");
 }
 

@@ -7,12 +7,12 @@
 #include "backends/reference/functions.h"
 #include "compiler/functions/library.h"
 #include "compiler/ir/evaluate.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::accuracy {
 
-using analysis::Kind;
-using analysis::Operation;
+using prove::Kind;
+using prove::Operation;
 using ir::Opcode;
 using reference::Real;
 
@@ -119,11 +119,11 @@ Real RealTape::dot(std::span<const uint32_t> in) const {
 }
 
 Real RealTape::row(const Operation& operation) const {
-  const analysis::Row& row = tape_.rows[operation.index];
+  const prove::Row& row = tape_.rows[operation.index];
   const ir::Function& function = tape_.module.functions[row.function];
   const auto in = tape_.operands_of(operation);
   // A row that works componentwise has the operands of one component: it computes all alike.
-  const bool componentwise = analysis::is_componentwise(row.rule->row);
+  const bool componentwise = prove::is_componentwise(row.rule->row);
   std::vector<Real> arguments, results(row.words);
   size_t next = 0;
   for (const ir::Parameter& parameter : function.parameters) {

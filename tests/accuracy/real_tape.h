@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tapes of the analysis, computed in 57 digits.
+// Tapes of the prover, computed in 57 digits.
 #pragma once
 
 #include <vector>
 
 #include "backends/reference/real.h"
-#include "compiler/analysis/sample.h"
+#include "compiler/prove/sample.h"
 
 namespace isoshade::accuracy {
 
@@ -13,7 +13,7 @@ namespace isoshade::accuracy {
 class RealTape {
  public:
   /// Both must outlive it.
-  RealTape(const analysis::Tape& tape, const analysis::Runner& floats) : tape_(tape), floats_(floats) {}
+  RealTape(const prove::Tape& tape, const prove::TapeRunner& floats) : tape_(tape), floats_(floats) {}
 
   /// Of the inputs that the runner ran last. `follow`: selects take the sides that floats took. Sums over lights are of
   /// one light, as the runner's.
@@ -25,14 +25,14 @@ class RealTape {
     reference::Real number;  ///< of a float
     uint32_t word = 0;       ///< of an integer or a boolean
   };
-  Cell value_of(const analysis::Operation& operation, uint32_t index, std::span<const uint32_t> inputs,
+  Cell value_of(const prove::Operation& operation, uint32_t index, std::span<const uint32_t> inputs,
                 bool follow);
-  Cell op(const analysis::Operation& operation, bool follow);
-  reference::Real row(const analysis::Operation& operation) const;
+  Cell op(const prove::Operation& operation, bool follow);
+  reference::Real row(const prove::Operation& operation) const;
   reference::Real dot(std::span<const uint32_t> in) const;
 
-  const analysis::Tape& tape_;
-  const analysis::Runner& floats_;
+  const prove::Tape& tape_;
+  const prove::TapeRunner& floats_;
   std::vector<Cell> cells_;
 };
 

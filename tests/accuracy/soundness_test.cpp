@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "compiler/analysis/document.h"
+#include "compiler/prove/document.h"
 #include "compiler/lower/lower.h"
 #include "runtime/lanes/lanes.h"
 #include "tests/accuracy/document_runs.h"
@@ -22,17 +22,17 @@
 namespace isoshade::accuracy {
 namespace {
 
-using analysis::Bound;
-using analysis::Box;
-using analysis::Proof;
-using analysis::Side;
-using analysis::Tape;
+using prove::Bound;
+using prove::Box;
+using prove::Proof;
+using prove::Side;
+using prove::Tape;
 using reference::Real;
 
 constexpr size_t normal_count = 500, full_count = 20'000;
 constexpr int normal_rows = 200, full_rows = 300;
 /// Small documents need little; what this does not prove is not looked at.
-constexpr analysis::Effort effort{.proof = 40'000, .error = 20'000, .tries = 20};
+constexpr prove::Effort effort{.proof = 40'000, .error = 20'000, .tries = 20};
 
 std::string decimal(double value) {
   char text[40];
@@ -56,14 +56,14 @@ std::string lie(const Bound& bound, double value, const Real& exact, bool is_flo
   return "";
 }
 
-/// Rows of inputs: those of the analysis, and numbers of special structure.
+/// Rows of inputs: those of the prover, and numbers of special structure.
 class Rows {
  public:
   Rows(const Tape& tape, uint64_t seed, int count) : tape_(tape), random_(seed) {
-    rows_ = analysis::samples(tape, analysis::Evaluator(tape).whole(), count);
+    rows_ = prove::samples(tape, prove::Evaluator(tape).whole(), count);
     for (size_t r = 0; r < rows_.size(); ++r)
       for (size_t i = 0; i < rows_[r].size(); ++i)
-        if (tape.inputs[i].vector == analysis::none && r % 3 != 0) rows_[r][i] = word(rows_[r], i);
+        if (tape.inputs[i].vector == prove::none && r % 3 != 0) rows_[r][i] = word(rows_[r], i);
   }
   const std::vector<std::vector<uint32_t>>& rows() const { return rows_; }
 
@@ -77,7 +77,7 @@ class Rows {
 };
 
 uint32_t Rows::word(const std::vector<uint32_t>& row, size_t i) {
-  const analysis::Input& input = tape_.inputs[i];
+  const prove::Input& input = tape_.inputs[i];
   if (input.scalar != ir::Scalar::floating) {
     if (random_() % 3 != 0) return row[i];
     const double value =
@@ -116,7 +116,7 @@ struct Count {
 
 class Examination {
  public:
-  Examination(const check::TypedGraph& graph, const analysis::Subject& subject, const Proof& proof,
+  Examination(const check::TypedGraph& graph, const prove::Subject& subject, const Proof& proof,
               uint64_t seed)
       : tape_(subject.tape),
         proof_(proof),
@@ -127,8 +127,8 @@ class Examination {
         random_(seed) {
     const bool is_function = graph.graph.kind == graph::DocumentKind::function;
     alone_ = is_function;
-    for (const analysis::Operation& o : tape_.operations)
-      if (o.kind == analysis::Kind::sum || o.kind == analysis::Kind::unknown) alone_ = false;
+    for (const prove::Operation& o : tape_.operations)
+      if (o.kind == prove::Kind::sum || o.kind == prove::Kind::unknown) alone_ = false;
     for (const ir::Parameter& p : runs_.parameters()) parameter_words_ += p.type.width;
   }
 
@@ -178,13 +178,13 @@ class Examination {
   }
 
   double computed(size_t output) const {
-    const analysis::Operation& o = tape_.operations[tape_.outputs[output].operation];
+    const prove::Operation& o = tape_.operations[tape_.outputs[output].operation];
     const uint32_t word = runs_.floats()[output];
     return o.scalar == ir::Scalar::floating ? static_cast<double>(std::bit_cast<float>(word))
                                             : static_cast<double>(static_cast<int32_t>(word));
   }
   Real exact(size_t output) const {
-    const analysis::Operation& o = tape_.operations[tape_.outputs[output].operation];
+    const prove::Operation& o = tape_.operations[tape_.outputs[output].operation];
     const reference::Cell& cell = runs_.exact()[output];
     return o.scalar == ir::Scalar::floating ? cell.number : Real(static_cast<int32_t>(cell.word));
   }
@@ -219,8 +219,8 @@ class Examination {
         } else if (is_float) {
           const double below = (at - side.lo) * std::exp2(-40 * unit()),
                        above = (side.hi - at) * std::exp2(-40 * unit());
-          side = {std::max(side.lo, analysis::rounded(at - below)),
-                  std::min(side.hi, analysis::rounded(at + above))};
+          side = {std::max(side.lo, prove::rounded(at - below)),
+                  std::min(side.hi, prove::rounded(at + above))};
           side = {std::min(side.lo, at), std::max(side.hi, at)};
         }
       }
@@ -243,7 +243,7 @@ class Examination {
   std::string tape(const std::vector<uint32_t>& row, Count& counted) {
     {
       const lanes::FpGuard guard;
-      for (const analysis::Runner::Broken& broken : runner_.run(row))
+      for (const prove::TapeRunner::Broken& broken : runner_.run(row))
         return tape_.places[tape_.operations[broken.operation].place].node + ": " +
                std::string(words(broken.breach));
     }
@@ -268,9 +268,9 @@ class Examination {
   const Tape& tape_;
   const Proof& proof_;
   DocumentRuns runs_;
-  analysis::Runner runner_;
+  prove::TapeRunner runner_;
   RealTape exact_tape_;
-  analysis::Evaluator evaluator_;
+  prove::Evaluator evaluator_;
   std::mt19937_64 random_;
   bool alone_ = false;
   size_t parameter_words_ = 0;
@@ -289,10 +289,10 @@ std::string examine(uint64_t seed, functions::Tier tier, int rows, Count& counte
     if (show) std::printf("%s\n", front_end.diagnostics.text().c_str());
     return "";
   }
-  const auto subjects = analysis::subjects_of(*graph, front_end.diagnostics, tier);
+  const auto subjects = prove::subjects_of(*graph, front_end.diagnostics, tier);
   if (!subjects) return "no tape";
-  const analysis::Subject& subject = subjects->front();
-  Proof proof = analysis::prove(subject.tape, effort);
+  const prove::Subject& subject = subjects->front();
+  Proof proof = prove::prove(subject.tape, effort);
   if (!proof.unproved.empty() || proof.vacuous) return "";
   ++counted.proved;
   for (std::vector<Bound>* const bounds : {&proof.outputs, &proof.followed})

@@ -28,7 +28,7 @@ const Backends& all_backends() {
     const bool wide = cpu::lane_count("16")->available();
     for (const char* lanes : {wide ? "16" : "8x2", "1"}) {
       if (!cpu::lane_count(lanes)->available()) continue;
-      cpu::Options options;
+      cpu::CpuOptions options;
       options.lanes = lanes;
       made->push_back(cpu::create(options, diagnostics));
     }
@@ -91,7 +91,7 @@ driver::Program Subject::compile(functions::Tier tier, bool reference) const {
   if (source_.empty()) return compile_row(tier);
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   options.reference = reference;
   options.tier = tier;

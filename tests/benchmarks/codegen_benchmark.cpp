@@ -24,7 +24,7 @@ void material(benchmark::State& state, bool new_library) {
   for (auto _ : state) {
     support::Diagnostics diagnostics;
     check::Library fresh(ISOSHADE_GRAPHS "/library");
-    driver::Options options;
+    driver::CompileOptions options;
     options.library = new_library ? &fresh : &shared;
     const auto source = std::make_shared<const support::SourceFile>(path, text);
     const auto effect = driver::compile_effect(source, options, diagnostics);

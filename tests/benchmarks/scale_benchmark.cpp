@@ -34,7 +34,7 @@ void nodes(benchmark::State& state) {
   for (auto _ : state) {
     support::Diagnostics diagnostics;
     check::Library library;
-    driver::Options options;
+    driver::CompileOptions options;
     options.library = &library;
     const auto source = std::make_shared<const support::SourceFile>("large.json", text);
     const auto program = driver::compile_function(source, options, diagnostics);

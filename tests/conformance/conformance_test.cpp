@@ -74,7 +74,7 @@ TEST_P(CpuLanes, ComputeTheInterpretersBits) {
   if (!cpu::lane_count(GetParam())->available())
     GTEST_SKIP() << "this machine has no registers of so many lanes";
   support::Diagnostics diagnostics;
-  cpu::Options options;
+  cpu::CpuOptions options;
   options.lanes = GetParam();
   const auto backend = cpu::create(options, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();
@@ -89,7 +89,7 @@ class Vulkan : public testing::TestWithParam<VulkanCase> {};
 
 TEST_P(Vulkan, ComputesTheInterpretersBits) {
   support::Diagnostics diagnostics;
-  vulkan::Options options;
+  vulkan::VulkanOptions options;
   std::tie(options.division, options.eval_stage) = GetParam();
   const auto backend = vulkan::create(options, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();

@@ -51,7 +51,7 @@ NodeCase compiled(const std::vector<Example>& examples) {
   }
   support::Diagnostics diagnostics;
   check::Library library;
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const auto source = std::make_shared<support::SourceFile>("nodes.json", nodes::function_document(examples));
   auto program = driver::compile_function(source, options, diagnostics);

@@ -62,7 +62,7 @@ TEST_P(NodesOnCpu, ComputeTheInterpretersBits) {
   if (!cpu::lane_count(GetParam())->available())
     GTEST_SKIP() << "this machine has no registers of so many lanes";
   support::Diagnostics diagnostics;
-  cpu::Options options;
+  cpu::CpuOptions options;
   options.lanes = GetParam();
   const auto backend = cpu::create(options, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();

@@ -176,7 +176,7 @@ void expect_same_bits(Seeds seeds, MakeBackend make_backend) {
 #ifdef ISOSHADE_VULKAN
 void expect_same_bits_on_vulkan(Seeds seeds, driver::Division division, vulkan::EvalStage stage) {
   expect_same_bits(seeds, [&](support::Diagnostics& diagnostics) {
-    vulkan::Options options;
+    vulkan::VulkanOptions options;
     options.division = division;
     options.eval_stage = stage;
     return vulkan::create(options, diagnostics);

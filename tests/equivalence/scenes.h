@@ -47,7 +47,7 @@ inline render::Plan plan(const scene::Scene& scene, int width = 0, int height = 
                          functions::Tier tier = functions::Tier::standard) {
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
-  render::Options options;
+  render::PlanOptions options;
   options.width = width;
   options.height = height;
   options.skip = skip;
@@ -74,7 +74,7 @@ inline backends::Image draw(const render::Plan& plan, backends::Backend& backend
 inline std::unique_ptr<backends::Backend> cpu_backend(const std::string& lanes = "", int threads = 0,
                                                       const std::string& compiler = "") {
   support::Diagnostics diagnostics;
-  cpu::Options options;
+  cpu::CpuOptions options;
   options.lanes = lanes;
   options.threads = threads;
   options.compiler = compiler;
@@ -87,7 +87,7 @@ inline std::unique_ptr<backends::Backend> cpu_backend(const std::string& lanes =
 inline std::unique_ptr<backends::Backend> vulkan_backend(
     std::optional<driver::Division> division = std::nullopt) {
   support::Diagnostics diagnostics;
-  vulkan::Options options;
+  vulkan::VulkanOptions options;
   options.division = division;
   auto backend = vulkan::create(options, diagnostics);
   if (backend == nullptr) ADD_FAILURE() << diagnostics.text();

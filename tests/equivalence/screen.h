@@ -29,7 +29,7 @@ class Screen {
          const std::vector<Pixels>& images) {
     support::Diagnostics diagnostics;
     check::Library library(ISOSHADE_GRAPHS "/library");
-    driver::Options options;
+    driver::CompileOptions options;
     options.library = &library;
     auto compiled = driver::compile_post(source, options, diagnostics);
     EXPECT_TRUE(compiled) << diagnostics.text();

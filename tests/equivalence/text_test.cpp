@@ -36,7 +36,7 @@ const std::vector<Texts>& shipped() {
     std::vector<Texts> texts;
     support::Diagnostics diagnostics;
     check::Library library(ISOSHADE_GRAPHS "/library");
-    driver::Options options;
+    driver::CompileOptions options;
     options.library = &library;
     const auto add = [&](const std::string& name, const driver::Program& program) {
       texts.push_back({name, program.stage, driver::glsl(program, driver::Division::native),
@@ -56,7 +56,7 @@ const std::vector<Texts>& shipped() {
         } else if (kind == graph::DocumentKind::effect) {
           const auto effect = driver::compile_effect(source, options, diagnostics);
           if (!effect) continue;
-          for (const driver::Pass& pass : effect->passes) {
+          for (const driver::EffectPass& pass : effect->passes) {
             add(place + effect->name + "_" + pass.name + "_vertex", pass.vertex);
             add(place + effect->name + "_" + pass.name + "_pixel", pass.pixel);
           }
@@ -133,7 +133,7 @@ TEST(Text, CppCompilesWithoutWarningsByBothCompilers) {
 TEST(Text, CompilesWhereAProgramReadsNothing) {
   support::Diagnostics diagnostics;
   check::Library library("");
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const auto source = [](const std::string& text) {
     return std::make_shared<support::SourceFile>("a.json", R"({"isoshade": 1, )" + text + "}");
@@ -210,7 +210,7 @@ TEST(Text, CompilesWhateverItsPartsAreCalled) {
   const std::string text =
       R"({"isoshade": 1, "function": "odd", "inputs": {"x": {"type": "float"}}, "nodes": {)" + nodes +
       R"(}, "outputs": {"out": ")" + previous + "\"}}";
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const auto program = driver::compile_function(std::make_shared<support::SourceFile>("odd/odd.json", text),
                                                 options, diagnostics);
@@ -242,7 +242,7 @@ TEST(Text, NoWordOfADocumentBecomesCode) {
       R"("}, "inputs": {"x": {"type": "float"}}, "nodes": {"a": {"type": "part.json", "x": "x"},
       "n": {"type": "expression", "code": "a +\n\t1.0e0 \n", "a": "a", "doc": ")" +
       evil + R"("}}, "outputs": {"out": "n"}})";
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const auto program =
       driver::compile_function(std::make_shared<support::SourceFile>(path, text), options, diagnostics);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/scene/gltf.h"
 #include "tests/fuzz/damage.h"
 #include "tests/fuzz/mutate.h"
@@ -15,7 +15,7 @@ namespace isoshade {
 namespace {
 
 using namespace testing;
-using support::check;
+using support::assert_that;
 
 std::vector<std::string> good() {
   const std::string nodes = square_json(
@@ -51,24 +51,24 @@ bool read(const std::string& bytes) {
   const std::string name = bytes.starts_with("glTF") ? "m.glb" : "m.gltf";
   std::filesystem::remove(folder.path() + "/" + name);  // a file system may wait where one is written anew
   const auto model = scene::load_gltf(folder.write(name, bytes), {}, diagnostics);
-  check(model.has_value() != diagnostics.has_errors(), "neither a mesh nor errors");
+  assert_that(model.has_value() != diagnostics.has_errors(), "neither a mesh nor errors");
   if (!model) return false;
   const scene::Mesh& mesh = model->mesh;
   size_t first_index = 0, first_vertex = 0;
   for (const scene::GltfPart& part : model->parts) {
-    check(part.first_index == first_index && part.first_vertex == first_vertex, "parts that do not follow");
-    check(part.index_count > 0 && part.index_count % 3 == 0, "a part that has no triangles");
+    assert_that(part.first_index == first_index && part.first_vertex == first_vertex, "parts that do not follow");
+    assert_that(part.index_count > 0 && part.index_count % 3 == 0, "a part that has no triangles");
     first_index += part.index_count;
     first_vertex += part.vertex_count;
-    check(first_index <= mesh.indices.size(), "a part beyond the indices");
+    assert_that(first_index <= mesh.indices.size(), "a part beyond the indices");
     for (size_t i = part.first_index; i < first_index; ++i)
-      check(mesh.indices[i] >= part.first_vertex && mesh.indices[i] < first_vertex,
+      assert_that(mesh.indices[i] >= part.first_vertex && mesh.indices[i] < first_vertex,
             "an index of another part");
   }
-  check(first_index == mesh.indices.size(), "indices of no part");
-  check(first_vertex * lower::vertex_word::stride == mesh.vertices.size(), "vertices of no part");
+  assert_that(first_index == mesh.indices.size(), "indices of no part");
+  assert_that(first_vertex * lower::vertex_word::stride == mesh.vertices.size(), "vertices of no part");
   for (const float value : mesh.vertices)
-    check(std::isnormal(value) || value == 0, "a vertex that is no number");
+    assert_that(std::isnormal(value) || value == 0, "a vertex that is no number");
   return true;
 }
 

@@ -5,37 +5,37 @@
 #include <fstream>
 #include <iterator>
 
-#include "compiler/support/check.h"
+#include "compiler/support/assert.h"
 #include "runtime/scene/texture.h"
 #include "tests/fuzz/reader.h"
 
 namespace isoshade {
 
-using support::check;
+using support::assert_that;
 
 bool read_image(const std::string& bytes) {
   const auto header = scene::read_header(bytes);
-  check(header.found.has_value() == header.reason.empty(), "neither a header nor a reason");
+  assert_that(header.found.has_value() == header.reason.empty(), "neither a header nor a reason");
   auto decoded = scene::decode_image(bytes);
-  check(decoded.found.has_value() == decoded.reason.empty(), "neither an image nor a reason");
+  assert_that(decoded.found.has_value() == decoded.reason.empty(), "neither an image nor a reason");
   if (!decoded.found) return false;
   scene::FileImage& image = *decoded.found;
-  check(header.found.has_value(), "an image without a header");
-  check(header.found->width == image.width && header.found->height == image.height,
+  assert_that(header.found.has_value(), "an image without a header");
+  assert_that(header.found->width == image.width && header.found->height == image.height,
         "an image of another size");
-  check(header.found->bytes == image.has_bytes(), "an image of another kind");
+  assert_that(header.found->bytes == image.has_bytes(), "an image of another kind");
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  check(4 * image.bytes.size() + image.rgba.size() == 4 * pixels, "an image of odd size");
-  check(image.depth.empty() || image.depth.size() == pixels, "a depth of odd size");
+  assert_that(4 * image.bytes.size() + image.rgba.size() == 4 * pixels, "an image of odd size");
+  assert_that(image.depth.empty() || image.depth.size() == pixels, "a depth of odd size");
   size_t ends = 0;  // a condition on each value
   for (const float depth : image.depth) ends += depth == 0;
-  check(ends <= pixels, "impossible");
+  assert_that(ends <= pixels, "impossible");
   if (pixels > 1'000'000) return true;
   const scene::TextureLevel level = scene::linear_level(std::move(image), bytes.size() % 2 == 0);
   for (const float value : level.texels)
-    check(std::isnormal(value) || value == 0, "a texel that is no number");
+    assert_that(std::isnormal(value) || value == 0, "a texel that is no number");
   for (const float value : scene::half_size(level).texels)
-    check(std::isnormal(value) || value == 0, "a mean of texels that is no number");
+    assert_that(std::isnormal(value) || value == 0, "a mean of texels that is no number");
   return true;
 }
 

@@ -72,7 +72,7 @@ class Compiler {
   }
 
   check::Library library_;
-  driver::Options options_;
+  driver::CompileOptions options_;
   support::Diagnostics diagnostics_;
   Made made_;
 };
@@ -285,7 +285,7 @@ std::vector<std::string> sample_texts() {
   std::vector<std::string> texts;
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_ROOT "/graphs/library");
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   const auto add = [&](const driver::Program& program) {
     texts.push_back(driver::glsl(program, driver::Division::exact));
@@ -303,7 +303,7 @@ std::vector<std::string> sample_texts() {
                    {"materials/gltf_pbr.json", "materials/derivatives.json", "effects/terrain.json"});
   for (const char* path : effects)
     if (const auto effect = driver::compile_effect(read(path), options, diagnostics))
-      for (const driver::Pass& pass : effect->passes) {
+      for (const driver::EffectPass& pass : effect->passes) {
         add(pass.vertex);
         add(pass.pixel);
       }

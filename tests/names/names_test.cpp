@@ -13,9 +13,9 @@ namespace isoshade::names {
 namespace {
 
 /// Compiles documents and collects their texts; at the end of a place every compiler takes all of them.
-class Place {
+class NameCase {
  public:
-  explicit Place(std::string name) : name_(std::move(name)) {}
+  explicit NameCase(std::string name) : name_(std::move(name)) {}
 
   void add(const Made& made) {
     ASSERT_TRUE(made.programs.size() > 0) << made.messages;
@@ -23,7 +23,7 @@ class Place {
   }
   void count(size_t words) { words_ += words; }
 
-  ~Place() {
+  ~NameCase() {
     texts_.compile();
     std::printf("%-22s %5zu words: glslang %4zu texts, g++ %4zu, clang++ %4zu\n", name_.c_str(), words_,
                 texts_.glsl_count(), texts_.cpp_count(), texts_.clang_count());
@@ -37,7 +37,7 @@ class Place {
 };
 
 TEST(Names, OfFunctionsAndTheirFilesInputsNodesAndSingleOutputsAreTaken) {
-  Place place("function");
+  NameCase place("function");
   for (const Chunk& chunk : chunks(words(), 120)) {
     place.count(chunk.size());
     place.add(functions_called(chunk));
@@ -45,7 +45,7 @@ TEST(Names, OfFunctionsAndTheirFilesInputsNodesAndSingleOutputsAreTaken) {
 }
 
 TEST(Names, OfManyInputsAndOutputsAreTaken) {
-  Place place("inputs and outputs");
+  NameCase place("inputs and outputs");
   for (const Chunk& chunk : chunks(words(), 100)) {
     place.count(chunk.size());
     place.add(function_of_many(chunk));
@@ -53,7 +53,7 @@ TEST(Names, OfManyInputsAndOutputsAreTaken) {
 }
 
 TEST(Names, OfNodesAreTaken) {
-  Place place("nodes");
+  NameCase place("nodes");
   for (const Chunk& chunk : chunks(words(), 250)) {
     place.count(chunk.size());
     place.add(nodes_called(chunk));
@@ -61,7 +61,7 @@ TEST(Names, OfNodesAreTaken) {
 }
 
 TEST(Names, OfEffectsPassesParametersAndValuesAreTaken) {
-  Place place("effects");
+  NameCase place("effects");
   for (const Chunk& chunk : chunks(words(), 60)) {
     place.count(chunk.size());
     place.add(effect_with_parameters(chunk));
@@ -69,7 +69,7 @@ TEST(Names, OfEffectsPassesParametersAndValuesAreTaken) {
 }
 
 TEST(Names, OfImagesAndFilesOfEffectsAreTaken) {
-  Place place("images of effects");
+  NameCase place("images of effects");
   for (const Chunk& chunk : chunks(words(), 120)) {
     place.count(chunk.size());
     place.add(effect_with_images(chunk));
@@ -77,7 +77,7 @@ TEST(Names, OfImagesAndFilesOfEffectsAreTaken) {
 }
 
 TEST(Names, OfPostsTheirParametersAndSumsAreTaken) {
-  Place place("posts");
+  NameCase place("posts");
   for (const Chunk& chunk : chunks(words(), 60)) {
     place.count(chunk.size());
     place.add(post_with_parameters(chunk));
@@ -85,7 +85,7 @@ TEST(Names, OfPostsTheirParametersAndSumsAreTaken) {
 }
 
 TEST(Names, OfImagesOfPostsAreTaken) {
-  Place place("images of posts");
+  NameCase place("images of posts");
   for (const Chunk& chunk : chunks(words(), 8)) {
     place.count(chunk.size());
     place.add(post_with_images(chunk));

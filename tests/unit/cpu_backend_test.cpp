@@ -35,7 +35,7 @@ const std::string& cache() {
 
 std::unique_ptr<Backend> backend(const std::string& lanes, int threads) {
   Diagnostics diagnostics;
-  Options options;
+  CpuOptions options;
   options.lanes = lanes;
   options.threads = threads;
   options.cache = cache();
@@ -182,7 +182,7 @@ TEST(CpuBackend, ReportsLanesThatDoNotExist) {
   for (const char* lanes : {"3", "32", "lots", "16x2"}) {
     if (lane_count(lanes) && lane_count(lanes)->available()) continue;
     Diagnostics diagnostics;
-    Options options;
+    CpuOptions options;
     options.lanes = lanes;
     EXPECT_FALSE(create(options, diagnostics));
     ASSERT_EQ(diagnostics.all().size(), 1u);

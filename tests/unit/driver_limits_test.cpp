@@ -52,7 +52,7 @@ class Limits : public testing::Test {
   }
 
   check::Library library{"library"};
-  Options options;
+   CompileOptions options;
   support::Diagnostics diagnostics;
 };
 

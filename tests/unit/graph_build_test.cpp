@@ -132,7 +132,7 @@ TEST(Build, PostHasOutputs) {
 TEST(Build, PlacesAreThoseOfTheText) {
   const std::string text = with_nodes(R"("a": {"type": "add", "in1": 1, "in2": "x"})");
   const Graph graph = graph_of(text);
-  const auto at = [&](Place place) { return text.substr(place.begin, place.end - place.begin); };
+  const auto at = [&](TextRange place) { return text.substr(place.begin, place.end - place.begin); };
   EXPECT_EQ(at(graph.name_place), "\"f\"");
   EXPECT_EQ(at(graph.inputs[0].name_place), "\"x\"");
   EXPECT_EQ(at(graph.inputs[0].place), R"({"type": "float"})");

@@ -91,7 +91,7 @@ class Agreement : public testing::TestWithParam<const char*> {
   void SetUp() override {
     if (!cpu::lane_count(GetParam())->available()) GTEST_SKIP() << "this machine has no such registers";
     static const cpu::TestFolder cache;
-    cpu::Options options;
+    cpu::CpuOptions options;
     options.lanes = GetParam();
     options.cache = cache.path();
     Diagnostics diagnostics;

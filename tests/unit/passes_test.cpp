@@ -150,7 +150,7 @@ TEST(Pipeline, DumpsAfterEveryPassAndGivesReasons) {
   run(optimisations(), module, entries, functions::Tier::standard,
       [&](std::string_view name, const Module&) { EXPECT_EQ(name, optimisations()[dumps++].name); });
   EXPECT_EQ(dumps, optimisations().size());
-  for (const Pass& pass : optimisations()) EXPECT_FALSE(pass.reason.empty());
+  for (const ModulePass& pass : optimisations()) EXPECT_FALSE(pass.reason.empty());
 }
 
 TEST(Specialize, GrowsNoModuleWithoutBound) {

@@ -11,7 +11,7 @@ namespace {
 std::optional<driver::Program> compile(const std::string& text, bool reference) {
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
-  driver::Options options;
+  driver::CompileOptions options;
   options.library = &library;
   options.reference = reference;
   const auto source = std::make_shared<support::SourceFile>(ISOSHADE_GRAPHS "/of_a_test.json", text);
@@ -69,7 +69,7 @@ TEST(ReferenceBackend, GivesBitsOfWhatWouldBeStored) {
 render::Plan small_plan(const std::string& path, bool reference) {
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
-  render::Options options;
+  render::PlanOptions options;
   options.width = 64;
   options.height = 36;
   options.compiler.library = &library;
@@ -108,7 +108,7 @@ TEST(ReferenceBackend, DrawsSeveralSamplesAPixel) {
   scene::Scene scene = equivalence::load(equivalence::scene_path("material_balls"));
   scene.samples = 16;
   const backends::Image image = equivalence::draw(equivalence::plan(scene, 12, 7), *interpreter::create());
-  render::Options options;
+  render::PlanOptions options;
   options.width = 12;
   options.height = 7;
   check::Library library(ISOSHADE_GRAPHS "/library");

@@ -80,7 +80,7 @@ class FiniteTest : public ::testing::Test {
     if (!scene) return image;
     check::Library library;
     library.allow_outside(true);
-    render::Options options;
+    render::PlanOptions options;
     options.compiler.library = &library;
     const auto plan = render::plan_frame(*scene, options, diagnostics_);
     if (!plan) return image;

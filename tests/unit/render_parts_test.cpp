@@ -69,7 +69,7 @@ class Parts : public ::testing::Test {
 
   testing::Folder folder_;
   check::Library library_;
-  render::Options options_;
+  render::PlanOptions options_;
   support::Diagnostics diagnostics_;
   std::optional<scene::Scene> scene_;
 };
@@ -82,7 +82,7 @@ TEST_F(Parts, HaveTheColorsOfTheirMaterialsAndTheSameBitsOnAllBackends) {
   EXPECT_EQ(color_of(image, 1), own);
   EXPECT_EQ(color_of(image, 2), violet);
   EXPECT_EQ(color_of(image, 3), green);
-  cpu::Options options;
+  cpu::CpuOptions options;
   options.cache = folder_.path() + "/cache";
   const auto cpu = cpu::create(options, diagnostics_);
   ASSERT_TRUE(cpu) << diagnostics_.text();

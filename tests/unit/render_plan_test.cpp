@@ -69,7 +69,7 @@ class PlanTest : public ::testing::Test {
 
   fs::path folder_;
   check::Library library_;
-  render::Options options_;
+  render::PlanOptions options_;
   support::Diagnostics diagnostics_;
   std::optional<scene::Scene> scene_;
 };

@@ -83,7 +83,7 @@ class PostsTest : public ::testing::Test {
 
   fs::path folder_;
   check::Library library_;
-  render::Options options_;
+  render::PlanOptions options_;
   support::Diagnostics diagnostics_;
   std::optional<scene::Scene> scene_;
   render::DrawStats stats_;

@@ -119,7 +119,7 @@ class SamplesTest : public ::testing::Test {
 
   fs::path folder_;
   check::Library library_;
-  render::Options options_;
+  render::PlanOptions options_;
   render::DrawStats stats_;
   support::Diagnostics diagnostics_;
 };

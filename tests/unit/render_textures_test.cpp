@@ -83,7 +83,7 @@ class Textures : public ::testing::Test {
 
   testing::Folder folder_;
   check::Library library_;
-  render::Options options_;
+  render::PlanOptions options_;
   support::Diagnostics diagnostics_;
   std::optional<scene::Scene> scene_;
 };

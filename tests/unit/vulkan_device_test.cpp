@@ -44,7 +44,7 @@ TEST_F(Devices, TheDefaultPassesTheProbe) {
 }
 
 TEST_F(Devices, LavapipeDividesNatively) {
-  Options options;
+  VulkanOptions options;
   options.device = "llvmpipe";
   const auto backend = create(options, diagnostics);
   if (backend == nullptr) GTEST_SKIP() << "lavapipe is not installed";
@@ -58,7 +58,7 @@ TEST_F(Devices, AreChosenByIndexAndByPartOfTheNameInAnyCase) {
   std::string part = devices[0].name.substr(0, 5);
   for (char& c : part) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   for (const std::string& selector : {std::string("0"), part}) {
-    Options options;
+    VulkanOptions options;
     options.device = selector;
     options.division = driver::Division::exact;
     const auto backend = create(options, diagnostics);
@@ -81,7 +81,7 @@ TEST_F(Devices, MatchTheirNumberOrAPartOfTheirNameInAnyCase) {
 TEST_F(Devices, UnknownOnesAreReportedWithThoseThereAre) {
   for (const std::string selector : {"no such device", "99", "-1", "12345678901234567890"}) {
     support::Diagnostics report;
-    Options options;
+    VulkanOptions options;
     options.device = selector;
     EXPECT_EQ(create(options, report), nullptr) << selector;
     ASSERT_EQ(report.all().size(), 1u) << report.text();

@@ -45,7 +45,7 @@ struct HandWritten {
 
   explicit HandWritten(Texts by_name, EvalStage stage = EvalStage::fragment) : texts(std::move(by_name)) {
     setenv("ISOSHADE_VALIDATION", "1", 1);
-    Options options;
+    VulkanOptions options;
     options.eval_stage = stage;
     options.glsl = [this](const driver::Program& program, driver::Division) {
       return texts.at(program.stage == driver::Stage::depth ? "depth" : program.name);

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `isoshade check` asks of a document: the tapes of what it computes, over the inputs that it allows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/prove/prove.h"
+#include "compiler/check/typed_graph.h"
+#include "compiler/lower/lower.h"
+#include "compiler/support/diagnostics.h"
+
+namespace isoshade::prove {
+
+/// Inputs without "min" or "max" go so far, and so do positions; see graphs/README.md for what else is assumed.
+inline constexpr double default_limit = 1e6;
+
+/// One thing that a document computes: a function, or the colour of a pass, or where it moves vertices to.
+struct Subject {
+  std::string name;  ///< of a function or post, its own; else "pass base", "pass outline, position"
+  Tape tape;
+  lower::NodesOfOrigins nodes;  ///< where the places of the tape are
+};
+
+/// Nothing, and a report, where a document is too large.
+std::optional<std::vector<Subject>> subjects_of(const check::TypedGraph& graph,
+                                                support::Diagnostics& diagnostics,
+                                                functions::Tier tier = functions::Tier::standard);
+
+/// How much is not proved of a subject, by what is reported.
+struct NotProved {
+  size_t refuted = 0, undecided = 0;
+  size_t shown = 0;  ///< of both
+  size_t later = 0;  ///< undecided, of Proof::later
+};
+
+enum class Detail : uint8_t {
+  brief,  ///< for people: the first ones, with a few of their inputs
+  all,    ///< for tools
+};
+
+/// Reports what is not proved, at the node where it happens: components of one operation once, and so an operation of a
+/// function that several nodes call. Refuted operations first.
+NotProved report(const check::TypedGraph& graph, const Subject& subject, const Proof& proof,
+                 support::Diagnostics& diagnostics, Detail detail = Detail::brief);
+
+}  // namespace isoshade::prove

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A function as scalar operations, each made once, in the order of the module. What follows puts them in the order
+// of a tape.
+#pragma once
+
+#include <array>
+#include <map>
+#include <set>
+
+#include "compiler/prove/tape.h"
+
+namespace isoshade::prove {
+
+using Words = std::vector<uint32_t>;  ///< of a value: one operation a component
+
+/// Operations by what they compute, and what is known of vectors.
+class Pool {
+ public:
+  explicit Pool(Tape& tape) : tape_(tape) {}
+
+  /// The operation, made if there is none like it.
+  uint32_t make(Operation operation, std::span<const uint32_t> operands);
+  uint32_t make_op(ir::Opcode op, std::initializer_list<uint32_t> operands, ir::Scalar scalar,
+                   uint32_t place);
+  uint32_t constant(ir::Scalar scalar, uint32_t bits);
+  /// The operation if it was made, or none.
+  uint32_t find(const Operation& operation, std::span<const uint32_t> operands) const;
+  bool too_long() const { return tape_.operations.size() > most_operations; }
+
+  Tape& tape() { return tape_; }
+  const Tape& tape() const { return tape_; }
+  const Operation& operator[](uint32_t operation) const { return tape_.operations[operation]; }
+  std::span<const uint32_t> operands(uint32_t operation) const {
+    return tape_.operands_of(tape_.operations[operation]);
+  }
+
+  struct Product {
+    Words left, right;
+  };
+  std::set<Words> units;             ///< of length 1
+  std::set<Words> at_most_units;     ///< of length 1, or zeros
+  std::map<Words, Product> crosses;  ///< which vectors a cross product is of
+
+ private:
+  static std::vector<uint32_t> key(const Operation& operation, std::span<const uint32_t> operands);
+
+  Tape& tape_;
+  std::map<std::vector<uint32_t>, uint32_t> made_;
+};
+
+/// Inlines the function into the pool's tape; its outputs are set. False if it became too long.
+bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
+             const std::function<std::vector<Given>(std::string_view)>& outside);
+
+/// Reorders the operations so that what decides a select stands before what only one of its sides needs; adds
+/// guards, what they say of values, and facts.
+void put_in_order(Pool& pool);
+
+}  // namespace isoshade::prove
