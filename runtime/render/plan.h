@@ -24,7 +24,7 @@ struct PlanOptions {
   int width = 0;  ///< of the image; 0: the scene's own size
   int height = 0;
   bool skip = true;          ///< leave out what cannot be seen; off, the image has the same bits
-  driver::PlanOptions compiler;  ///< `lights` is set by the scene
+  driver::CompileOptions compiler;  ///< `lights` is set by the scene
 };
 
 /// What a draw of the frame is of.
