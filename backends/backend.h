@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compiler/driver/program.h"
+#include "compiler/interface/pass_state.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::backends {
@@ -25,8 +26,6 @@ struct Image {
   void resize(int w, int h);
 };
 
-enum class Cull : uint8_t { none, back, front };
-
 /// One part of an object under one pass.
 struct Draw {
   uint32_t vertex_program = 0;  ///< indices into Frame::programs
@@ -35,9 +34,7 @@ struct Draw {
   uint32_t first_vertex = 0;  ///< its vertices in Frame::vertices
   uint32_t vertex_count = 0;
   std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
-  Cull cull = Cull::back;
-  bool over =
-      false;  ///< drawn over what is nearer, too; else the nearest is seen, of equal ones the first drawn
+  interface::PassState state;         ///< as its vertices are wound, whatever the transform does
 };
 
 /// What takes the most room in an array of a frame, for messages; empty if there is nothing.

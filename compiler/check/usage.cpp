@@ -110,7 +110,7 @@ void check_colors(Work& work) {
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
     const auto* attribute = node.row != nullptr ? std::get_if<nodes::Surface>(&node.row->lowering) : nullptr;
-    if (attribute == nullptr || !nodes::is_corner_normal(*attribute)) continue;
+    if (attribute == nullptr || interface::row(*attribute).stages != interface::SurfaceStages::vertices) continue;
     const graph::Node& source = work.graph().nodes[*it];
     work.report(Id::misplaced_node, source.type_place,
                 "the \"color\" of a pass cannot depend on " + quote(source.label()))

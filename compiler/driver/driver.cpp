@@ -8,7 +8,6 @@
 #include "compiler/lower/screen.h"
 #include "compiler/passes/derivatives.h"
 #include "compiler/passes/pipeline.h"
-#include "compiler/support/assert.h"
 
 namespace isoshade::driver {
 
@@ -101,47 +100,53 @@ std::vector<Image> images_of(const check::TypedGraph& typed) {
   return images;
 }
 
-/// Where each parameter of the emitted function lies in the object's record. A matrix is passed as its columns.
-lower::FieldOffsets offsets_of(const check::TypedGraph& typed, const std::vector<Field>& parameters,
-                               const std::vector<Image>& images, int word = lower::object_word::parameters) {
-  lower::FieldOffsets offsets;
-  const std::vector<std::vector<std::string>> names = lower::parameter_names(typed);
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    const int words = parameters[i].words;
-    if (words == 0) continue;  // a file's name
-    const int columns = static_cast<int>(names[i].size());
-    for (int c = 0; c < columns; ++c)
-      offsets.emplace_back(names[i][static_cast<size_t>(c)], word + words / columns * c);
-    word += words;
+/// Where the words of an effect's or post's record begin: parameters, then one word an image, then one a sum over taps.
+interface::RecordLayout layout_of(const std::vector<Field>& parameters, size_t images,
+                                  const std::vector<lower::TapSum>& sums, int word) {
+  interface::RecordLayout layout;
+  for (const Field& parameter : parameters) {
+    layout.inputs.push_back(parameter.words == 0 ? -1 : word);  // the name of a file has no words
+    word += parameter.words;
   }
-  for (const Image& image : images) offsets.emplace_back(image.slot.name, word++);
-  return offsets;
+  for (size_t i = 0; i < images; ++i) layout.images.push_back(word++);
+  for (const lower::TapSum& sum : sums) layout.taps.emplace_back(sum.node, word++);
+  return layout;
+}
+interface::RecordLayout layout_of(const Effect& effect) {
+  return layout_of(effect.parameters, effect.images.size(), {}, lower::object_word::parameters);
+}
+
+/// The module of what a document computes, with the buffers that kernels load from.
+lower::Lowered lower_with_buffers(const check::TypedGraph& typed, const lower::LowerOptions& options = {}) {
+  lower::Lowered lowered = lower::lower(typed, options);
+  lowered.module.buffers = lower::frame_module().buffers;
+  return lowered;
 }
 
 Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                        const CompileOptions& options) {
   Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
-  uint32_t kernel = 0;
   if (typed.position_of(pass) == nullptr) {
-    kernel = lower::add_vertex_kernel(program.module);
-  } else {
-    program.module = lower::lower(typed, {pass, lower::PassPart::position});
-    program.module.buffers = lower::frame_module().buffers;
-    kernel =
-        lower::add_moving_vertex_kernel(program.module, offsets_of(typed, effect.parameters, effect.images),
-                                        typed.graph.passes[pass].position_space);
+    finish(program, lower::add_vertex_kernel(program.module), options, typed.graph.source);
+    return program;
   }
+  lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::position});
+  const uint32_t kernel = lower::add_moving_vertex_kernel(lowered.module, lowered.interface, layout_of(effect),
+                                                          typed.graph.passes[pass].position_space);
+  program.module = std::move(lowered.module);
+  program.bindings = std::move(lowered.interface.bindings);
   finish(program, kernel, options, typed.graph.source);
   return program;
 }
 
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                       const CompileOptions& options) {
-  Program program{lower::Stage::pixel, typed.graph.name, typed.document, {}, 0, {}, {}, options.tier};
-  program.module = lower::lower(typed, {pass});
-  program.module.buffers = lower::frame_module().buffers;
-  const uint32_t kernel = lower::add_pixel_kernel(
-      program.module, offsets_of(typed, effect.parameters, effect.images), options.lights);
+  lower::Lowered lowered = lower_with_buffers(typed, {pass});
+  const uint32_t kernel =
+      lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), options.lights);
+  Program program{lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
+                  options.tier};
+  program.bindings = std::move(lowered.interface.bindings);
   finish(program, kernel, options, typed.graph.source);
   return program;
 }
@@ -165,7 +170,7 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   Effect effect{typed->graph.name, typed->document, parameters_of(*typed), images_of(*typed), {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    effect.passes.push_back({pass.name, pass.cull, pass.depth, pass.position.has_value(), pass.enabled,
+    effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), pass.enabled,
                              vertex_program(*typed, i, effect, options),
                              pixel_program(*typed, i, effect, options)});
   }
@@ -178,28 +183,21 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
   if (typed == nullptr) return std::nullopt;
   Post post{
       typed->graph.name, typed->document, parameters_of(*typed), {}, {}, {}, false, typed->graph.enabled, {}};
-  std::vector<std::string> prefixes{lower::image_prefix(*typed, 0)};
-  for (const graph::InputImage& image : typed->graph.images) {
-    post.images.push_back(image.name);
-    prefixes.push_back(lower::image_prefix(*typed, prefixes.size()));
+  for (const graph::InputImage& image : typed->graph.images) post.images.push_back(image.name);
+  lower::Lowered lowered = lower_with_buffers(*typed);
+  const interface::Interface& interface = lowered.interface;
+  for (size_t i = 0; i <= post.images.size(); ++i)
+    post.reads.push_back(interface.find(interface::Host::image, lower::post_image(i)) != ir::none);
+  post.reads_depth = interface.find(interface::Host::depth, lower::depth_image) != ir::none;
+  const std::vector<lower::TapSum> sums = lower::tap_sums(*typed);
+  for (const lower::TapSum& sum : sums) {
+    post.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
+    post.taps.back().value = {static_cast<float>(sum.taps)};
   }
-  ir::Module module = lower::lower(*typed);
-  const auto reads = [&](std::string_view prefix) {
-    return module.find(std::string(prefix) + "_at") != ir::none;
-  };
-  for (const std::string& prefix : prefixes) post.reads.push_back(reads(prefix));
-  post.reads_depth = reads(lower::depth_prefix);
-  lower::FieldOffsets record = offsets_of(*typed, post.parameters, {}, 0);
-  int word = 0;
-  for (const Field& parameter : post.parameters) word += parameter.words;
-  for (const auto& [node, count] : lower::tap_counts(*typed)) {
-    post.taps.push_back(field(node, graph::Type::integer));
-    post.taps.back().value = {static_cast<float>(count)};
-    record.emplace_back(lower::tap_field(node), word++);
-  }
-  module.buffers = lower::frame_module().buffers;
-  const uint32_t kernel = lower::add_post_kernel(module, prefixes, record);
-  post.program = {lower::Stage::post, post.name, post.document, std::move(module), 0, {}, {}, options.tier};
+  const uint32_t kernel =
+      lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, 0, sums, 0));
+  post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {}, options.tier};
+  post.program.bindings = std::move(lowered.interface.bindings);
   finish(post.program, kernel, options, typed->graph.source);
   return post;
 }
@@ -208,13 +206,11 @@ std::optional<Program> compile_function(const support::Source& source, const Com
                                         Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::function, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
-  ir::Module module = lower::lower(*typed);
-  module.buffers = lower::frame_module().buffers;
-  const uint32_t function = module.find(lower::entry_name(*typed));
-  support::assert_that(function != ir::none, "lowering made no function");
-  Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(module), 0, {}, {},
+  lower::Lowered lowered = lower_with_buffers(*typed);
+  Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(lowered.module), 0, {}, {},
                   options.tier};
-  finish(program, lower::add_eval_kernel(program.module, function), options, typed->graph.source);
+  program.bindings = std::move(lowered.interface.bindings);
+  finish(program, lower::add_eval_kernel(program.module, lowered.interface.entry), options, typed->graph.source);
   for (const graph::Input& input : typed->graph.inputs) {
     program.inputs.push_back(field(input.name, input.type));
     program.inputs.back().min = input.min;

@@ -42,8 +42,7 @@ struct Image {
 /// One pass of an effect.
 struct EffectPass {
   std::string name;
-  graph::Cull cull = graph::Cull::back;
-  graph::DepthTest depth = graph::DepthTest::nearer;
+  interface::PassState state;
   bool moves_vertices = false;
   std::optional<size_t> enabled;  ///< in Effect::parameters: it is drawn where that is not 0
   Program vertex;

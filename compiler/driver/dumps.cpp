@@ -57,8 +57,8 @@ std::string text(const check::TypedGraph& graph, const check::Operand& operand) 
     case check::Operand::From::nothing: return "nothing";
     case check::Operand::From::setting: return fmt::format("#{}", operand.index);
     case check::Operand::From::surface:
-      for (const lower::SurfaceField& field : lower::surface_fields())
-        if (field.value.index() == operand.index) out = "surface." + field.name;
+      for (const interface::SurfaceValue value : interface::surface_values())
+        if (value.index() == operand.index) out = "surface." + interface::name(value);
       break;
     case check::Operand::From::file: out = "\"" + graph.files[operand.index].path + "\""; break;
     case check::Operand::From::words: out = fmt::format("words[{}]", operand.index); break;

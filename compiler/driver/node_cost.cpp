@@ -17,7 +17,7 @@ namespace isoshade::driver {
 
 namespace {
 
-ir::Module lowered(const nodes::Example& example) {
+lower::Lowered lowered(const nodes::Example& example) {
   support::Diagnostics diagnostics;
   const auto source =
       std::make_shared<support::SourceFile>("example.json", nodes::function_document(std::span(&example, 1)));
@@ -45,9 +45,9 @@ std::string error_of_row(std::string_view row, functions::Tier tier) {
 
 NodeCost cost_of(const nodes::Example& example, functions::Tier tier) {
   NodeCost cost;
-  ir::Module module = lowered(example);
+  auto [module, interface] = lowered(example);
   std::set<std::string> calls;
-  uint32_t entry = module.find("example");
+  const uint32_t entry = interface.entry;
   for (const ir::Instruction& instruction : module.functions[entry].instructions) {
     cost.own_operations += is_operation(instruction.op) ? 1 : 0;
     if (instruction.op != ir::Opcode::call) continue;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/functions/tier.h"
+#include "compiler/interface/binding.h"
 #include "compiler/ir/module.h"
 #include "compiler/lower/stages.h"
 #include "compiler/support/source.h"
@@ -37,6 +38,8 @@ struct Program {
   std::vector<Field> results;  ///< eval: output columns
   functions::Tier tier = functions::Tier::standard;
   support::Source source = nullptr;  ///< of the document, for messages; null: it has none
+  /// What the document's function takes, as lowered; empty where there is none.
+  std::vector<interface::Binding> bindings = {};
 };
 
 /// How `/` and `sqrt` are computed: by the device, or by Newton steps and an exact integer residual.

@@ -110,8 +110,7 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
   // Library functions and stages are named by us, and first.
   const auto is_ours = [](const ir::Function& function) {
-    return function.document.empty() || function.name == lower::shade_name ||
-           function.name == lower::move_vertex_name || function.name == lower::post_name;
+    return function.document.empty() || interface::is_kernel_function(function.name);
   };
   for (const uint32_t index : *order)
     if (is_ours(module.functions[index])) texts[index].name = globals.take_own(module.functions[index].name);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/graph/document.h"
+#include "compiler/interface/pass_state.h"
 
 namespace isoshade::graph {
 
@@ -138,16 +139,13 @@ struct Output {
   TextRange name_place;
 };
 
-enum class Cull : uint8_t { none, back, front };
-enum class DepthTest : uint8_t { nearer, always };
 /// What the coordinates of a pass's `position` count from.
 enum class PositionSpace : uint8_t { world, object, view };
 
 /// One drawing of the mesh by an effect.
 struct Pass {
   std::string name;
-  Cull cull = Cull::back;
-  DepthTest depth = DepthTest::nearer;
+  interface::PassState state;
   std::optional<Link> position;  ///< vertex output; without it the mesh's own position
   PositionSpace position_space = PositionSpace::world;
   std::optional<uint32_t> enabled;  ///< in Graph::inputs: it is drawn where that parameter is not 0

@@ -44,9 +44,8 @@ void GraphBuilder::read_pass(const Json& json) {
   pass.place = place_of(json);
   ObjectReader reader(document_, json, "a pass", diagnostics_);
   pass.name = reader.string("name");
-  pass.cull =
-      static_cast<Cull>(reader.choice("cull", {"none", "back", "front"}, static_cast<size_t>(Cull::back)));
-  pass.depth = static_cast<DepthTest>(reader.choice("depth", {"nearer", "always"}, 0));
+  for (const interface::PassStateRow& row : interface::pass_states())
+    row.set(pass.state, reader.choice(row.key, row.values, row.fallback));
   const Json* position = reader.value("position", Need::optional);
   if (position != nullptr) pass.position = link(*position, "position");
   pass.position_space =

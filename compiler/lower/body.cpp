@@ -16,10 +16,12 @@ using graph::Type;
 using nodes::Value;
 using From = Operand::From;
 
-constexpr nodes::SurfaceValue world_position{nodes::Surface::position};
+using interface::SpaceMatrix;
+
+constexpr interface::SurfaceValue world_position{interface::Surface::position};
 
 /// What a node of a surface attribute gives. Its port "space", if it has one, is the first.
-nodes::SurfaceValue surface_value(const check::TypedGraph& graph, const Node& node) {
+interface::SurfaceValue surface_value(const check::TypedGraph& graph, const Node& node) {
   const auto attribute = std::get<nodes::Surface>(node.row->lowering);
   const bool has_space = !node.row->ports.empty() && node.row->ports[0].name == "space";
   return {attribute, has_space ? nodes::space_of(graph.operands_of(node)[0].index) : nodes::Space::world};
@@ -166,7 +168,7 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
     return;
   }
   if (const auto* what = std::get_if<nodes::Screen>(&row.lowering)) {
-    out[0] = environment_.screen.values[static_cast<size_t>(*what)];
+    out[0] = environment_.screen[*what];
     return;
   }
   if (row.is<nodes::TapIndex>()) {
@@ -176,9 +178,8 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
   if (row.is<nodes::Fetch>()) return make_fetch(node);
   if (row.is<nodes::WorldPosition>()) {
     out[0] = relative_position(b_, environment_.screen);
-    constexpr auto eye = static_cast<size_t>(nodes::Screen::camera_position);
     if (graph_.operands_of(node)[0].index == 0)
-      out[0] = b_.op(ir::Opcode::fadd, {environment_.screen.values[eye], out[0].id()});
+      out[0] = b_.op(ir::Opcode::fadd, {environment_.screen[interface::Screen::camera_position], out[0].id()});
     return;
   }
   if (row.is_sum()) return make_sum(index);
@@ -228,7 +229,7 @@ Value Body::image(uint32_t index) {
   const Sampling sampling{filter_of(graph_, node), address_mode_of(graph_, node, port::uaddressmode),
                           address_mode_of(graph_, node, port::vaddressmode)};
   const auto picture = [&] {
-    const ir::ValueId color = sample(b_, sampling, texture, texcoord);
+    const ir::ValueId color = sample(b_, environment_.interface, sampling, texture, texcoord);
     std::array<ir::ValueId, 4> components;
     const auto width = static_cast<size_t>(graph::float_count(graph_.types_of(node)[0]));
     for (uint32_t i = 0; i < width; ++i) components[i] = b_.extract(color, i);
@@ -275,14 +276,13 @@ void Body::make_fetch(const Node& node) {
   const std::span<Value> out = results_of(node);
   const auto edge = [](const Operand& port) { return static_cast<nodes::Edge>(port.index); };
   if (std::get<nodes::Fetch>(node.row->lowering) == nodes::Fetch::color) {
-    const ReadImage& image = environment_.screen.images[ports[0].index];
+    const ReadImage& image = environment_.screen.images[post_image(ports[0].index)];
     const ColorFilter filter{edge(ports[3]), ports[4].index == 1, ports[5].index == 1};
     out[0] = fetch_color(b_, image, offset(ports[1]), offset(ports[2]), filter);
     return;
   }
-  out[0] = fetch_depth(b_, environment_.screen.depth, offset(ports[0]), offset(ports[1]), edge(ports[2]));
-  const bool as_distance = environment_.screen.depth_numerator != ir::none;
-  if (as_distance) out[1] = distance_of(b_, environment_.screen, out[0].id());
+  out[0] = fetch_depth(b_, environment_.screen.images[depth_image], offset(ports[0]), offset(ports[1]), edge(ports[2]));
+  if (environment_.screen[interface::Screen::depth_numerator] != ir::none) out[1] = distance_of(b_, environment_.screen, out[0].id());
   out[2] = b_.op(ir::Opcode::feq, {out[0].id(), b_.constant(0.0f)});
 }
 
@@ -322,7 +322,7 @@ void Body::make_sum(uint32_t index) {
     if (asks_light) {
       const std::array arguments{turn, environment_.surface[world_position.index()]};
       b_.set_origin(add_origin("light", index));
-      light_ = b_.call(environment_.light_at, arguments);
+      light_ = b_.call(environment_.interface.find(interface::Host::light), arguments);
     }
     for (const uint32_t i : inside) make(i);
     b_.set_origin(origin_of(index));
@@ -364,6 +364,46 @@ void Body::name_results(uint32_t index, ir::ValueId first_new) {
 }
 
 }  // namespace
+
+Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
+                         const std::vector<interface::Binding>& bindings, interface::Interface& host)
+    : interface(host), inputs(graph.graph.inputs.size()) {
+  namespace source = interface::source;
+  std::vector<std::vector<ir::ValueId>> columns(inputs.size());
+  surface.fill(ir::none);
+  screen.values.fill(ir::none);
+  screen.images.resize(post_image(graph.graph.images.size()) + 1);
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    const ir::ValueId id = b.parameter(i);
+    std::visit(interface::Cases{
+                   [&](const source::Attribute& s) { surface[s.value.index()] = id; },
+                   [&](const source::MatrixColumn& s) { matrices[static_cast<size_t>(s.matrix)][s.column] = id; },
+                   [&](const source::Time&) { time = id; },
+                   [&](const source::Input& s) { columns[s.input].push_back(id); },
+                   [&](const source::Image& s) {
+                     image_slots.resize(std::max<size_t>(image_slots.size(), s.slot + 1), ir::none);
+                     image_slots[s.slot] = id;
+                   },
+                   [&](const source::LightCount&) { light_count = id; },
+                   [&](const source::ScreenValue& s) { screen.values[static_cast<size_t>(s.value)] = id; },
+                   [&](const source::PixelOfImage& s) {
+                     ReadImage& image = screen.images[s.image];
+                     (s.axis == interface::Axis::x ? image.x : image.y) = id;
+                     const bool is_depth = s.image == depth_image;
+                     image.at = host.find(is_depth ? interface::Host::depth : interface::Host::image, s.image);
+                   },
+                   [&](const source::PlaceInPixel& s) { screen.images[s.image].inside = id; },
+                   [&](const source::SizeOfImage& s) {
+                     ReadImage& image = screen.images[s.image];
+                     (s.axis == interface::Axis::x ? image.width : image.height) = id;
+                   },
+                   [&](const source::TapCount& s) { screen.tap_counts.emplace_back(s.node, id); },
+               },
+               bindings[i].source);
+  }
+  for (size_t i = 0; i < inputs.size(); ++i)
+    if (!columns[i].empty()) inputs[i] = Value(columns[i]);
+}
 
 Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     : nodes(graph.nodes.size()), inputs(graph.graph.inputs.size()) {

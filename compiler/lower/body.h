@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
+#include "compiler/interface/binding.h"
 #include "compiler/ir/builder.h"
 #include "compiler/lower/image_slots.h"
 #include "compiler/lower/lower.h"
@@ -19,8 +20,8 @@ namespace isoshade::lower {
 struct Needs {
   std::vector<bool> nodes;
   std::vector<bool> inputs;                                ///< but those of images
-  std::array<bool, nodes::surface_value_count> surface{};  ///< by SurfaceValue::index
-  std::array<size_t, space_matrix_count> columns{};        ///< of each SpaceMatrix
+  std::array<bool, interface::surface_value_count> surface{};   ///< by SurfaceValue::index
+  std::array<size_t, interface::space_matrix_count> columns{};  ///< of each SpaceMatrix
   bool time = false;
   bool lights = false;    ///< a sum over lights
   bool light_at = false;  ///< what a light gives
@@ -29,17 +30,20 @@ struct Needs {
   Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
 };
 
-/// What the body reads from its function's parameters and calls in its module.
+/// What the body reads from its function's parameters and calls in its module. Where a value is not needed it is none.
 struct Environment {
-  std::vector<nodes::Value> inputs;  ///< of Graph::inputs; empty where not needed
-  std::array<ir::ValueId, nodes::surface_value_count> surface{};
-  std::array<std::array<ir::ValueId, 4>, space_matrix_count> matrices{};
+  /// Of a function whose parameters are bound so. `host` receives the functions that the body asks its host for.
+  Environment(ir::Builder& b, const check::TypedGraph& graph, const std::vector<interface::Binding>& bindings,
+              interface::Interface& host);
+
+  interface::Interface& interface;
+  std::vector<nodes::Value> inputs;  ///< of Graph::inputs
+  std::array<ir::ValueId, interface::surface_value_count> surface{};
+  std::array<std::array<ir::ValueId, 4>, interface::space_matrix_count> matrices{};
   ir::ValueId time = ir::none;
   ir::ValueId light_count = ir::none;
-  uint32_t light_at = ir::none;
   const ImageSlots* images = nullptr;
-  std::vector<ir::ValueId>
-      image_slots;  ///< of the slots: the texture, negative for none; none where not needed
+  std::vector<ir::ValueId> image_slots;  ///< of the slots: the texture, negative for none
   ScreenInputs screen;
   std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called
   std::vector<uint32_t>* node_of_origin = nullptr;                ///< if given: filled, see NodesOfOrigins

@@ -9,6 +9,7 @@
 #include "compiler/functions/all.h"
 #include "compiler/functions/calls.h"
 #include "compiler/functions/interpolation.h"
+#include "compiler/interface/binding.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 
@@ -31,6 +32,7 @@ class Kernel {
   /// The body of a function that is declared.
   Kernel(ir::Module& module, uint32_t declared) : index(declared), b(module, declared) {}
 
+  Int constant(int value) { return Int(b, b.constant(value)); }
   Int integer(size_t parameter) { return Int(b, b.parameter(parameter)); }
   Vec3 vector3(size_t parameter) { return Vec3(b, b.parameter(parameter)); }
 
@@ -83,6 +85,8 @@ class Kernel {
   }
 };
 
+/// Where a column of an input begins in its record.
+int column_word(const interface::RecordLayout& record, const interface::source::Input& input, ir::Type column);
 /// A value of the type in `objects`: floats, also for booleans (0, 1) and integers.
 ir::ValueId load_field(Kernel& k, ir::Type type, Int record, int offset);
 

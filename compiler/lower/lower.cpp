@@ -2,13 +2,11 @@
 #include "compiler/lower/lower.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "compiler/lower/body.h"
-#include "compiler/lower/sampling.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::lower {
@@ -18,61 +16,122 @@ using check::Operand;
 using check::TypedGraph;
 using graph::DocumentKind;
 using graph::Type;
+using interface::Assumption;
+using interface::Binding;
 using nodes::Value;
+namespace assume = interface::assume;
+namespace names = interface::names;
 
-/// What the stages around authored functions are called: no document takes these names.
-constexpr std::string_view names_of_stages[] = {
-    shade_name,   move_vertex_name, light_at_name,  texel_at_name,  texture_size_name,
-    post_name,    "vertex",         "depth",        "pixel",        "eval",
-    "post",       "edges_at",       "edges_at_ddx", "edges_at_ddy", "attribute2",
-    "attribute3", "attribute4"};
-
-/// SPIR-V takes 255 parameters of a function, and derivatives may add as many again. A function with more inputs than
-/// this takes them in structs.
+/// SPIR-V allows 255 parameters of a function, and derivatives may double them. A function with more inputs than this
+/// takes them in structs.
 constexpr size_t most_plain_inputs = 100;
 constexpr size_t inputs_of_a_group = 100;
 
-/// A name that neither the stages nor library functions have.
+/// A name that neither kernels nor library functions have.
 std::string authored_name(const std::string& name) {
-  const bool taken = std::ranges::find(names_of_stages, name) != std::end(names_of_stages);
-  return taken || name.starts_with("iso_") || name.starts_with(sample_prefix) ? "function_" + name : name;
+  const bool taken = interface::is_kernel_function(name) || name.starts_with("iso_") ||
+                     name.starts_with(names::sample_prefix);
+  return taken ? "function_" + name : name;
+}
+
+/// The names of values that stand side by side: of each its own, or one a column of a matrix, "m_0", "m_1". No two are
+/// equal: a column's name gives way to a value of that name.
+std::vector<std::vector<std::string>> names_of_columns(
+    const std::vector<std::pair<std::string, Type>>& values) {
+  std::unordered_set<std::string> taken;
+  for (const auto& [name, type] : values)
+    if (nodes::column_count(type) == 1) taken.insert(name);
+  std::vector<std::vector<std::string>> all;
+  for (const auto& [name, type] : values) {
+    std::vector<std::string>& columns = all.emplace_back();
+    const int count = nodes::column_count(type);
+    if (count == 1) columns.push_back(name);
+    for (int i = 0; count > 1 && i < count; ++i) {
+      std::string column = name + "_" + std::to_string(i);
+      while (!taken.insert(column).second) column += "_";
+      columns.push_back(std::move(column));
+    }
+  }
+  return all;
+}
+
+/// A comment behind each function says which document it comes from.
+std::string document_of(const TypedGraph& graph) {
+  return graph.document.empty() ? "a document without a file" : graph.document;
+}
+
+/// A colour with alpha 1 if it has none.
+ir::ValueId with_alpha(ir::Builder& b, ir::ValueId color) {
+  return b.construct(
+      std::array{b.extract(color, 0), b.extract(color, 1), b.extract(color, 2), b.constant(1.0f)});
+}
+
+Assumption assumed_of(const graph::Input& input) {
+  if (input.type == Type::boolean) return assume::boolean;
+  Assumption assumed = input.unit ? assume::direction : assume::anywhere;
+  if (input.min) assumed.lo = static_cast<double>(*input.min);
+  if (input.max) assumed.hi = static_cast<double>(*input.max);
+  if (!input.names.empty()) assumed = {0, static_cast<double>(input.names.size() - 1)};
+  // A written limit may lie beyond the other one, which is assumed.
+  if (assumed.lo > assumed.hi && !input.max) assumed.hi = assumed.lo;
+  if (assumed.lo > assumed.hi) assumed.lo = assumed.hi;
+  return assumed;
+}
+
+/// The range of a parameter that the optimiser may rely on: scenes are checked when they are loaded.
+void limit(ir::Parameter& parameter, const graph::Input& input) {
+  constexpr float most_exact = 0x1p24f, largest = std::numeric_limits<float>::max();
+  float least = input.min.value_or(-largest), most = input.max.value_or(largest);
+  if (!input.names.empty()) least = 0;
+  if (!input.names.empty()) most = static_cast<float>(input.names.size() - 1);
+  // A float holds a large integer only approximately.
+  const bool exact = input.type != Type::integer || (least >= -most_exact && most <= most_exact);
+  if (!exact || input.type == Type::boolean) return;
+  parameter.least = least;
+  parameter.most = most;
+}
+
+/// One binding, or one for each column of a matrix.
+std::vector<Binding> bind_input(const TypedGraph& graph, uint32_t index, const std::vector<std::string>& columns,
+                                const std::string& group, bool is_parameter) {
+  const graph::Input& input = graph.graph.inputs[index];
+  std::vector<Binding> bindings;
+  for (uint32_t c = 0; c < columns.size(); ++c) {
+    Binding binding{interface::source::Input{index, c},
+                    {columns[c], nodes::ir_type(input.type), group, is_parameter},
+                    assumed_of(input)};
+    if (is_parameter) limit(binding.parameter, input);
+    if (columns.size() > 1) binding.element = static_cast<int>(c * columns.size());
+    bindings.push_back(std::move(binding));
+  }
+  return bindings;
 }
 
 class ModuleLowering {
  public:
   explicit ModuleLowering(NodesOfOrigins* nodes) : nodes_(nodes) {}
 
-  ir::Module lower_function(const TypedGraph& graph) {
-    names_.insert(entry_name(graph));
-    add_function(graph, entry_name(graph));
-    return std::move(module_);
-  }
-  /// `name`: of the function that gives `root`.
-  ir::Module lower_pass(const TypedGraph& graph, const Operand& root, const char* name, ir::Result result);
-  ir::Module lower_post(const TypedGraph& graph);
+  Lowered lower_function(const TypedGraph& graph);
+  /// `name`: of the function that returns `root`.
+  Lowered lower_pass(const TypedGraph& graph, const Operand& root, const char* name, ir::Result result);
+  Lowered lower_post(const TypedGraph& graph);
 
  private:
-  struct Parameters {
-    ir::Function& function;
-    /// Adds one value's parameters, called `names`; returns the index of the first.
-    size_t add(const std::vector<std::string>& names, Type type, const std::string& group, bool uniform);
-    /// An effect's or post's own parameter, which is known to be within its range.
-    size_t add(const graph::Input& input, const std::vector<std::string>& names);
-  };
+  using Bindings = std::vector<Binding>;
 
   /// Lowers the documents that the needed nodes call.
   void add_callees(const TypedGraph& graph, const Needs& needs);
-  void add_function(const TypedGraph& graph, std::string name);
+  uint32_t add_function(const TypedGraph& graph, std::string name, Bindings& bindings);
+  /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are wanted.
+  uint32_t build(const TypedGraph& graph, std::string name, const Bindings& bindings, const Needs& needs,
+                 std::span<const Operand> roots, std::vector<ir::Result> results, const ImageSlots& images = {});
+  Lowered finish(uint32_t entry, Bindings bindings);
   std::string unique_name(const std::string& wanted);
-  uint32_t declare_light_at();
-  std::function<uint32_t(const TypedGraph&)> function_of() {
-    return [this](const TypedGraph& callee) { return functions_.at(&callee); };
-  }
+  void declare_light_at();
+  void add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const;
 
-  /// Of the last function, which is about to be built.
-  std::vector<uint32_t>* node_of_origin();
-
-  ir::Module module_;
+  Lowered made_;
+  ir::Module& module_ = made_.module;
   NodesOfOrigins* nodes_;
   std::unordered_map<const TypedGraph*, uint32_t> functions_;
   std::unordered_set<std::string> names_;
@@ -84,264 +143,141 @@ std::string ModuleLowering::unique_name(const std::string& wanted) {
   return name;
 }
 
-std::vector<uint32_t>* ModuleLowering::node_of_origin() {
-  if (nodes_ == nullptr) return nullptr;
-  nodes_->resize(module_.functions.size());
-  return &nodes_->back();
-}
-
-/// The names of some values beside each other: of each its own, or one a column of a matrix, "m_0", "m_1". No two are
-/// alike: columns get out of the way of what is called so itself.
-std::vector<std::vector<std::string>> names_of_columns(
-    const std::vector<std::pair<std::string, Type>>& values) {
-  std::unordered_set<std::string> taken;
-  for (const auto& [name, type] : values)
-    if (nodes::column_count(type) == 1) taken.insert(name);
-  std::vector<std::vector<std::string>> all;
-  for (const auto& [name, type] : values) {
-    std::vector<std::string>& names = all.emplace_back();
-    const int count = nodes::column_count(type);
-    if (count == 1) names.push_back(name);
-    for (int i = 0; count > 1 && i < count; ++i) {
-      std::string column = name + "_" + std::to_string(i);
-      while (!taken.insert(column).second) column += "_";
-      names.push_back(std::move(column));
-    }
-  }
-  return all;
-}
-
-/// The text behind a function says where it comes from; that of a document that has no file says so.
-std::string document_of(const TypedGraph& graph) {
-  return graph.document.empty() ? "a document without a file" : graph.document;
-}
-
-/// Takes a value's parameters from the function's, beginning with `first`.
-Value parameter_value(ir::Builder& b, size_t first, Type type) {
-  std::array<ir::ValueId, 4> ids;
-  const size_t count = nodes::column_count(type);
-  for (size_t i = 0; i < count; ++i) ids[i] = b.parameter(first + i);
-  return Value(std::span<const ir::ValueId>(ids).first(count));
-}
-
-/// A colour with alpha 1 if it has none.
-ir::ValueId with_alpha(ir::Builder& b, ir::ValueId color) {
-  if (b.type(color).width == 4) return color;
-  return b.construct(
-      std::array{b.extract(color, 0), b.extract(color, 1), b.extract(color, 2), b.constant(1.0f)});
-}
-
-size_t ModuleLowering::Parameters::add(const std::vector<std::string>& names, Type type,
-                                       const std::string& group, bool uniform) {
-  const size_t first = function.parameters.size();
-  for (const std::string& name : names)
-    function.parameters.push_back({name, nodes::ir_type(type), group, uniform});
-  return first;
-}
-
-size_t ModuleLowering::Parameters::add(const graph::Input& input, const std::vector<std::string>& names) {
-  const size_t first = add(names, input.type, "parameters", true);
-  const bool is_integer = input.type == Type::integer;
-  constexpr float most_exact = 0x1p24f, largest = std::numeric_limits<float>::max();
-  float least = input.min.value_or(-largest), most = input.max.value_or(largest);
-  if (!input.names.empty()) least = 0;
-  if (!input.names.empty()) most = static_cast<float>(input.names.size() - 1);
-  // Floats tell large integers only nearly.
-  const bool tells = !is_integer || (least >= -most_exact && most <= most_exact);
-  for (size_t i = first; i < function.parameters.size() && tells && input.type != Type::boolean; ++i) {
-    function.parameters[i].least = least;
-    function.parameters[i].most = most;
-  }
-  return first;
-}
-
 void ModuleLowering::add_callees(const TypedGraph& graph, const Needs& needs) {
   for (size_t i = 0; i < graph.nodes.size(); ++i) {
     const TypedGraph* callee = graph.nodes[i].callee.get();
     if (!needs.nodes[i] || callee == nullptr || functions_.contains(callee)) continue;
-    add_function(*callee, unique_name(authored_name(callee->graph.name)));
+    Bindings bindings;
+    functions_[callee] = add_function(*callee, unique_name(authored_name(callee->graph.name)), bindings);
   }
 }
 
-void ModuleLowering::add_function(const TypedGraph& graph, std::string name) {
-  const Needs needs(graph, graph.outputs);
-  add_callees(graph, needs);
+uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const Bindings& bindings,
+                               const Needs& needs, std::span<const Operand> roots,
+                               std::vector<ir::Result> results, const ImageSlots& images) {
   const auto index = static_cast<uint32_t>(module_.functions.size());
-  functions_[&graph] = index;
   ir::Function& function = module_.functions.emplace_back();
   function.name = std::move(name);
   function.document = document_of(graph);
-  Parameters parameters{function};
-  std::vector<size_t> first;
-  const std::vector<std::vector<std::string>> names = parameter_names(graph);
+  function.results = std::move(results);
+  for (const Binding& binding : bindings) function.parameters.push_back(binding.parameter);
+
+  ir::Builder b(module_, index);
+  Environment environment(b, graph, bindings, made_.interface);
+  environment.images = &images;
+  environment.function_of = [this](const TypedGraph& callee) { return functions_.at(&callee); };
+  if (nodes_ != nullptr) {
+    nodes_->resize(module_.functions.size());
+    environment.node_of_origin = &nodes_->back();
+  }
+  std::vector<ir::ValueId> values;
+  for (const Value& value : build_body(b, graph, needs, environment, roots))
+    values.insert(values.end(), value.ids().begin(), value.ids().end());
+  const std::vector<ir::Result>& wanted = module_.functions[index].results;
+  for (size_t i = 0; i < values.size(); ++i)
+    if (wanted[i].type == ir::vector_type(4) && b.type(values[i]).width == 3) values[i] = with_alpha(b, values[i]);
+  b.finish(values);
+  return index;
+}
+
+uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name, Bindings& bindings) {
+  const Needs needs(graph, graph.outputs);
+  add_callees(graph, needs);
+  const std::vector<std::vector<std::string>> inputs = parameter_names(graph);
   size_t count = 0;
-  for (const std::vector<std::string>& columns : names) count += columns.size();
-  for (size_t i = 0; i < names.size(); ++i) {
-    const size_t number = function.parameters.size() / inputs_of_a_group + 1;
+  for (const std::vector<std::string>& columns : inputs) count += columns.size();
+  for (uint32_t i = 0; i < inputs.size(); ++i) {
+    const size_t number = bindings.size() / inputs_of_a_group + 1;
     const std::string group = count > most_plain_inputs ? "inputs_" + std::to_string(number) : "";
-    first.push_back(parameters.add(names[i], graph.graph.inputs[i].type, group, false));
+    for (Binding& binding : bind_input(graph, i, inputs[i], group, false)) bindings.push_back(std::move(binding));
   }
   std::vector<std::pair<std::string, Type>> outputs;
   for (size_t i = 0; i < graph.outputs.size(); ++i)
     outputs.emplace_back(graph.graph.outputs[i].name, graph.outputs[i].needed);
-  const std::vector<std::vector<std::string>> results_of = names_of_columns(outputs);
+  const std::vector<std::vector<std::string>> columns = names_of_columns(outputs);
+  std::vector<ir::Result> results;
   for (size_t i = 0; i < outputs.size(); ++i)
-    for (const std::string& column : results_of[i])
-      function.results.push_back({column, nodes::ir_type(outputs[i].second)});
-
-  ir::Builder b(module_, index);
-  Environment environment;
-  for (size_t i = 0; i < first.size(); ++i)
-    environment.inputs.push_back(parameter_value(b, first[i], graph.graph.inputs[i].type));
-  environment.function_of = function_of();
-  environment.node_of_origin = node_of_origin();
-  std::vector<ir::ValueId> results;
-  for (const Value& value : build_body(b, graph, needs, environment, graph.outputs))
-    results.insert(results.end(), value.ids().begin(), value.ids().end());
-  b.finish(results);
+    for (const std::string& column : columns[i]) results.push_back({column, nodes::ir_type(outputs[i].second)});
+  return build(graph, std::move(name), bindings, needs, graph.outputs, std::move(results));
 }
 
-uint32_t ModuleLowering::declare_light_at() {
+Lowered ModuleLowering::finish(uint32_t entry, Bindings bindings) {
+  made_.interface.entry = entry;
+  made_.interface.bindings = std::move(bindings);
+  return std::move(made_);
+}
+
+Lowered ModuleLowering::lower_function(const TypedGraph& graph) {
+  const std::string name = authored_name(graph.graph.name);
+  names_.insert(name);
+  Bindings bindings;
+  const uint32_t entry = add_function(graph, name, bindings);
+  return finish(entry, std::move(bindings));
+}
+
+void ModuleLowering::declare_light_at() {
+  made_.interface.host.push_back({interface::Host::light, static_cast<uint32_t>(module_.functions.size())});
   ir::Function& function = module_.functions.emplace_back();
-  function.name = light_at_name;
+  function.name = names::light_at;
   function.parameters = {{"index", ir::int_type, "", true}, {"position", ir::vector_type(3), "", false}};
   function.results = {{"direction", ir::vector_type(3)}, {"color", ir::vector_type(3)}};
-  return static_cast<uint32_t>(module_.functions.size() - 1);
 }
 
-ir::Module ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& root, const char* name,
-                                      ir::Result wanted) {
+/// What an effect's or a post's parameters are bound to, as far as they are needed.
+void ModuleLowering::add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const {
+  const std::vector<std::vector<std::string>> columns = parameter_names(graph);
+  for (uint32_t i = 0; i < columns.size(); ++i) {
+    if (!needs.inputs[i]) continue;
+    for (Binding& binding : bind_input(graph, i, columns[i], "parameters", true))
+      bindings.push_back(std::move(binding));
+  }
+}
+
+Lowered ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& root, const char* name,
+                                   ir::Result result) {
   const std::span<const Operand> roots(&root, 1);
   const Needs needs(graph, roots);
   names_.insert(name);
   add_callees(graph, needs);
-  Environment environment;
-  environment.function_of = function_of();
-  if (needs.light_at) environment.light_at = declare_light_at();
+  if (needs.light_at) declare_light_at();
 
-  const auto index = static_cast<uint32_t>(module_.functions.size());
-  ir::Function& function = module_.functions.emplace_back();
-  function.name = name;
-  function.document = document_of(graph);
-  function.results = {wanted};
-  for (const SurfaceField& field : surface_fields())
-    if (needs.surface[field.value.index()])
-      function.parameters.push_back({field.name, field.type, "surface", false});
-  for (size_t m = 0; m < space_matrix_count; ++m) {
-    for (size_t c = 0; c < needs.columns[m]; ++c)
-      function.parameters.push_back(
-          {std::string(space_matrix_names[m]) + "_" + std::to_string(c), ir::vector_type(3), "spaces", true});
-  }
-  if (needs.time) function.parameters.push_back({"time", ir::float_type, "frame", true});
-  Parameters parameters{function};
-  std::vector<size_t> first(graph.graph.inputs.size());
-  const std::vector<std::vector<std::string>> names = parameter_names(graph);
-  for (size_t i = 0; i < first.size(); ++i)
-    if (needs.inputs[i]) first[i] = parameters.add(graph.graph.inputs[i], names[i]);
+  Bindings bindings;
+  for (const interface::SurfaceValue value : interface::surface_values())
+    if (needs.surface[value.index()]) bindings.push_back(interface::bind(value));
+  for (size_t m = 0; m < interface::space_matrix_count; ++m)
+    for (uint32_t c = 0; c < needs.columns[m]; ++c)
+      bindings.push_back(interface::bind(static_cast<interface::SpaceMatrix>(m), c));
+  if (needs.time) bindings.push_back(interface::bind_time());
+  add_parameters(graph, needs, bindings);
   const ImageSlots images = image_slots(graph);
   std::vector<bool> reads(images.slots.size());
   for (size_t i = 0; i < graph.nodes.size(); ++i)
     if (needs.nodes[i] && graph.nodes[i].row != nullptr && graph.nodes[i].row->is<nodes::Image>())
       reads[images.of_node[i]] = true;
-  for (size_t i = 0; i < reads.size(); ++i)
-    if (reads[i]) function.parameters.push_back({images.slots[i].name, ir::int_type, "images", true});
-  if (needs.lights) function.parameters.push_back({"light_count", ir::int_type, "", true});
-  const size_t last = function.parameters.size() - 1;
-
-  ir::Builder b(module_, index);
-  size_t next = 0;
-  for (const SurfaceField& field : surface_fields())
-    if (needs.surface[field.value.index()]) environment.surface[field.value.index()] = b.parameter(next++);
-  for (size_t m = 0; m < space_matrix_count; ++m)
-    for (size_t c = 0; c < needs.columns[m]; ++c) environment.matrices[m][c] = b.parameter(next++);
-  if (needs.time) environment.time = b.parameter(next++);
-  for (size_t i = 0; i < first.size(); ++i) {
-    environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
-                                                 : Value());
-    if (needs.inputs[i]) next += static_cast<size_t>(nodes::column_count(graph.graph.inputs[i].type));
-  }
-  environment.images = &images;
-  for (const bool read : reads) environment.image_slots.push_back(read ? b.parameter(next++) : ir::none);
-  if (needs.lights) environment.light_count = b.parameter(last);
-  environment.node_of_origin = node_of_origin();
-  const ir::ValueId result = build_body(b, graph, needs, environment, roots)[0].id();
-  b.finish(std::array{root.needed == Type::color3 ? with_alpha(b, result) : result});
-  return std::move(module_);
+  for (uint32_t i = 0; i < reads.size(); ++i)
+    if (reads[i]) bindings.push_back(interface::bind_image(i, images.slots[i].name));
+  if (needs.lights) bindings.push_back(interface::bind_light_count());
+  const uint32_t entry = build(graph, name, bindings, needs, roots, {std::move(result)}, images);
+  return finish(entry, std::move(bindings));
 }
 
-ir::Module ModuleLowering::lower_post(const TypedGraph& graph) {
+Lowered ModuleLowering::lower_post(const TypedGraph& graph) {
   const Needs needs(graph, graph.outputs);
-  for (std::string& name : screen_function_names(graph)) names_.insert(std::move(name));
+  names_.insert(names::post_process);
+  declare_reads(made_, graph, needs.screen);
+  for (const interface::HostFunction& read : made_.interface.host) names_.insert(module_.functions[read.function].name);
   add_callees(graph, needs);
-  declare_reads(module_, graph, needs.screen);
 
-  const auto index = static_cast<uint32_t>(module_.functions.size());
-  ir::Function function;
-  function.name = post_name;
-  function.document = document_of(graph);
-  function.results = {{"color", ir::vector_type(4)}};
-  add_screen_parameters(function, graph, needs.screen);
-  const size_t time = function.parameters.size();
-  if (needs.time) function.parameters.push_back({"time", ir::float_type, "frame", true});
-  Parameters parameters{function};
-  std::vector<size_t> first(graph.graph.inputs.size());
-  const std::vector<std::vector<std::string>> names = parameter_names(graph);
-  for (size_t i = 0; i < first.size(); ++i)
-    if (needs.inputs[i]) first[i] = parameters.add(graph.graph.inputs[i], names[i]);
-  add_tap_parameters(function, graph, needs.screen);
-  module_.functions.push_back(std::move(function));
-
-  ir::Builder b(module_, index);
-  Environment environment;
-  environment.function_of = function_of();
-  environment.screen = screen_inputs(b, graph, needs.screen);
-  if (needs.time) environment.time = b.parameter(time);
-  for (size_t i = 0; i < first.size(); ++i) {
-    environment.inputs.push_back(needs.inputs[i] ? parameter_value(b, first[i], graph.graph.inputs[i].type)
-                                                 : Value());
-  }
-  environment.node_of_origin = node_of_origin();
-  const Value color = build_body(b, graph, needs, environment, graph.outputs)[0];
-  b.finish(std::array{with_alpha(b, color.id())});
-  return std::move(module_);
+  Bindings bindings = screen_bindings(graph, needs.screen);
+  if (needs.time) bindings.push_back(interface::bind_time());
+  add_parameters(graph, needs, bindings);
+  for (Binding& binding : tap_bindings(graph, needs.screen)) bindings.push_back(std::move(binding));
+  const uint32_t entry = build(graph, names::post_process, bindings, needs, graph.outputs,
+                               {{"color", ir::vector_type(4)}});
+  return finish(entry, std::move(bindings));
 }
 
 }  // namespace
-
-const std::vector<SurfaceField>& surface_fields() {
-  static const std::vector<SurfaceField> fields = [] {
-    using nodes::Space;
-    using nodes::Surface;
-    struct Attribute {
-      std::string_view name;
-      Surface what;
-      int width;
-      bool has_space;
-    };
-    std::vector<SurfaceField> all;
-    for (const Attribute& attribute : {Attribute{"position", Surface::position, 3, true},
-                                       {"normal", Surface::normal, 3, true},
-                                       {"texcoord", Surface::texcoord, 2, false},
-                                       {"view_direction", Surface::view_direction, 3, true},
-                                       {"tangent", Surface::tangent, 3, true},
-                                       {"bitangent", Surface::bitangent, 3, true},
-                                       {"color", Surface::color, 4, false},
-                                       {"outline_normal", Surface::outline_normal, 3, true},
-                                       {"pixel_size", Surface::pixel_size, 1, false},
-                                       {"corner_normal1", Surface::corner_normal1, 3, true},
-                                       {"corner_normal2", Surface::corner_normal2, 3, true},
-                                       {"corner_normal3", Surface::corner_normal3, 3, true}}) {
-      const ir::Type type = ir::vector_type(attribute.width);
-      const std::string name(attribute.name);
-      all.push_back({name, {attribute.what}, type});
-      if (!attribute.has_space) continue;
-      all.push_back({name + "_object", {attribute.what, Space::object}, type});
-      all.push_back({name + "_view", {attribute.what, Space::view}, type});
-    }
-    return all;
-  }();
-  return fields;
-}
 
 std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
   std::vector<std::pair<std::string, Type>> inputs;
@@ -349,23 +285,16 @@ std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
   return names_of_columns(inputs);
 }
 
-std::string entry_name(const TypedGraph& graph) {
-  if (graph.graph.kind == DocumentKind::function) return authored_name(graph.graph.name);
-  return graph.graph.kind == DocumentKind::post ? post_name : shade_name;
-}
-
-ir::Module lower(const TypedGraph& graph, const LowerOptions& options) {
-  if (graph.graph.kind == DocumentKind::function) return ModuleLowering(options.nodes).lower_function(graph);
-  if (graph.graph.kind == DocumentKind::post) return ModuleLowering(options.nodes).lower_post(graph);
+Lowered lower(const TypedGraph& graph, const LowerOptions& options) {
+  ModuleLowering lowering(options.nodes);
+  if (graph.graph.kind == DocumentKind::function) return lowering.lower_function(graph);
+  if (graph.graph.kind == DocumentKind::post) return lowering.lower_post(graph);
   support::assert_that(options.pass < graph.graph.passes.size(), "the effect has no such pass");
+  if (options.part == PassPart::color)
+    return lowering.lower_pass(graph, graph.outputs[options.pass], names::shade, {"color", ir::vector_type(4)});
   const Operand* position = graph.position_of(options.pass);
-  if (options.part == PassPart::color) {
-    return ModuleLowering(options.nodes)
-        .lower_pass(graph, graph.outputs[options.pass], shade_name, {"color", ir::vector_type(4)});
-  }
   support::assert_that(position != nullptr, "the pass moves no vertices");
-  return ModuleLowering(options.nodes)
-      .lower_pass(graph, *position, move_vertex_name, {"position", ir::vector_type(3)});
+  return lowering.lower_pass(graph, *position, names::move_vertex, {"position", ir::vector_type(3)});
 }
 
 }  // namespace isoshade::lower

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <iterator>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
+#include "compiler/interface/binding.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::lower {
@@ -19,24 +18,23 @@ enum class PassPart : uint8_t { color, position };
 /// By function of a module and origin of that function: the node in the Graph of its document, or ir::none.
 using NodesOfOrigins = std::vector<std::vector<uint32_t>>;
 
+/// A module, and what its document's function takes from outside.
+struct Lowered {
+  ir::Module module;
+  interface::Interface interface;
+};
+
 struct LowerOptions {
   size_t pass = 0;  ///< of an effect
   PassPart part = PassPart::color;
   NodesOfOrigins* nodes = nullptr;  ///< if given, filled
 };
 
-/// The names of an effect's functions; they are the same for every effect.
-inline constexpr const char* shade_name = "shade";
-inline constexpr const char* move_vertex_name = "move_vertex";
-inline constexpr const char* light_at_name = "light_at";
-/// That of a post's.
-inline constexpr const char* post_name = "post_process";
-
 /// The module of a function document or of one pass of an effect: the functions that it uses, one a document,
 /// and last its own. Nodes that the result does not depend on are left out. Calls to functions.def stay
 /// calls, and their declarations have no bodies yet.
 ///
-/// A function document becomes a function of entry_name(), its parameters the inputs, its results the
+/// A function document becomes a function whose parameters are the inputs and whose results are the
 /// outputs, in order; a matrix is its columns: "m_0", "m_1", ...
 ///
 /// A pass becomes `shade` -> (color: vec4) with these parameters, as far as they are used:
@@ -66,27 +64,9 @@ inline constexpr const char* post_name = "post_process";
 ///   taps.NODE        int, uniform: how many taps the node sums
 /// It reads images by NAME_at(x: int, y: int) -> (color: vec4), and the depth by depth_at -> (depth: float): declared
 /// without bodies (see add_post_kernel), only called for pixels that the image has.
-ir::Module lower(const check::TypedGraph& graph, const LowerOptions& options = {});
-
-/// A name that the kernels around `shade` and `move_vertex` understand.
-struct SurfaceField {
-  std::string name;  ///< "normal_object"
-  nodes::SurfaceValue value;
-  ir::Type type;
-};
-/// Every field that the group "surface" may have, in the order that it has them.
-const std::vector<SurfaceField>& surface_fields();
-
-/// The affine matrices of the group "spaces": three columns of each for vectors, and a fourth for points.
-enum class SpaceMatrix : uint8_t { world_from_object, object_from_world, view_from_world, world_from_view };
-inline constexpr std::string_view space_matrix_names[] = {"world_from_object", "object_from_world",
-                                                          "view_from_world", "world_from_view"};
-inline constexpr size_t space_matrix_count = std::size(space_matrix_names);
+Lowered lower(const check::TypedGraph& graph, const LowerOptions& options = {});
 
 /// What the parameters of each input are called, by Graph::inputs: one, or one a column of a matrix. No two are alike.
 std::vector<std::vector<std::string>> parameter_names(const check::TypedGraph& graph);
-
-/// The name of the function that lower() makes of a document.
-std::string entry_name(const check::TypedGraph& graph);
 
 }  // namespace isoshade::lower

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel around `post_process`: what it reads, by frame_layout.h.
+#include <algorithm>
+
 #include "compiler/lower/kernel.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/stages.h"
@@ -7,9 +9,11 @@
 namespace isoshade::lower {
 namespace {
 
+using interface::Axis;
+using interface::Screen;
+
 Int image_size(Kernel& k, int image, int word) {
-  const Int at(k.b, k.b.constant(image * image_word::stride + word));
-  return k.load_int(FrameBuffer::layer_records, at);
+  return k.load_int(FrameBuffer::layer_records, k.constant(image * image_word::stride + word));
 }
 
 /// under(at, made, read): of `read` pixels side by side, which lies under the centre of pixel `at` where there are
@@ -43,16 +47,44 @@ void define_read(ir::Module& module, uint32_t function, int image) {
   }
 }
 
-/// What `post_process` may ask for, each made once and only if it does.
+/// The arguments of `post_process`, each made once and only if it is asked for.
 class ScreenPoint {
  public:
-  ScreenPoint(Kernel& kernel, const std::vector<std::string>& images) : k_(kernel), images_(images) {}
+  ScreenPoint(Kernel& kernel, const interface::RecordLayout& record) : k_(kernel), record_(record) {}
 
-  ir::ValueId field(const ir::Parameter& parameter) {
-    const std::string& name = parameter.name;
-    if (parameter.group == screen_group) return k_.named(name, varying(name));
-    if (parameter.group == sizes_group) return k_.named(name, size(name));
-    return k_.named(name, camera(name));
+  ir::ValueId argument(const interface::Binding& binding) {
+    namespace source = interface::source;
+    const ir::Type type = binding.parameter.type;
+    const auto field = [&](int word) { return load_field(k_, type, k_.constant(0), word); };
+    const auto only_effects = [&]() -> ir::ValueId {
+      support::bug("only effects have " + binding.parameter.name);
+    };
+    const ir::ValueId value = std::visit(
+        interface::Cases{
+            [&](const source::Attribute&) { return only_effects(); },
+            [&](const source::MatrixColumn&) { return only_effects(); },
+            [&](const source::Image&) { return only_effects(); },
+            [&](const source::LightCount&) { return only_effects(); },
+            [&](const source::Time&) { return k_.load(FrameBuffer::frame, k_.constant(frame_word::time)).value; },
+            [&](const source::Input& s) { return field(column_word(record_, s, type)); },
+            [&](const source::ScreenValue& s) { return screen(s.value); },
+            [&](const source::PixelOfImage& s) { return spot_in(s.image).pixel[index(s.axis)].value; },
+            [&](const source::PlaceInPixel& s) {
+              const Spot& spot = spot_in(s.image);
+              return Vec2(spot.inside[0], spot.inside[1]).value;
+            },
+            [&](const source::SizeOfImage& s) {
+              const int word = s.axis == Axis::x ? image_word::width : image_word::height;
+              return image_size(k_, static_cast<int>(s.image), word).value;
+            },
+            [&](const source::TapCount& s) {
+              const auto found = std::ranges::find(record_.taps, s.node, &std::pair<uint32_t, int>::first);
+              support::assert_that(found != record_.taps.end(), binding.parameter.name);
+              return field(found->second);
+            },
+        },
+        binding.source);
+    return k_.named(binding.parameter.name, value);
   }
 
  private:
@@ -75,60 +107,47 @@ class ScreenPoint {
 
   /// A vector in the middle of the screen, and what it changes by to the right and downwards.
   ir::ValueId over_screen(int word) {
-    const Int frame(k_.b, k_.b.constant(0));
-    const auto vector = [&](int i) { return k_.load3(FrameBuffer::frame, frame, word + 3 * i); };
+    const auto vector = [&](int i) { return k_.load3(FrameBuffer::frame, k_.constant(0), word + 3 * i); };
     const Vec3 across = vector(1) * functions::splat<3>(from_middle(0));
     const Vec3 down = vector(2) * functions::splat<3>(from_middle(1));
     return ((vector(0) + across) + down).value;
   }
 
-  ir::ValueId varying(const std::string& name) {
-    if (name == "pixel") return Vec2(centre(0), centre(1)).value;
-    if (name == "coordinate") return Vec2(coordinate(0), coordinate(1)).value;
-    if (name == "view_ray") return over_screen(frame_word::view_ray);
-    if (name == "relative_origin") return over_screen(frame_word::ray_origin);
-    const size_t end = name.rfind('_');
-    const Spot& spot = spot_in(image_of(name.substr(0, end)));
-    if (name.substr(end) == "_inside") return Vec2(spot.inside[0], spot.inside[1]).value;
-    return spot.pixel[name.back() == 'x' ? 0 : 1].value;
+  ir::ValueId frame_vector2(int word) {
+    const auto load = [&](int at) { return k_.load(FrameBuffer::frame, k_.constant(at)); };
+    return Vec2(load(word), load(word + 1)).value;
+  }
+  ir::ValueId frame_vector3(int word) { return k_.load3(FrameBuffer::frame, k_.constant(0), word).value; }
+
+  ir::ValueId screen(Screen value) {
+    switch (value) {
+      case Screen::pixel: return Vec2(centre(0), centre(1)).value;
+      case Screen::coordinate: return Vec2(coordinate(0), coordinate(1)).value;
+      case Screen::view_ray: return over_screen(frame_word::view_ray);
+      case Screen::relative_origin: return over_screen(frame_word::ray_origin);
+      case Screen::size: return Vec2(to_float(made(0)), to_float(made(1))).value;
+      case Screen::camera_position: return frame_vector3(frame_word::camera_position);
+      case Screen::camera_direction: return frame_vector3(frame_word::camera_direction);
+      case Screen::depth_numerator: return frame_vector2(frame_word::depth_numerator);
+      case Screen::depth_denominator: return frame_vector2(frame_word::depth_denominator);
+    }
+    support::bug("no such value of the screen");
   }
 
-  ir::ValueId size(const std::string& name) {
-    if (name == "screen") return Vec2(to_float(made(0)), to_float(made(1))).value;
-    const size_t end = name.rfind('_');
-    const bool is_width = name.substr(end) == "_width";
-    return image_size(k_, image_of(name.substr(0, end)), is_width ? image_word::width : image_word::height)
-        .value;
-  }
-
-  ir::ValueId camera(const std::string& name) {
-    const Int frame(k_.b, k_.b.constant(0));
-    const auto word = [&](int at) { return k_.load(FrameBuffer::frame, Int(k_.b, k_.b.constant(at))); };
-    if (name == "position") return k_.load3(FrameBuffer::frame, frame, frame_word::camera_position).value;
-    if (name == "direction") return k_.load3(FrameBuffer::frame, frame, frame_word::camera_direction).value;
-    const int first = name == "depth_numerator" ? frame_word::depth_numerator : frame_word::depth_denominator;
-    return Vec2(word(first), word(first + 1)).value;
-  }
-
-  int image_of(const std::string& prefix) const {
-    if (prefix == depth_prefix) return image_word::depth;
-    for (size_t i = 0; i < images_.size(); ++i)
-      if (images_[i] == prefix) return image_word::color + static_cast<int>(i);
-    support::bug("a post has no image " + prefix);
-  }
+  static size_t index(Axis axis) { return static_cast<size_t>(axis); }
 
   struct Spot {
-    int image;
+    interface::ImageNumber image;
     std::vector<Int> pixel;
     std::vector<Float> inside;
   };
-  const Spot& spot_in(int image) {
+  const Spot& spot_in(interface::ImageNumber image) {
     for (const Spot& spot : spots_)
       if (spot.image == image) return spot;
     const uint32_t under = add_under(k_.b.module());
     Spot spot{image, {}, {}};
     for (const int axis : {0, 1}) {
-      const Int read = image_size(k_, image, axis == 0 ? image_word::width : image_word::height);
+      const Int read = image_size(k_, static_cast<int>(image), axis == 0 ? image_word::width : image_word::height);
       const std::array arguments{k_.b.parameter(static_cast<size_t>(axis)), made(axis).value, read.value};
       const std::vector<ir::ValueId> results = k_.b.call(under, arguments);
       spot.pixel.emplace_back(k_.b, results[0]);
@@ -139,46 +158,22 @@ class ScreenPoint {
   }
 
   Kernel& k_;
-  const std::vector<std::string>& images_;
+  const interface::RecordLayout& record_;
   std::array<Int, 2> made_{Int(0), Int(0)};
   std::vector<Spot> spots_;
 };
 
 }  // namespace
 
-uint32_t add_post_kernel(ir::Module& module, const std::vector<std::string>& images,
-                         const FieldOffsets& record) {
-  const auto define = [&](const std::string& name, int image) {
-    if (const uint32_t function = module.find(name); function != ir::none)
-      define_read(module, function, image);
-  };
-  define(std::string(depth_prefix) + "_at", image_word::depth);
-  for (size_t i = 0; i < images.size(); ++i)
-    define(images[i] + "_at", image_word::color + static_cast<int>(i));
-  const uint32_t post_process = module.find(post_name);
-  support::assert_that(post_process != ir::none, "no post_process");
-
+uint32_t add_post_kernel(ir::Module& module, const interface::Interface& interface,
+                         const interface::RecordLayout& record) {
+  for (const interface::HostFunction& read : interface.host)
+    define_read(module, read.function, static_cast<int>(read.image));
   Kernel k(module, "post", {int_parameter("x"), uniform_int("y")}, {{"color", ir::vector_type(4)}});
-  ScreenPoint screen(k, images);
-  const Int first(k.b, k.b.constant(0));
+  ScreenPoint screen(k, record);
   std::vector<ir::ValueId> arguments;
-  const std::vector<ir::Parameter> wanted = module.functions[post_process].parameters;
-  for (const ir::Parameter& parameter : wanted) {
-    if (parameter.group == "frame") {
-      const Int time(k.b, k.b.constant(frame_word::time));
-      arguments.push_back(k.named(parameter.name, k.load(FrameBuffer::frame, time)).value);
-    } else if (parameter.group == "parameters" || parameter.group == taps_group) {
-      const std::string key = parameter.group == taps_group ? tap_field(parameter.name) : parameter.name;
-      int offset = -1;
-      for (const auto& [name, word] : record)
-        if (name == key) offset = word;
-      support::assert_that(offset >= 0, key);
-      arguments.push_back(k.named(parameter.name, load_field(k, parameter.type, first, offset)));
-    } else {
-      arguments.push_back(screen.field(parameter));
-    }
-  }
-  k.b.finish(k.b.call(post_process, arguments));
+  for (const interface::Binding& binding : interface.bindings) arguments.push_back(screen.argument(binding));
+  k.b.finish(k.b.call(interface.entry, arguments));
   return k.index;
 }
 

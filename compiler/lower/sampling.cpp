@@ -6,6 +6,7 @@
 namespace isoshade::lower {
 namespace {
 
+namespace names = interface::names;
 using nodes::AddressMode;
 using nodes::Filter;
 
@@ -13,29 +14,41 @@ struct Size {
   Int width, height, smaller;
 };
 
-uint32_t declared(ir::Module& module, const char* name, std::vector<ir::Parameter> parameters,
-                  std::vector<ir::Result> results) {
-  if (const uint32_t found = module.find(name); found != ir::none) return found;
-  ir::Function& function = module.functions.emplace_back();
-  function.name = name;
-  function.parameters = std::move(parameters);
-  function.results = std::move(results);
-  return static_cast<uint32_t>(module.functions.size() - 1);
-}
+/// A sampler's module, and the list of what it asks its host for.
+struct Samplers {
+  ir::Module& module;
+  interface::Interface& interface;
 
-Size size_of(ir::Builder& b, ir::ValueId texture) {
-  const uint32_t function =
-      declared(b.module(), texture_size_name, {int_parameter("picture")},
-               {{"width", ir::int_type}, {"height", ir::int_type}, {"smaller", ir::int_type}});
-  const std::vector<ir::ValueId> words = b.call(function, std::array{texture});
+  void note(interface::Host host, uint32_t function) { interface.host.push_back({host, function}); }
+
+  uint32_t declared(interface::Host host, const char* name, std::vector<ir::Parameter> parameters,
+                    std::vector<ir::Result> results) {
+    if (const uint32_t found = interface.find(host); found != ir::none) return found;
+    ir::Function& function = module.functions.emplace_back();
+    function.name = name;
+    function.parameters = std::move(parameters);
+    function.results = std::move(results);
+    note(host, static_cast<uint32_t>(module.functions.size() - 1));
+    return interface.host.back().function;
+  }
+  uint32_t texture_size() {
+    return declared(interface::Host::texture_size, names::texture_size, {int_parameter("picture")},
+                    {{"width", ir::int_type}, {"height", ir::int_type}, {"smaller", ir::int_type}});
+  }
+  uint32_t texel_at() {
+    return declared(interface::Host::texel, names::texel_at,
+                    {int_parameter("picture"), int_parameter("x"), int_parameter("y")},
+                    {{"texel", ir::vector_type(4)}});
+  }
+};
+
+Size size_of(Samplers& samplers, ir::Builder& b, ir::ValueId texture) {
+  const std::vector<ir::ValueId> words = b.call(samplers.texture_size(), std::array{texture});
   return {Int(b, words[0]), Int(b, words[1]), Int(b, words[2])};
 }
 
-Vec4 texel_at(ir::Builder& b, ir::ValueId texture, Int x, Int y) {
-  const uint32_t function =
-      declared(b.module(), texel_at_name, {int_parameter("picture"), int_parameter("x"), int_parameter("y")},
-               {{"texel", ir::vector_type(4)}});
-  return Vec4(b, b.call(function, std::array{texture, x.id(b), y.id(b)})[0]);
+Vec4 texel_at(Samplers& samplers, ir::Builder& b, ir::ValueId texture, Int x, Int y) {
+  return Vec4(b, b.call(samplers.texel_at(), std::array{texture, x.id(b), y.id(b)})[0]);
 }
 
 /// A coordinate brought into [0, 1].
@@ -84,7 +97,7 @@ std::string mode_text(AddressMode mode) {
 std::string sample_name(const Sampling& sampling) {
   constexpr std::string_view filters[] = {"closest_", "linear_", "trilinear_"};
   const std::string u = mode_text(sampling.u), v = mode_text(sampling.v);
-  return sample_prefix + std::string(filters[static_cast<size_t>(sampling.filter)]) + u +
+  return names::sample_prefix + std::string(filters[static_cast<size_t>(sampling.filter)]) + u +
          (u == v ? "" : "_" + v);
 }
 
@@ -92,19 +105,19 @@ std::vector<ir::Parameter> sample_parameters() {
   return {int_parameter("picture"), {"texcoord", ir::vector_type(2), "", false}};
 }
 
-void build_closest(Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
-  const Size size = size_of(k.b, texture);
+void build_closest(Samplers& samplers, Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
+  const Size size = size_of(samplers, k.b, texture);
   const Int x = k.named("x", nearest(sampling.u, texcoord[0], size.width));
   const Int y = k.named("y", nearest(sampling.v, texcoord[1], size.height));
-  k.b.finish(std::array{texel_at(k.b, texture, x, y).value});
+  k.b.finish(std::array{texel_at(samplers, k.b, texture, x, y).value});
 }
 
-void build_linear(Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
-  const Size size = size_of(k.b, texture);
+void build_linear(Samplers& samplers, Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
+  const Size size = size_of(samplers, k.b, texture);
   const Between x = between(k, 'x', sampling.u, texcoord[0], size.width);
   const Between y = between(k, 'y', sampling.v, texcoord[1], size.height);
   const auto row = [&](Int at) {
-    return mix(texel_at(k.b, texture, x.first, at), texel_at(k.b, texture, x.second, at), x.share);
+    return mix(texel_at(samplers, k.b, texture, x.first, at), texel_at(samplers, k.b, texture, x.second, at), x.share);
   };
   const Vec4 upper = k.named("upper", row(y.first));
   const Vec4 lower = k.named("lower", row(y.second));
@@ -112,28 +125,29 @@ void build_linear(Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2
 }
 
 /// The function for closest or linear.
-uint32_t sampler(ir::Module& module, const Sampling& sampling) {
+uint32_t sampler(Samplers& samplers, const Sampling& sampling) {
   const std::string name = sample_name(sampling);
-  if (const uint32_t found = module.find(name); found != ir::none) return found;
-  Kernel k(module, name, sample_parameters(), {{"color", ir::vector_type(4)}});
-  const auto build = sampling.filter == Filter::closest ? build_closest : build_linear;
-  build(k, sampling, k.b.parameter(0), Vec2(k.b, k.b.parameter(1)));
+  if (const uint32_t found = samplers.module.find(name); found != ir::none) return found;
+  Kernel k(samplers.module, name, sample_parameters(), {{"color", ir::vector_type(4)}});
+  const bool closest = sampling.filter == Filter::closest;
+  samplers.note(closest ? interface::Host::sample_closest : interface::Host::sample_linear, k.index);
+  (closest ? build_closest : build_linear)(samplers, k, sampling, k.b.parameter(0), Vec2(k.b, k.b.parameter(1)));
   return k.index;
 }
 
 /// sample_level(picture, along_x, along_y): the mip level for these changes of the texture coordinates along the sides of
 /// a pixel, in 1/65536: an integer, so that it has no derivative.
-ir::ValueId level_of(ir::Builder& b, ir::ValueId texture, ir::ValueId texcoord) {
+ir::ValueId level_of(Samplers& samplers, ir::Builder& b, ir::ValueId texture, ir::ValueId texcoord) {
   const std::array arguments{texture, b.op(ir::Opcode::ddx, {texcoord}), b.op(ir::Opcode::ddy, {texcoord})};
-  const std::string name = std::string(sample_prefix) + "level";
-  ir::Module& module = b.module();
-  if (const uint32_t found = module.find(name); found != ir::none) return b.call(found, arguments)[0];
-  Kernel k(module, name,
+  if (const uint32_t found = samplers.interface.find(interface::Host::mip_level); found != ir::none)
+    return b.call(found, arguments)[0];
+  Kernel k(samplers.module, std::string(names::sample_prefix) + "level",
            {int_parameter("picture"),
             {"along_x", ir::vector_type(2), "", false},
             {"along_y", ir::vector_type(2), "", false}},
            {{"level", ir::int_type}});
-  const Size size = size_of(k.b, k.b.parameter(0));
+  samplers.note(interface::Host::mip_level, k.index);
+  const Size size = size_of(samplers, k.b, k.b.parameter(0));
   const Vec2 texels(to_float(size.width), to_float(size.height));
   const Float wanted = mip_level(Vec2(k.b, k.b.parameter(1)) * texels, Vec2(k.b, k.b.parameter(2)) * texels);
   const Float last = to_float(size.smaller);
@@ -144,13 +158,14 @@ ir::ValueId level_of(ir::Builder& b, ir::ValueId texture, ir::ValueId texcoord) 
 }
 
 /// sample_trilinear_...(picture, texcoord, level): between the two mip levels around one, in 1/65536.
-uint32_t trilinear_sampler(ir::Module& module, const Sampling& sampling) {
+uint32_t trilinear_sampler(Samplers& samplers, const Sampling& sampling) {
   const std::string name = sample_name(sampling);
-  if (const uint32_t found = module.find(name); found != ir::none) return found;
-  const uint32_t linear = sampler(module, {Filter::linear, sampling.u, sampling.v});
+  if (const uint32_t found = samplers.module.find(name); found != ir::none) return found;
+  const uint32_t linear = sampler(samplers, {Filter::linear, sampling.u, sampling.v});
   std::vector<ir::Parameter> parameters = sample_parameters();
   parameters.push_back(int_parameter("level"));
-  Kernel k(module, name, std::move(parameters), {{"color", ir::vector_type(4)}});
+  Kernel k(samplers.module, name, std::move(parameters), {{"color", ir::vector_type(4)}});
+  samplers.note(interface::Host::sample_trilinear, k.index);
   const auto at = [&](Int texture) {
     return Vec4(k.b, k.b.call(linear, std::array{texture.value, k.b.parameter(1)})[0]);
   };
@@ -183,24 +198,26 @@ Vec4 load_texel(Kernel& k, Int first, Int place, Int table) {
 
 }  // namespace
 
-ir::ValueId sample(ir::Builder& b, const Sampling& sampling, ir::ValueId texture, ir::ValueId texcoord) {
+ir::ValueId sample(ir::Builder& b, interface::Interface& interface, const Sampling& sampling, ir::ValueId texture,
+                   ir::ValueId texcoord) {
+  Samplers samplers{b.module(), interface};
   if (sampling.filter == Filter::trilinear) {
-    const ir::ValueId level = level_of(b, texture, texcoord);
-    return b.call(trilinear_sampler(b.module(), sampling), std::array{texture, texcoord, level})[0];
+    const ir::ValueId level = level_of(samplers, b, texture, texcoord);
+    return b.call(trilinear_sampler(samplers, sampling), std::array{texture, texcoord, level})[0];
   }
-  return b.call(sampler(b.module(), sampling), std::array{texture, texcoord})[0];
+  return b.call(sampler(samplers, sampling), std::array{texture, texcoord})[0];
 }
 
-void define_texture_reads(ir::Module& module) {
+void define_texture_reads(ir::Module& module, const interface::Interface& interface) {
   const auto word = [](Kernel& k, int at) {
     return k.load_int(FrameBuffer::textures, k.integer(0) * Int(texture_word::stride) + Int(at));
   };
-  if (const uint32_t size = module.find(texture_size_name); size != ir::none) {
+  if (const uint32_t size = interface.find(interface::Host::texture_size); size != ir::none) {
     Kernel k(module, size);
     k.b.finish(std::array{word(k, texture_word::width).value, word(k, texture_word::height).value,
                           word(k, texture_word::smaller).value});
   }
-  if (const uint32_t texel = module.find(texel_at_name); texel != ir::none) {
+  if (const uint32_t texel = interface.find(interface::Host::texel); texel != ir::none) {
     Kernel k(module, texel);
     const Int place = k.named("place", k.integer(2) * word(k, texture_word::width) + k.integer(1));
     const Int first = k.named("first", word(k, texture_word::first));

@@ -9,15 +9,11 @@
 // `smaller` is how many of the textures after this one are its mip levels.
 #pragma once
 
+#include "compiler/interface/binding.h"
 #include "compiler/ir/builder.h"
 #include "compiler/nodes/image.h"
 
 namespace isoshade::lower {
-
-inline constexpr const char* texture_size_name = "texture_size";
-inline constexpr const char* texel_at_name = "texel_at";
-/// How names of the others begin.
-inline constexpr const char* sample_prefix = "sample_";
 
 struct Sampling {
   nodes::Filter filter;
@@ -25,11 +21,12 @@ struct Sampling {
 };
 
 /// The colour of a texture at `texcoord`, as a vec4 under `builder`. Beyond edges of AddressMode::constant it is that
-/// of the edge. Trilinear: asks for derivatives of `texcoord`, but the mip level that comes of them counts as constant
+/// of the edge. `interface` receives the functions that are made or declared. Trilinear: asks for derivatives of `texcoord`, but the mip level that comes of them counts as constant
 /// where derivatives are taken of the result.
-ir::ValueId sample(ir::Builder& builder, const Sampling& sampling, ir::ValueId texture, ir::ValueId texcoord);
+ir::ValueId sample(ir::Builder& builder, interface::Interface& interface, const Sampling& sampling, ir::ValueId texture,
+                   ir::ValueId texcoord);
 
 /// Gives what sample() left without a body one that reads the frame's buffers.
-void define_texture_reads(ir::Module& module);
+void define_texture_reads(ir::Module& module, const interface::Interface& interface);
 
 }  // namespace isoshade::lower

@@ -2,47 +2,26 @@
 #include "compiler/lower/screen.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "compiler/lower/kernel.h"
 #include "compiler/lower/lower.h"
-#include "compiler/lower/stages.h"
 
 namespace isoshade::lower {
 namespace {
 
+using interface::Axis;
+using interface::Binding;
+using interface::Screen;
 using nodes::Edge;
 
 /// What the greatest coordinate of a scene is: farther away there is nothing.
 constexpr float greatest_distance = 1e9f;
 
-struct ScreenValue {
-  nodes::Screen what;
-  const char* group;
-  const char* name;
-  int width;
-};
-constexpr ScreenValue screen_values[] = {
-    {nodes::Screen::pixel, screen_group, "pixel", 2},
-    {nodes::Screen::coordinate, screen_group, "coordinate", 2},
-    {nodes::Screen::view_ray, screen_group, "view_ray", 3},
-    {nodes::Screen::relative_origin, screen_group, "relative_origin", 3},
-    {nodes::Screen::size, sizes_group, "screen", 2},
-    {nodes::Screen::camera_position, camera_group, "position", 3},
-    {nodes::Screen::camera_direction, camera_group, "direction", 3},
-};
-static_assert(std::size(screen_values) == nodes::screen_value_count);
-
-/// An image that is read, and how its names begin.
-struct NamedImage {
-  std::string prefix;
-  ImageNeeds needs;
-};
-std::vector<NamedImage> images_read(const check::TypedGraph& graph, const ScreenNeeds& needs) {
-  std::vector<NamedImage> all;
-  if (needs.depth.read) all.push_back({std::string(depth_prefix), needs.depth});
-  for (size_t i = 0; i < needs.images.size(); ++i)
-    if (needs.images[i].read) all.push_back({image_prefix(graph, i), needs.images[i]});
-  return all;
+/// What names of an image begin with: "depth", "color" or "image_NAME".
+std::string prefix_of(const check::TypedGraph& graph, interface::ImageNumber image) {
+  if (image == depth_image) return "depth";
+  return image == post_image(0) ? "color" : "image_" + graph.graph.images[image - post_image(1)].name;
 }
 
 /// Whether an offset of an image may be other than 0.
@@ -108,8 +87,8 @@ Between between(Int pixel, Float inside) {
 void ScreenNeeds::add(const check::TypedGraph& graph, uint32_t index) {
   const check::Node& node = graph.nodes[index];
   const std::span<const check::Operand> ports = graph.operands_of(node);
-  images.resize(1 + graph.graph.images.size());
-  const auto need = [&](nodes::Screen value) { values[static_cast<size_t>(value)] = true; };
+  images.resize(post_image(graph.graph.images.size()) + 1);
+  const auto need = [&](Screen value) { values[static_cast<size_t>(value)] = true; };
   const auto fetch = [&](ImageNeeds& image, size_t first_offset, bool linear) {
     image.read = true;
     image.inside |= linear;
@@ -118,14 +97,15 @@ void ScreenNeeds::add(const check::TypedGraph& graph, uint32_t index) {
   };
   if (const auto* value = std::get_if<nodes::Screen>(&node.row->lowering)) need(*value);
   if (const auto* what = std::get_if<nodes::Fetch>(&node.row->lowering)) {
-    if (*what == nodes::Fetch::color) fetch(images[ports[0].index], 1, ports[4].index == 1);
-    if (*what == nodes::Fetch::depth) fetch(depth, 0, false);
+    if (*what == nodes::Fetch::color) fetch(images[post_image(ports[0].index)], 1, ports[4].index == 1);
+    if (*what == nodes::Fetch::depth) fetch(images[depth_image], 0, false);
   }
   if (node.row->is<nodes::WorldPosition>()) {
-    depth.read = distance = true;
-    need(nodes::Screen::view_ray);
-    need(nodes::Screen::relative_origin);
-    if (ports[0].index == 0) need(nodes::Screen::camera_position);
+    images[depth_image].read = true;
+    for (const Screen value :
+         {Screen::view_ray, Screen::relative_origin, Screen::depth_numerator, Screen::depth_denominator})
+      need(value);
+    if (ports[0].index == 0) need(Screen::camera_position);
   }
   if (node.row->is<nodes::SumTaps>()) {
     sums.push_back(index);
@@ -138,105 +118,69 @@ void ScreenNeeds::add(const check::TypedGraph& graph, const check::Operand& oper
   const nodes::Row* row = graph.nodes[operand.index].row;
   const auto* what = row != nullptr ? std::get_if<nodes::Fetch>(&row->lowering) : nullptr;
   constexpr uint32_t linear = 1;  // of the outputs of scenedepth
-  if (what != nullptr && *what == nodes::Fetch::depth && operand.output == linear) distance = true;
+  if (what != nullptr && *what == nodes::Fetch::depth && operand.output == linear)
+    for (const Screen value : {Screen::depth_numerator, Screen::depth_denominator})
+      values[static_cast<size_t>(value)] = true;
 }
 
-std::string image_prefix(const check::TypedGraph& graph, size_t image) {
-  return image == 0 ? "color" : "image_" + graph.graph.images[image - 1].name;
-}
-
-std::vector<std::string> screen_function_names(const check::TypedGraph& graph) {
-  std::vector<std::string> names = {"post", post_name, "edge_clamp", "edge_mirror", "under", "depth_at"};
-  for (size_t i = 0; i <= graph.graph.images.size(); ++i) names.push_back(image_prefix(graph, i) + "_at");
-  return names;
-}
-
-std::vector<std::pair<std::string, int>> tap_counts(const check::TypedGraph& graph) {
-  std::vector<std::pair<std::string, int>> counts;
-  for (size_t i = 0; i < graph.nodes.size(); ++i) {
+std::vector<TapSum> tap_sums(const check::TypedGraph& graph) {
+  std::vector<TapSum> sums;
+  for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
     const check::Node& node = graph.nodes[i];
     if (node.row == nullptr || !node.row->is<nodes::SumTaps>()) continue;
     const std::span<const check::Operand> ports = graph.operands_of(node);
     const int first = static_cast<int32_t>(ports[1].index), last = static_cast<int32_t>(ports[2].index);
-    counts.emplace_back(graph.graph.nodes[i].id, last - first + 1);
+    sums.push_back({i, last - first + 1});
   }
-  return counts;
+  return sums;
 }
 
-void declare_reads(ir::Module& module, const check::TypedGraph& graph, const ScreenNeeds& needs) {
-  for (const auto& [prefix, image] : images_read(graph, needs)) {
-    ir::Function& function = module.functions.emplace_back();
-    function.name = prefix + "_at";
-    function.parameters = {{"x", ir::int_type, "", false}, {"y", ir::int_type, "", false}};
-    const bool is_depth = prefix == depth_prefix;
+void declare_reads(Lowered& lowered, const check::TypedGraph& graph, const ScreenNeeds& needs) {
+  for (interface::ImageNumber image = 0; image < needs.images.size(); ++image) {
+    if (!needs.images[image].read) continue;
+    const bool is_depth = image == depth_image;
+    lowered.interface.host.push_back({is_depth ? interface::Host::depth : interface::Host::image,
+                                      static_cast<uint32_t>(lowered.module.functions.size()), image});
+    ir::Function& function = lowered.module.functions.emplace_back();
+    function.name = prefix_of(graph, image) + "_at";
+    function.parameters = {int_parameter("x"), int_parameter("y")};
     function.results = {{is_depth ? "depth" : "color", is_depth ? ir::float_type : ir::vector_type(4)}};
   }
 }
 
-void add_screen_parameters(ir::Function& function, const check::TypedGraph& graph, const ScreenNeeds& needs) {
-  const auto add = [&](std::string name, ir::Type type, const char* group) {
-    function.parameters.push_back({std::move(name), type, group, std::string_view(group) != screen_group});
+std::vector<Binding> screen_bindings(const check::TypedGraph& graph, const ScreenNeeds& needs) {
+  std::vector<Binding> bindings;
+  const auto add_values = [&](std::string_view group) {
+    for (size_t i = 0; i < interface::screen_value_count; ++i)
+      if (const auto value = static_cast<Screen>(i); needs.values[i] && interface::row(value).group == group)
+        bindings.push_back(interface::bind(value));
   };
-  const auto add_values = [&](const char* group) {
-    for (const ScreenValue& value : screen_values)
-      if (std::string_view(value.group) == group && needs.values[static_cast<size_t>(value.what)])
-        add(value.name, ir::vector_type(value.width), group);
+  const auto add_images = [&](const std::function<void(interface::ImageNumber, const ImageNeeds&)>& add) {
+    for (interface::ImageNumber image = 0; image < needs.images.size(); ++image)
+      if (needs.images[image].read) add(image, needs.images[image]);
   };
-  add_values(screen_group);
-  for (const auto& [prefix, image] : images_read(graph, needs)) {
-    add(prefix + "_x", ir::int_type, screen_group);
-    add(prefix + "_y", ir::int_type, screen_group);
-    if (image.inside) add(prefix + "_inside", ir::vector_type(2), screen_group);
-  }
-  add_values(sizes_group);
-  for (const auto& [prefix, image] : images_read(graph, needs)) {
-    if (!image.size) continue;
-    add(prefix + "_width", ir::int_type, sizes_group);
-    add(prefix + "_height", ir::int_type, sizes_group);
-  }
-  add_values(camera_group);
-  if (!needs.distance) return;
-  add("depth_numerator", ir::vector_type(2), camera_group);
-  add("depth_denominator", ir::vector_type(2), camera_group);
+  add_values("screen");
+  add_images([&](interface::ImageNumber image, const ImageNeeds& needed) {
+    const std::string prefix = prefix_of(graph, image);
+    for (const Axis axis : {Axis::x, Axis::y}) bindings.push_back(interface::bind_pixel(image, prefix, axis));
+    if (needed.inside) bindings.push_back(interface::bind_place(image, prefix));
+  });
+  add_values("sizes");
+  add_images([&](interface::ImageNumber image, const ImageNeeds& needed) {
+    if (!needed.size) return;
+    for (const Axis axis : {Axis::x, Axis::y})
+      bindings.push_back(interface::bind_size(image, prefix_of(graph, image), axis));
+  });
+  add_values("camera");
+  return bindings;
 }
 
-void add_tap_parameters(ir::Function& function, const check::TypedGraph& graph, const ScreenNeeds& needs) {
-  for (const uint32_t node : needs.sums)
-    function.parameters.push_back({graph.graph.nodes[node].id, ir::int_type, taps_group, true});
-}
-
-ScreenInputs screen_inputs(ir::Builder& b, const check::TypedGraph& graph, const ScreenNeeds& needs) {
-  const auto value = [&](const char* group, const std::string& name) {
-    const std::vector<ir::Parameter>& parameters = b.function().parameters;
-    for (size_t i = 0; i < parameters.size(); ++i)
-      if (parameters[i].group == group && parameters[i].name == name) return b.parameter(i);
-    support::bug("post_process has no " + name);
-  };
-  const auto image = [&](const std::string& prefix, const ImageNeeds& of) {
-    ReadImage read;
-    if (!of.read) return read;
-    read.x = value(screen_group, prefix + "_x");
-    read.y = value(screen_group, prefix + "_y");
-    if (of.inside) read.inside = value(screen_group, prefix + "_inside");
-    if (of.size) read.width = value(sizes_group, prefix + "_width");
-    if (of.size) read.height = value(sizes_group, prefix + "_height");
-    read.at = b.module().find(prefix + "_at");
-    return read;
-  };
-  ScreenInputs inputs;
-  for (const ScreenValue& screen : screen_values)
-    if (const auto i = static_cast<size_t>(screen.what); needs.values[i])
-      inputs.values[i] = value(screen.group, screen.name);
-  inputs.depth = image(std::string(depth_prefix), needs.depth);
-  for (size_t i = 0; i < needs.images.size(); ++i)
-    inputs.images.push_back(image(image_prefix(graph, i), needs.images[i]));
-  if (needs.distance) {
-    inputs.depth_numerator = value(camera_group, "depth_numerator");
-    inputs.depth_denominator = value(camera_group, "depth_denominator");
-  }
-  for (const uint32_t node : needs.sums)
-    inputs.tap_counts.emplace_back(node, value(taps_group, graph.graph.nodes[node].id));
-  return inputs;
+std::vector<Binding> tap_bindings(const check::TypedGraph& graph, const ScreenNeeds& needs) {
+  std::vector<Binding> bindings;
+  for (const TapSum& sum : tap_sums(graph))
+    if (std::ranges::find(needs.sums, sum.node) != needs.sums.end())
+      bindings.push_back(interface::bind_taps(sum.node, graph.graph.nodes[sum.node].id, sum.taps));
+  return bindings;
 }
 
 nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId offset_x, ir::ValueId offset_y,
@@ -270,18 +214,16 @@ ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, ir::ValueId offs
 }
 
 ir::ValueId distance_of(ir::Builder& b, const ScreenInputs& screen, ir::ValueId depth) {
-  const Vec2 above(b, screen.depth_numerator), below(b, screen.depth_denominator);
+  const Vec2 above(b, screen[Screen::depth_numerator]), below(b, screen[Screen::depth_denominator]);
   const Float z(b, depth);
   return min((above[0] + z * above[1]) / (below[0] + z * below[1]), Float(greatest_distance)).value;
 }
 
 ir::ValueId relative_position(ir::Builder& b, const ScreenInputs& screen) {
-  const auto value = [&](nodes::Screen what) { return Vec3(b, screen.values[static_cast<size_t>(what)]); };
-  const ir::ValueId depth = fetch_depth(b, screen.depth, ir::none, ir::none, Edge::clamp);
+  const ir::ValueId depth = fetch_depth(b, screen.images[depth_image], ir::none, ir::none, Edge::clamp);
   const Float distance(b, distance_of(b, screen, depth));
-  return (value(nodes::Screen::relative_origin) +
-          value(nodes::Screen::view_ray) * functions::splat<3>(distance))
-      .value;
+  const Vec3 origin(b, screen[Screen::relative_origin]), ray(b, screen[Screen::view_ray]);
+  return (origin + ray * functions::splat<3>(distance)).value;
 }
 
 }  // namespace isoshade::lower

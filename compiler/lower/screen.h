@@ -6,13 +6,16 @@
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
+#include "compiler/interface/binding.h"
 #include "compiler/ir/builder.h"
+#include "compiler/lower/frame_layout.h"
 #include "compiler/nodes/row.h"
 #include "compiler/nodes/site.h"
 
 namespace isoshade::lower {
 
 struct Needs;
+struct Lowered;
 
 /// Of an image, what some nodes need.
 struct ImageNeeds {
@@ -23,11 +26,9 @@ struct ImageNeeds {
 
 /// Of the screen, what some nodes need.
 struct ScreenNeeds {
-  std::array<bool, nodes::screen_value_count> values{};  ///< by nodes::Screen
-  std::vector<ImageNeeds> images;  ///< the one that the post goes over, then Graph::images
-  ImageNeeds depth;
-  bool distance = false;       ///< the depth as a distance along the view
-  std::vector<uint32_t> sums;  ///< nodes that sum over taps, as they are written
+  std::array<bool, interface::screen_value_count> values{};  ///< by Screen
+  std::vector<ImageNeeds> images;                            ///< by ImageNumber
+  std::vector<uint32_t> sums;                                ///< nodes that sum over taps, as they are written
 
   /// What a node needs, and one that something reads.
   void add(const check::TypedGraph& graph, uint32_t node);
@@ -41,29 +42,34 @@ struct ReadImage {
   uint32_t at = ir::none;
 };
 
-/// The parameters of `post_process` that tell of the screen.
+/// The parameters of `post_process` that describe the screen.
 struct ScreenInputs {
-  std::array<ir::ValueId, nodes::screen_value_count> values{};
-  ir::ValueId depth_numerator = ir::none, depth_denominator = ir::none;
-  ReadImage depth;
-  std::vector<ReadImage> images;                             ///< of ScreenNeeds::images
+  std::array<ir::ValueId, interface::screen_value_count> values{};
+  std::vector<ReadImage> images;                             ///< by ImageNumber
   std::vector<std::pair<uint32_t, ir::ValueId>> tap_counts;  ///< of each sum over taps
+
+  ir::ValueId operator[](interface::Screen value) const { return values[static_cast<size_t>(value)]; }
 };
 
-/// Declares the functions that read images, without bodies.
-void declare_reads(ir::Module& module, const check::TypedGraph& graph, const ScreenNeeds& needs);
-/// Adds the parameters that `needs` asks for, but for "taps", which come last.
-void add_screen_parameters(ir::Function& function, const check::TypedGraph& graph, const ScreenNeeds& needs);
-void add_tap_parameters(ir::Function& function, const check::TypedGraph& graph, const ScreenNeeds& needs);
-/// The parameters that were added, found again.
-ScreenInputs screen_inputs(ir::Builder& b, const check::TypedGraph& graph, const ScreenNeeds& needs);
+/// The images that a post reads: the scene's depth; the image that the post goes over; those of Graph::images.
+inline constexpr interface::ImageNumber depth_image = image_word::depth;
+/// 0: the image that the post goes over; then those of Graph::images.
+constexpr interface::ImageNumber post_image(size_t number) {
+  return static_cast<interface::ImageNumber>(image_word::color + number);
+}
 
-/// How the names of a post's parameters and functions begin that tell of an image: "color", or "image_NAME".
-std::string image_prefix(const check::TypedGraph& graph, size_t image);
-/// The ids of the nodes that sum over taps, as they are written, and how many taps each has.
-std::vector<std::pair<std::string, int>> tap_counts(const check::TypedGraph& graph);
-/// Every name that functions of a post's module may have beside those of documents.
-std::vector<std::string> screen_function_names(const check::TypedGraph& graph);
+/// Declares the functions that read images, without bodies.
+void declare_reads(Lowered& lowered, const check::TypedGraph& graph, const ScreenNeeds& needs);
+/// The parameters that `needs` asks for, but for tap counts, which come last.
+std::vector<interface::Binding> screen_bindings(const check::TypedGraph& graph, const ScreenNeeds& needs);
+std::vector<interface::Binding> tap_bindings(const check::TypedGraph& graph, const ScreenNeeds& needs);
+
+/// The nodes that sum over taps, as they are written, and how many taps each has.
+struct TapSum {
+  uint32_t node;  ///< in Graph::nodes
+  int taps;
+};
+std::vector<TapSum> tap_sums(const check::TypedGraph& graph);
 
 /// How nodes::Fetch::color reads an image.
 struct ColorFilter {

@@ -58,23 +58,49 @@ Vec4 object_to_clip(Kernel& k, Int object, Vec3 position) {
   return to_clip(k, FrameBuffer::objects, object, object_word::projected, position);
 }
 
-/// What a kernel passes to an authored function for one of its parameters, but for light_count.
-/// `parameters`: where each effect parameter and image lies in the record.
-ir::ValueId argument(Kernel& k, const ir::Parameter& parameter, SurfacePoint& surface, Int object,
-                     const FieldOffsets& parameters) {
-  if (parameter.group == "surface") return surface.field(parameter.name);
-  if (parameter.group == "spaces") return surface.column(parameter.name);
-  if (parameter.group == "frame") {
-    const Int time(k.b, k.b.constant(frame_word::time));
-    return k.named(parameter.name, k.load(FrameBuffer::frame, time)).value;
+/// What surfaces and records give to the parameters of a document's function.
+class SurfaceArguments {
+ public:
+  SurfaceArguments(Kernel& k, SurfacePoint& surface, Int object, const interface::RecordLayout& record,
+                   ir::ValueId light_count)
+      : k_(k), surface_(surface), object_(object), record_(record), light_count_(light_count) {}
+
+  std::vector<ir::ValueId> of(const interface::Interface& interface) {
+    std::vector<ir::ValueId> values;
+    for (const interface::Binding& binding : interface.bindings) values.push_back(of(binding));
+    return values;
   }
-  support::assert_that(parameter.group == "parameters" || parameter.group == "images", parameter.name);
-  int offset = -1;
-  for (const auto& [name, word] : parameters)
-    if (name == parameter.name) offset = word;
-  support::assert_that(offset >= 0, parameter.name);
-  return k.named(parameter.name, load_field(k, parameter.type, object, offset));
-}
+
+ private:
+  ir::ValueId of(const interface::Binding& binding) {
+    namespace source = interface::source;
+    const ir::Parameter& parameter = binding.parameter;
+    const auto field = [&](int word) { return load_field(k_, parameter.type, object_, word); };
+    const auto only_posts = [&]() -> ir::ValueId { support::bug("only posts have " + parameter.name); };
+    const ir::ValueId value = std::visit(
+        interface::Cases{
+            [&](const source::Attribute& s) { return surface_.value(s.value); },
+            [&](const source::MatrixColumn& s) { return surface_.column(s.matrix, s.column).value; },
+            [&](const source::Time&) { return k_.load(FrameBuffer::frame, k_.constant(frame_word::time)).value; },
+            [&](const source::Input& s) { return field(column_word(record_, s, parameter.type)); },
+            [&](const source::Image& s) { return field(record_.images[s.slot]); },
+            [&](const source::LightCount&) { return light_count_; },
+            [&](const source::ScreenValue&) { return only_posts(); },
+            [&](const source::PixelOfImage&) { return only_posts(); },
+            [&](const source::PlaceInPixel&) { return only_posts(); },
+            [&](const source::SizeOfImage&) { return only_posts(); },
+            [&](const source::TapCount&) { return only_posts(); },
+        },
+        binding.source);
+    return value == light_count_ ? value : k_.named(parameter.name, value);
+  }
+
+  Kernel& k_;
+  SurfacePoint& surface_;
+  Int object_;
+  const interface::RecordLayout& record_;
+  ir::ValueId light_count_;
+};
 
 /// glTF KHR_lights_punctual: inverse square, windowed by the range if there is one.
 Float distance_falloff(Kernel& k, Int record, Float squared_distance) {
@@ -113,6 +139,12 @@ void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
 
 }  // namespace
 
+int column_word(const interface::RecordLayout& record, const interface::source::Input& input, ir::Type column) {
+  const int first = record.inputs[input.input];
+  support::assert_that(first >= 0, "a parameter has no words in its record");
+  return first + static_cast<int>(input.column) * column.width;
+}
+
 ir::ValueId load_field(Kernel& k, ir::Type type, Int object, int offset) {
   const auto word = [&](int i) { return k.load(FrameBuffer::objects, object + Int(offset + i)); };
   if (type == ir::int_type) return to_int(word(0)).value;
@@ -143,27 +175,22 @@ uint32_t add_vertex_kernel(ir::Module& module) {
   return k.index;
 }
 
-uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parameters,
-                                  graph::PositionSpace space) {
-  define_texture_reads(module);
-  const uint32_t move_vertex = module.find(move_vertex_name);
-  support::assert_that(move_vertex != ir::none, "no move_vertex");
+uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface& interface,
+                                  const interface::RecordLayout& record, graph::PositionSpace space) {
+  define_texture_reads(module, interface);
   Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
            {{"clip", ir::vector_type(4)}});
   const Int object = k.integer(1);
   SurfacePoint surface(k, object, attributes_of_vertex(k, k.integer(0)));
-  std::vector<ir::ValueId> arguments;
-  for (const ir::Parameter& parameter : std::vector(module.functions[move_vertex].parameters))
-    arguments.push_back(argument(k, parameter, surface, object, parameters));
-  Vec3 position(k.b, k.b.call(move_vertex, arguments)[0]);
+  SurfaceArguments arguments(k, surface, object, record, ir::none);
+  Vec3 position(k.b, k.b.call(interface.entry, arguments.of(interface))[0]);
   k.named("position", position);
   if (space == graph::PositionSpace::object) {
     k.b.finish(std::array{object_to_clip(k, object, position).value});
     return k.index;
   }
   if (space == graph::PositionSpace::world) position = k.named("view_position", surface.to_view(position));
-  const Int frame(k.b, k.b.constant(0));
-  const Vec4 clip = to_clip(k, FrameBuffer::frame, frame, frame_word::projection, position);
+  const Vec4 clip = to_clip(k, FrameBuffer::frame, k.constant(0), frame_word::projection, position);
   k.b.finish(std::array{clip.value});
   return k.index;
 }
@@ -181,28 +208,21 @@ uint32_t add_depth_kernel(ir::Module& module) {
   return k.index;
 }
 
-uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, LightKinds lights) {
+uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interface,
+                          const interface::RecordLayout& record, LightKinds lights) {
   add_edges(module);
   if (ir::asks_for_derivatives(module)) add_edge_gradients(module);
-  if (const uint32_t light_at = module.find("light_at"); light_at != ir::none)
+  if (const uint32_t light_at = interface.find(interface::Host::light); light_at != ir::none)
     define_light_at(module, light_at, lights);
-  define_texture_reads(module);
-  const uint32_t shade = module.find("shade");
-  support::assert_that(shade != ir::none, "no shade");
+  define_texture_reads(module, interface);
   Kernel k(module, "pixel",
            {int_parameter("x"), int_parameter("y"), int_parameter("triangle"), uniform_int("object"),
             uniform_int("light_count")},
            {{"color", ir::vector_type(4)}});
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
-  const std::vector<ir::Parameter> wanted = module.functions[shade].parameters;
-  std::vector<ir::ValueId> arguments;
-  for (const ir::Parameter& parameter : wanted) {
-    const bool is_count = parameter.group.empty();
-    support::assert_that(!is_count || parameter.name == "light_count", parameter.name);
-    arguments.push_back(is_count ? k.b.parameter(4) : argument(k, parameter, surface, object, parameters));
-  }
-  k.b.finish(k.b.call(shade, arguments));
+  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4));
+  k.b.finish(k.b.call(interface.entry, arguments.of(interface)));
   return k.index;
 }
 

@@ -4,12 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/interface/binding.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::lower {
@@ -31,43 +29,28 @@ struct LightKinds {
   bool spot = true;
 };
 
-/// A field of a record and the word where it begins.
-using FieldOffsets = std::vector<std::pair<std::string, int>>;
-
 /// A module with the frame's buffers and no function.
 ir::Module frame_module();
 
 /// Object space to clip space by the object's matrix. Adds `vertex`; returns its index.
 uint32_t add_vertex_kernel(ir::Module& module);
 
-/// Adds `vertex` around the module's `move_vertex`, which gives positions in `space`. `parameters` as below.
-uint32_t add_moving_vertex_kernel(ir::Module& module, const FieldOffsets& parameters,
-                                  graph::PositionSpace space);
+/// Adds `vertex` around the document's `move_vertex`, which returns positions in `space`.
+uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface& interface,
+                                  const interface::RecordLayout& record, graph::PositionSpace space);
 
 /// Adds `depth`; returns its index.
 uint32_t add_depth_kernel(ir::Module& module);
 
-/// Adds `pixel` around the module's `shade`, and the bodies of `light_at` and of what reads textures, where they are
-/// declared. `parameters`: where each effect parameter and each image lies, from the first word of the object's record.
-uint32_t add_pixel_kernel(ir::Module& module, const FieldOffsets& parameters, LightKinds lights);
+/// Adds `pixel` around the document's `shade`, and the bodies of the functions that it asks its host for.
+uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interface,
+                          const interface::RecordLayout& record, LightKinds lights);
 
 /// Adds `eval` around `function`: its arguments are the words of record `row` of `inputs`, in order.
 uint32_t add_eval_kernel(ir::Module& module, uint32_t function);
 
-/// Adds `post` around the module's `post_process`, and the bodies of the functions that read images.
-/// `images`: how the names begin that tell of each image (image_prefix): the one that the post goes over, then those
-/// of its document. `record`: where each parameter lies in `objects`, and under tap_field() the number of taps of each
-/// sum.
-uint32_t add_post_kernel(ir::Module& module, const std::vector<std::string>& images,
-                         const FieldOffsets& record);
-/// No parameter has such a name.
-inline std::string tap_field(const std::string& node) { return node + " taps"; }
-
-/// The groups of parameters of `post_process`, and the prefix of names that tell of the depth.
-inline constexpr const char* screen_group = "screen";
-inline constexpr const char* sizes_group = "sizes";
-inline constexpr const char* camera_group = "camera";
-inline constexpr const char* taps_group = "taps";
-inline constexpr std::string_view depth_prefix = "depth";
+/// Adds `post` around the document's `post_process`, and the bodies of the functions that read images.
+uint32_t add_post_kernel(ir::Module& module, const interface::Interface& interface,
+                         const interface::RecordLayout& record);
 
 }  // namespace isoshade::lower

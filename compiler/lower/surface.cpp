@@ -5,6 +5,10 @@
 
 namespace isoshade::lower {
 
+using interface::Space;
+using interface::SpaceMatrix;
+using interface::Surface;
+
 namespace {
 
 /// attributeN(weights, first0, first1, first2): N words of `vertices` from each vertex's own, interpolated.
@@ -60,27 +64,14 @@ Attributes attributes_of_vertex(Kernel& k, Int vertex) {
   };
 }
 
-ir::ValueId SurfacePoint::field(std::string_view name) {
-  for (const SurfaceField& field : surface_fields())
-    if (field.name == name) return k_.named(std::string(name), value_of(field.value));
-  support::bug("a surface has no " + std::string(name));
-}
-
-ir::ValueId SurfacePoint::column(std::string_view name) {
-  const int number = name.back() - '0';
-  for (size_t m = 0; m < space_matrix_count; ++m)
-    if (name.substr(0, name.size() - 2) == space_matrix_names[m])
-      return k_.named(std::string(name), column(static_cast<SpaceMatrix>(m), number).value);
-  support::bug("there is no matrix " + std::string(name));
-}
-
 ir::ValueId SurfacePoint::once(ir::ValueId& value, int width, int word) {
   if (value == ir::none) value = attributes_(width, word);
   return value;
 }
 
-Vec3 SurfacePoint::column(SpaceMatrix matrix, int number) {
-  const Int frame(k_.b, k_.b.constant(0));
+Vec3 SurfacePoint::column(SpaceMatrix matrix, uint32_t column_number) {
+  const int number = static_cast<int>(column_number);
+  const Int frame = k_.constant(0);
   switch (matrix) {
     case SpaceMatrix::world_from_object:
       return k_.load3(FrameBuffer::objects, object_, object_word::model + 3 * number);
@@ -88,34 +79,42 @@ Vec3 SurfacePoint::column(SpaceMatrix matrix, int number) {
       return k_.load3(FrameBuffer::objects, object_, object_word::inverse + 3 * number);
     case SpaceMatrix::view_from_world:
       return k_.load3(FrameBuffer::frame, frame, frame_word::view + 3 * number);
-    case SpaceMatrix::world_from_view: break;
+    case SpaceMatrix::world_from_view:
+      return k_.load3(FrameBuffer::frame, frame, frame_word::inverse_view + 3 * number);
   }
-  return k_.load3(FrameBuffer::frame, frame, frame_word::inverse_view + 3 * number);
+  support::bug("no such matrix");
 }
 
-Vec3 SurfacePoint::local_corner_normal(nodes::Surface which) {
+Vec3 SurfacePoint::local_corner_normal(int number) {
   const Vec3 packed(k_.b, once(local_corner_normals_, 3, vertex_word::corner_normals));
-  const int i = static_cast<int>(which) - static_cast<int>(nodes::Surface::corner_normal1);
-  return functions::octahedral_decode(packed[i]);
+  return functions::octahedral_decode(packed[number]);
 }
 
 std::array<Vec3, 3> SurfacePoint::linear(SpaceMatrix matrix) {
   return {column(matrix, 0), column(matrix, 1), column(matrix, 2)};
 }
 
-ir::ValueId SurfacePoint::value_of(nodes::SurfaceValue value) {
-  const bool in_object = value.space == nodes::Space::object;
-  const bool in_view = value.space == nodes::Space::view;
-  if (value.attribute == nodes::Surface::texcoord) return attributes_(2, vertex_word::texcoord);
-  if (value.attribute == nodes::Surface::color) return attributes_(4, vertex_word::color);
-  if (value.attribute == nodes::Surface::pixel_size) return pixel_size().value;
-  if (value.attribute == nodes::Surface::position) {
-    if (in_object) return local_position().value;
-    return (in_view ? to_view(position()) : position()).value;
+ir::ValueId SurfacePoint::value(interface::SurfaceValue value) {
+  switch (value.attribute) {
+    case Surface::position: return position_in(value.space).value;
+    case Surface::normal: return normal_in(value.space, local_normal()).value;
+    case Surface::texcoord: return attributes_(2, vertex_word::texcoord);
+    case Surface::view_direction: return view_direction_in(value.space).value;
+    case Surface::tangent: return tangent_in(value.space, tangent()).value;
+    case Surface::bitangent: return tangent_in(value.space, bitangent()).value;
+    case Surface::color: return attributes_(4, vertex_word::color);
+    case Surface::outline_normal: return normal_in(value.space, local_outline_normal()).value;
+    case Surface::pixel_size: return pixel_size().value;
+    case Surface::corner_normal1: return normal_in(value.space, local_corner_normal(0)).value;
+    case Surface::corner_normal2: return normal_in(value.space, local_corner_normal(1)).value;
+    case Surface::corner_normal3: return normal_in(value.space, local_corner_normal(2)).value;
   }
-  const Vec3 direction = in_object ? object_direction(value.attribute) : world_direction(value.attribute);
-  if (!in_view) return direction.value;
-  return weighted(linear(SpaceMatrix::view_from_world), direction).value;
+  support::bug("no such attribute");
+}
+
+Vec3 SurfacePoint::position_in(Space space) {
+  if (space == Space::object) return local_position();
+  return space == Space::view ? to_view(position()) : position();
 }
 
 Vec3 SurfacePoint::position() {
@@ -155,33 +154,31 @@ Vec3 SurfacePoint::towards_eye() {
   return Vec3(eye[0], eye[1], eye[2]) - position() * functions::splat<3>(eye[3]);
 }
 
-Vec3 SurfacePoint::object_direction(nodes::Surface attribute) {
-  switch (attribute) {
-    case nodes::Surface::normal: return normalize(local_normal());
-    case nodes::Surface::outline_normal: return normalize(local_outline_normal());
-    case nodes::Surface::corner_normal1:
-    case nodes::Surface::corner_normal2:
-    case nodes::Surface::corner_normal3: return normalize(local_corner_normal(attribute));
-    case nodes::Surface::tangent: return normalize(tangent());
-    case nodes::Surface::bitangent: return normalize(bitangent());
-    default: return normalize(weighted(linear(SpaceMatrix::object_from_world), towards_eye()));
-  }
+Vec3 SurfacePoint::world_to_view(Vec3 direction) {
+  return weighted(linear(SpaceMatrix::view_from_world), direction);
 }
 
-Vec3 SurfacePoint::world_normal(Vec3 local) {
+// Normals go by the cofactors of the matrix, which is its inverse transposed up to a factor.
+Vec3 SurfacePoint::normal_in(Space space, Vec3 local) {
+  if (space == Space::object) return normalize(local);
   const auto cofactors = [&](int i) {
     return k_.load3(FrameBuffer::objects, object_, object_word::normal + 3 * i);
   };
-  return normalize(weighted<Vec3>({cofactors(0), cofactors(1), cofactors(2)}, local));
+  const Vec3 world = normalize(weighted<Vec3>({cofactors(0), cofactors(1), cofactors(2)}, local));
+  return space == Space::view ? world_to_view(world) : world;
 }
 
-Vec3 SurfacePoint::world_direction(nodes::Surface attribute) {
-  if (attribute == nodes::Surface::normal) return world_normal(local_normal());
-  if (attribute == nodes::Surface::outline_normal) return world_normal(local_outline_normal());
-  if (nodes::is_corner_normal(attribute)) return world_normal(local_corner_normal(attribute));
-  if (attribute == nodes::Surface::view_direction) return normalize(towards_eye());
-  const Vec3 local = attribute == nodes::Surface::tangent ? tangent() : bitangent();
-  return normalize(weighted(linear(SpaceMatrix::world_from_object), local));
+Vec3 SurfacePoint::tangent_in(Space space, Vec3 local) {
+  if (space == Space::object) return normalize(local);
+  const Vec3 world = normalize(weighted(linear(SpaceMatrix::world_from_object), local));
+  return space == Space::view ? world_to_view(world) : world;
+}
+
+Vec3 SurfacePoint::view_direction_in(Space space) {
+  if (space == Space::object)
+    return normalize(weighted(linear(SpaceMatrix::object_from_world), towards_eye()));
+  const Vec3 world = normalize(towards_eye());
+  return space == Space::view ? world_to_view(world) : world;
 }
 
 }  // namespace isoshade::lower

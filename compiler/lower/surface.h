@@ -4,7 +4,6 @@
 
 #include <array>
 #include <functional>
-#include <string_view>
 #include <vector>
 
 #include "compiler/lower/kernel.h"
@@ -25,10 +24,8 @@ class SurfacePoint {
   SurfacePoint(Kernel& kernel, Int object, Attributes attributes)
       : k_(kernel), object_(object), attributes_(std::move(attributes)) {}
 
-  /// A field of the group "surface".
-  ir::ValueId field(std::string_view name);
-  /// A field of the group "spaces": a column of a matrix.
-  ir::ValueId column(std::string_view name);
+  ir::ValueId value(interface::SurfaceValue value);
+  Vec3 column(interface::SpaceMatrix matrix, uint32_t number);
   /// A point of world space in view space.
   Vec3 to_view(Vec3 point);
 
@@ -40,23 +37,24 @@ class SurfacePoint {
   Vec3 local_outline_normal() {
     return Vec3(k_.b, once(local_outline_normal_, 3, vertex_word::outline_normal));
   }
-  Vec3 local_corner_normal(nodes::Surface which);
+  Vec3 local_corner_normal(int number);
   Vec4 local_tangent() { return Vec4(k_.b, once(local_tangent_, 4, vertex_word::tangent)); }
 
-  Vec3 column(SpaceMatrix matrix, int number);
   /// The columns that take vectors.
-  std::array<Vec3, 3> linear(SpaceMatrix matrix);
+  std::array<Vec3, 3> linear(interface::SpaceMatrix matrix);
 
-  ir::ValueId value_of(nodes::SurfaceValue value);
   Vec3 position();
+  Vec3 position_in(interface::Space space);
   Float pixel_size();
-  Vec3 world_normal(Vec3 local);
   // Of any length, in object space.
   Vec3 tangent();
   Vec3 bitangent();
-  Vec3 towards_eye();  ///< in world space
-  Vec3 object_direction(nodes::Surface attribute);
-  Vec3 world_direction(nodes::Surface attribute);
+  Vec3 towards_eye();  ///< of any length, in world space
+  // Unit vectors in a space, of vectors in object space.
+  Vec3 normal_in(interface::Space space, Vec3 local);
+  Vec3 tangent_in(interface::Space space, Vec3 local);
+  Vec3 view_direction_in(interface::Space space);
+  Vec3 world_to_view(Vec3 direction);
 
   Kernel& k_;
   Int object_;

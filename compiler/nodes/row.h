@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/interface/binding.h"
 #include "compiler/ir/op.h"
 #include "compiler/nodes/image.h"
 #include "compiler/nodes/type_set.h"
@@ -21,43 +22,14 @@ namespace isoshade::nodes {
 
 struct Site;
 
-/// Attributes of the surface point that an effect shades.
-enum class Surface : uint8_t {
-  position,        ///< vec3
-  normal,          ///< vec3, unit
-  texcoord,        ///< vec2; has no space
-  view_direction,  ///< vec3, unit, towards the viewer
-  tangent,         ///< vec3, unit, along the texture's u
-  bitangent,       ///< vec3, unit, up in the texture: against its v
-  color,           ///< vec4, linear: what the mesh has, else 1; has no space
-  outline_normal,  ///< vec3, unit: one for all vertices at a place
-  pixel_size,      ///< float, world units; has no space
-  corner_normal1,  ///< vec3, unit: of a surface that meets others at a vertex; at vertices only
-  corner_normal2,
-  corner_normal3
-};
-
-constexpr bool is_corner_normal(Surface attribute) { return attribute >= Surface::corner_normal1; }
-
-/// Where coordinates count from.
-enum class Space : uint8_t {
-  world,
-  object,
-  view  ///< the eye at the origin, looking along -z, y up
-};
+using interface::Screen;
+using interface::Space;
+using interface::Surface;
+using interface::SurfaceValue;
 
 /// What ports that ask for a space can be. MaterialX calls object space also "model".
 inline const std::vector<std::string_view> space_names{"world", "object", "view", "model"};
 constexpr Space space_of(uint32_t choice) { return choice == 3 ? Space::object : static_cast<Space>(choice); }
-
-/// An attribute; vectors are given in a space.
-struct SurfaceValue {
-  Surface attribute;
-  Space space = Space::world;
-
-  constexpr size_t index() const { return 3 * static_cast<size_t>(attribute) + static_cast<size_t>(space); }
-};
-inline constexpr size_t surface_value_count = 3 * 12;  ///< of SurfaceValue::index
 
 /// What a port has that is neither linked nor given: nothing (then it must be), a number in every component
 /// (of a matrix: of the diagonal), a boolean (0 where another type is needed), three numbers, a text, or an
@@ -102,18 +74,6 @@ enum class Light : uint8_t {
 
 /// Sums its input over the lights.
 struct SumLights {};
-
-/// What a post document knows of its pixel and of the camera.
-enum class Screen : uint8_t {
-  pixel,            ///< vec2, pixels: its centre
-  coordinate,       ///< vec2, 0 to 1, v down: its centre
-  size,             ///< vec2, pixels: of the image that is made
-  view_ray,         ///< vec3, world space, as long as one unit of distance along the view
-  relative_origin,  ///< vec3, world space: where its ray begins, from the camera's position
-  camera_position,  ///< vec3, world space
-  camera_direction  ///< vec3, unit, world space: the way the camera looks
-};
-inline constexpr size_t screen_value_count = 7;
 
 /// Reads an image of the post chain, or the scene's depth, near the pixel.
 enum class Fetch : uint8_t { color, depth };

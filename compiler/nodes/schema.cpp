@@ -145,14 +145,14 @@ SchemaJson color_schema() {
 }
 
 SchemaJson pass_schema() {
-  return object_schema(
-      {{"name", reference("id"), true},
-       {"cull", one_of({"none", "back", "front"})},
-       {"depth", one_of({"nearer", "always"})},
-       {"position", described(reference("link"), "where vertices go; else they stay")},
-       {"position_space", one_of({"world", "object", "view"})},
-       {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
-       {"color", color_schema(), true}});
+  std::vector<SchemaKey> keys{{"name", reference("id"), true}};
+  for (const interface::PassStateRow& row : interface::pass_states())
+    keys.push_back({std::string(row.key), described(one_of(row.values), std::string(row.doc))});
+  keys.insert(keys.end(), {{"position", described(reference("link"), "where vertices go; else they stay")},
+                           {"position_space", one_of({"world", "object", "view"})},
+                           {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
+                           {"color", color_schema(), true}});
+  return object_schema(keys);
 }
 
 SchemaJson with_one_key(SchemaJson map) {

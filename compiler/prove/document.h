@@ -6,21 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "compiler/prove/prove.h"
 #include "compiler/check/typed_graph.h"
+#include "compiler/interface/binding.h"
 #include "compiler/lower/lower.h"
+#include "compiler/prove/prove.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::prove {
 
 /// Inputs without "min" or "max" go so far, and so do positions; see graphs/README.md for what else is assumed.
-inline constexpr double default_limit = 1e6;
+inline constexpr double default_limit = interface::assume::limit;
 
 /// One thing that a document computes: a function, or the colour of a pass, or where it moves vertices to.
 struct Subject {
   std::string name;  ///< of a function or post, its own; else "pass base", "pass outline, position"
   Tape tape;
-  lower::NodesOfOrigins nodes;  ///< where the places of the tape are
+  lower::NodesOfOrigins nodes;     ///< where the places of the tape are
+  interface::Interface interface;  ///< of the tape's module
 };
 
 /// Nothing, and a report, where a document is too large.

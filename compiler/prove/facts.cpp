@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compiler/prove/evaluate.h"
-#include "compiler/lower/limits.h"
+#include "compiler/interface/binding.h"
 
 namespace isoshade::prove {
 namespace {
@@ -112,7 +112,7 @@ Outcome Evaluator::answer_of(Answer answer, std::span<const uint32_t> in) const 
       // A coordinate is brought into [0, 1], multiplied by the size, and half a texel is taken away: some roundings of at
       // most the size. In proportion between texels nothing is steeper than their range.
       const double texels =
-          lower::max_size * (bounds_[in[2]].absolute + bounds_[in[3]].absolute + 4 * 4 * half_ulp);
+          interface::max_size * (bounds_[in[2]].absolute + bounds_[in[3]].absolute + 4 * 4 * half_ulp);
       r.absolute = std::min(range, (all.hi - all.lo) * texels) + 8 * half_ulp * r.magnitude() + 4 * smallest;
       break;
     }

@@ -35,7 +35,7 @@ std::string component_name(const Given& given, ir::Type type, uint32_t component
 
 class Flattener {
  public:
-  Flattener(Pool& pool, const std::function<std::vector<Given>(std::string_view)>& outside)
+  Flattener(Pool& pool, const std::function<std::vector<Given>(uint32_t)>& outside)
       : pool_(pool), module_(pool.tape().module), outside_(outside) {}
 
   Words input(const Given& given, ir::Type type);
@@ -68,7 +68,7 @@ class Flattener {
 
   Pool& pool_;
   const ir::Module& module_;
-  const std::function<std::vector<Given>(std::string_view)>& outside_;
+  const std::function<std::vector<Given>(uint32_t)>& outside_;
   uint32_t unknowns_ = 0;
 };
 
@@ -112,7 +112,7 @@ uint32_t Flattener::place_of(CallFrame& frame, uint32_t origin) {
 std::vector<Words> Flattener::call(uint32_t function, const std::vector<Words>& arguments, uint32_t caller) {
   const ir::Function& callee = module_.functions[function];
   if (!callee.library.empty()) return library(function, arguments, caller);
-  const std::vector<Given> given = callee.document.empty() ? outside_(callee.name) : std::vector<Given>();
+  const std::vector<Given> given = outside_(function);
   if (!callee.is_declaration() && given.empty()) return body(function, arguments, caller);
   Words question;
   for (const Words& argument : arguments) question.insert(question.end(), argument.begin(), argument.end());
@@ -374,7 +374,7 @@ uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, co
 }  // namespace
 
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
-             const std::function<std::vector<Given>(std::string_view)>& outside) {
+             const std::function<std::vector<Given>(uint32_t)>& outside) {
   Tape& tape = pool.tape();
   give_bodies(tape.module, tape.tier);
   Flattener flattener(pool, outside);
@@ -394,7 +394,7 @@ bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
 }
 
 std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                              const std::function<std::vector<Given>(std::string_view)>& outside,
+                              const std::function<std::vector<Given>(uint32_t)>& outside,
                               functions::Tier tier) {
   Tape tape;
   tape.tier = tier;

@@ -50,7 +50,7 @@ class Pool {
 
 /// Inlines the function into the pool's tape; its outputs are set. False if it became too long.
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
-             const std::function<std::vector<Given>(std::string_view)>& outside);
+             const std::function<std::vector<Given>(uint32_t)>& outside);
 
 /// Reorders the operations so that what decides a select stands before what only one of its sides needs; adds
 /// guards, what they say of values, and facts.

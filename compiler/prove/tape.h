@@ -155,11 +155,11 @@ struct Tape {
 /// How far the length of a unit vector is from 1 at most.
 inline constexpr double unit_tolerance = 0x1p-21;
 
-/// The tape of a function. `given`: of its parameters, one each. `outside`: what a function that no document has returns, one a
-/// result, by its name; nothing of one whose body tells. Of results and words that nothing is given of nothing is assumed. Nothing if it
+/// The tape of a function. `given`: of its parameters, one each. `outside`: what a function of the module returns that the host
+/// answers, one a result; nothing of one whose body tells. Of results and words that nothing is given of nothing is assumed. Nothing if it
 /// would be too long.
 std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                              const std::function<std::vector<Given>(std::string_view)>& outside,
+                              const std::function<std::vector<Given>(uint32_t)>& outside,
                               functions::Tier tier = functions::Tier::standard);
 
 }  // namespace isoshade::prove

@@ -112,6 +112,21 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
   return list;
 }
 
+/// What the function of a document takes, in order.
+ordered_json reflect(const std::vector<interface::Binding>& bindings) {
+  ordered_json list = ordered_json::array();
+  for (const interface::Binding& binding : bindings) {
+    const ir::Parameter& parameter = binding.parameter;
+    ordered_json row{{"name", parameter.name}};
+    if (!parameter.group.empty()) row["group"] = parameter.group;
+    row["kind"] = interface::kind_name(binding.source);
+    row["type"] = ir::name(parameter.type);
+    row["uniform"] = parameter.uniform;
+    list.push_back(row);
+  }
+  return list;
+}
+
 /// What the files of a pass begin with. Two names of 128 characters and an ending would be longer than the name of a
 /// file may be: then the names are cut, and the pass's number keeps files apart ("." is in no name).
 std::string pass_stem(const driver::Effect& effect, size_t pass) {
@@ -138,9 +153,11 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
   for (size_t i = 0; i < effect.passes.size(); ++i) {
     const driver::EffectPass& pass = effect.passes[i];
     const std::string stem = pass_stem(effect, i);
-    constexpr const char* culls[] = {"none", "back", "front"};
     ordered_json row{{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}};
-    row["cull"] = culls[static_cast<size_t>(pass.cull)];
+    for (const interface::PassStateRow& state : interface::pass_states())
+      row[std::string(state.key)] = state.values[state.get(pass.state)];
+    row["vertex_inputs"] = reflect(pass.vertex.bindings);
+    row["pixel_inputs"] = reflect(pass.pixel.bindings);
     row["moves_vertices"] = pass.moves_vertices;
     if (pass.enabled) row["enabled"] = effect.parameters[*pass.enabled].name;
     reflection["passes"].push_back(row);
@@ -161,6 +178,7 @@ bool write_post(const driver::Post& post, std::string_view precision, Writer& wr
   reflection["taps"] = reflect(post.taps);
   reflection["images"] = post.images;
   reflection["reads_depth"] = post.reads_depth;
+  reflection["inputs"] = reflect(post.program.bindings);
   if (post.enabled) reflection["enabled"] = post.parameters[*post.enabled].name;
   return writer.write(post.name + ".json", reflection.dump(2) + "\n") &&
          writer.program(post.name + ".post", post.program);

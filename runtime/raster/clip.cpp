@@ -226,13 +226,30 @@ class Assembler {
     vertices_.insert(vertices_.end(), vertex.attributes.begin(), vertex.attributes.end());
   }
 
+  bool is_culled(bool front) const {
+    switch (surface_.state.cull) {
+      case interface::Cull::none: return false;
+      case interface::Cull::back: return !front;
+      case interface::Cull::front: return front;
+    }
+    return false;
+  }
+
+  static int32_t depth_flag(interface::DepthTest test) {
+    switch (test) {
+      case interface::DepthTest::nearer: return 0;
+      case interface::DepthTest::always: return lower::triangle_flag::over;
+    }
+    return 0;
+  }
+
   void emit(std::array<Corner, 3> corners, std::array<uint32_t, 3> indices) {
     const auto& [a, b, c] = corners;
     const int64_t area =
         static_cast<int64_t>(b.x - a.x) * (c.y - a.y) - static_cast<int64_t>(b.y - a.y) * (c.x - a.x);
     if (area == 0) return;
     const bool front = area < 0;  // y points down
-    if (surface_.cull == (front ? Cull::front : Cull::back)) return;
+    if (is_culled(front)) return;
     if (area < 0) {
       std::swap(corners[1], corners[2]);
       std::swap(indices[1], indices[2]);
@@ -254,7 +271,7 @@ class Assembler {
       record[word::inverse_w + i] = corners[i].inverse_w;
     }
     record[word::object] =
-        (surface_.object << flag::bits) | (surface_.over ? flag::over : 0) | (wide ? flag::wide : 0);
+        (surface_.object << flag::bits) | depth_flag(surface_.state.depth) | (wide ? flag::wide : 0);
     triangles_.insert(triangles_.end(), record.begin(), record.end());
   }
 

@@ -7,10 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace isoshade::raster {
+#include "compiler/interface/pass_state.h"
 
-/// Triangles are front-facing where their vertices turn counter-clockwise in the image.
-enum class Cull : uint8_t { none, back, front };
+namespace isoshade::raster {
 
 /// The largest image that positions in 1/256 pixel reach.
 inline constexpr int max_image_size = 8192;
@@ -23,9 +22,9 @@ struct Surface {
       clip;  ///< x y z w of each vertex; y up; z = w is the near plane, z = 0 infinitely far
   std::span<const uint32_t> indices;  ///< triples of vertices, each below clip.size() / 4
   uint32_t first_vertex = 0;          ///< where the records of its vertices begin in `vertices`
-  Cull cull = Cull::back;
-  int object = 0;     ///< the first word of its record in the array of objects
-  bool over = false;  ///< it is drawn over what is nearer, too
+  /// Triangles are front-facing where their vertices turn counter-clockwise in the image.
+  interface::PassState state;
+  int object = 0;  ///< the first word of its record in the array of objects
 };
 
 /// Appends the surface's triangles to `triangles` (records of lower/frame_layout.h), in the order of its

@@ -40,16 +40,6 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
   return kinds;
 }
 
-/// What culling means for a mesh that a mirroring transform turns inside out.
-backends::Cull cull_of(graph::Cull cull, bool mirrored) {
-  switch (cull) {
-    case graph::Cull::none: return backends::Cull::none;
-    case graph::Cull::back: return mirrored ? backends::Cull::front : backends::Cull::back;
-    case graph::Cull::front: return mirrored ? backends::Cull::back : backends::Cull::front;
-  }
-  return backends::Cull::none;
-}
-
 /// Where a parameter begins, in words.
 size_t word_of(const driver::Effect& effect, size_t parameter) {
   size_t word = 0;
@@ -280,8 +270,7 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
       } else {
         backends::Draw& draw = place_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p],
                                           mesh.parts[part], parameters[part]);
-        draw.cull = cull_of(pass.cull, mirrored);
-        draw.over = pass.depth == graph::DepthTest::always;
+        draw.state = mirrored ? pass.state.mirrored() : pass.state;
         plan_.origins.push_back({static_cast<uint32_t>(o), &pass});
       }
     }

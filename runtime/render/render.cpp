@@ -15,15 +15,6 @@
 namespace isoshade::render {
 namespace {
 
-raster::Cull to_raster(backends::Cull cull) {
-  switch (cull) {
-    case backends::Cull::none: return raster::Cull::none;
-    case backends::Cull::back: return raster::Cull::back;
-    case backends::Cull::front: return raster::Cull::front;
-  }
-  return raster::Cull::none;
-}
-
 /// What the images of a frame take at the least: those that are drawn and the ones that posts keep, beside the arrays
 /// that a post reads. The drawing itself takes more, which only the backend knows.
 uint64_t image_bytes(const Plan& plan) {
@@ -64,7 +55,7 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
   for (size_t d = 0; d < frame.draws.size(); ++d) {
     const backends::Draw& draw = frame.draws[d];
     support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
-    raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, to_raster(draw.cull), draw.object, draw.over},
+    raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object},
                           frame.width, frame.height, vertices, triangles);
     support::release(clip[d]);
   }

@@ -14,16 +14,16 @@
 
 #include "compiler/graph/document.h"
 #include "compiler/graph/graph.h"
-#include "compiler/lower/limits.h"
+#include "compiler/interface/binding.h"
 #include "runtime/scene/encode.h"
 #include "runtime/scene/mesh.h"
 
 namespace isoshade::scene {
 
-inline constexpr int max_size = lower::max_size;  ///< of each side of the image, in pixels
+inline constexpr int max_size = interface::max_size;  ///< of each side of the image, in pixels
 /// Limits that keep hostile scenes harmless.
 inline constexpr int64_t max_instances = 65'536;
-inline constexpr size_t max_lights = lower::max_lights;
+inline constexpr size_t max_lights = interface::max_lights;
 
 enum class Projection : uint8_t { perspective, orthographic };
 

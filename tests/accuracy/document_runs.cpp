@@ -66,46 +66,43 @@ Surroundings::Surroundings() {
   for (int i = 0; i < pixels; ++i) buffer(FrameBuffer::objects).push_back(numbers.in(1));  // depths
 }
 
-void Surroundings::define(ir::Module& module) {
+void Surroundings::define(ir::Module& module, const interface::Interface& interface) {
   module.buffers = lower::frame_module().buffers;
-  lower::define_texture_reads(module);
-  for (uint32_t i = 0; i < module.functions.size(); ++i) {
-    const ir::Function& function = module.functions[i];
-    if (!function.is_declaration() || !function.library.empty()) continue;
-    const bool is_light = function.name == lower::light_at_name, is_depth = function.name == "depth_at";
-    Kernel k(module, i);
-    if (is_light) {
+  lower::define_texture_reads(module, interface);
+  for (const interface::HostFunction& function : interface.host) {
+    if (!module.functions[function.function].is_declaration()) continue;
+    Kernel k(module, function.function);
+    if (function.host == interface::Host::light) {
       const Int record = k.integer(0) * Int(light_words);
       k.b.finish(std::array{k.load3(FrameBuffer::lights, record, 0).value,
                             k.load3(FrameBuffer::lights, record, 3).value});
       continue;
     }
     const Int pixel = (k.integer(0) * Int(7) + k.integer(1) * Int(13)) & Int(pixels - 1);
-    if (is_depth)
+    if (function.host == interface::Host::depth)
       k.b.finish(std::array{k.load(FrameBuffer::objects, pixel).value});
     else
       k.b.finish(std::array{k.load4(FrameBuffer::layers, pixel * Int(4), 0).value});
   }
 }
 
-DocumentRuns::DocumentRuns(ir::Module floats, ir::Module exact, const std::string& entry)
-    : floats_module_((Surroundings::define(floats), std::move(floats))),
-      exact_module_((Surroundings::define(exact), std::move(exact))),
-      floats_entry_(floats_module_.find(entry)),
-      exact_entry_(exact_module_.find(entry)),
+DocumentRuns::DocumentRuns(ir::Module floats, ir::Module exact, const interface::Interface& interface)
+    : floats_module_((Surroundings::define(floats, interface), std::move(floats))),
+      exact_module_((Surroundings::define(exact, interface), std::move(exact))),
+      entry_(interface.entry),
       interpreter_(floats_module_, ir::Preconditions::report),
       evaluator_(exact_module_) {
   surroundings_.bind(interpreter_);
   surroundings_.bind(evaluator_);
   size_t words = 0;
-  for (const ir::Result& result : exact_module_.functions[exact_entry_].results) words += result.type.width;
+  for (const ir::Result& result : exact_module_.functions[entry_].results) words += result.type.width;
   floats_.resize(words);
   exact_.resize(words);
 }
 
 bool DocumentRuns::run_floats(std::span<const uint32_t> arguments) {
   interpreter_.limit_steps(1'000'000);
-  return interpreter_.run(floats_entry_, arguments, floats_);
+  return interpreter_.run(entry_, arguments, floats_);
 }
 
 void DocumentRuns::run_exact(std::span<const uint32_t> arguments) {
@@ -116,7 +113,7 @@ void DocumentRuns::run_exact(std::span<const uint32_t> arguments) {
       cells.push_back({parameter.type.is_float() ? reference::Real(std::bit_cast<float>(arguments[next]))
                                                  : reference::Real(),
                        arguments[next]});
-  evaluator_.run(exact_entry_, cells, exact_);
+  evaluator_.run(entry_, cells, exact_);
 }
 
 }  // namespace isoshade::accuracy

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/reference/evaluator.h"
+#include "compiler/interface/binding.h"
 #include "compiler/ir/interpreter.h"
 
 namespace isoshade::accuracy {
@@ -17,7 +18,7 @@ class Surroundings {
 
   static constexpr int textures = 6;
   /// Gives bodies to what a lowered document leaves to its host.
-  static void define(ir::Module& module);
+  static void define(ir::Module& module, const interface::Interface& interface);
   template <class Machine>
   void bind(Machine& machine) const {
     for (size_t i = 0; i < buffers_.size(); ++i)
@@ -28,10 +29,11 @@ class Surroundings {
   std::array<std::vector<uint32_t>, 11> buffers_;
 };
 
-/// Runs the function `entry` of a module: `floats` has bodies for the library's functions, `exact` none.
+/// Runs the function of a document: `floats` has bodies for the library's functions, `exact` none.
 class DocumentRuns {
  public:
-  DocumentRuns(ir::Module floats, ir::Module exact, const std::string& entry);
+  /// `interface`: of both modules.
+  DocumentRuns(ir::Module floats, ir::Module exact, const interface::Interface& interface);
 
   /// The words of the parameters. False if the floats took too many steps. Needs lanes::FpGuard.
   bool run_floats(std::span<const uint32_t> arguments);
@@ -41,13 +43,13 @@ class DocumentRuns {
   const std::vector<reference::Cell>& exact() const { return exact_; }
   /// Of the entry.
   const std::vector<ir::Parameter>& parameters() const {
-    return exact_module_.functions[exact_entry_].parameters;
+    return exact_module_.functions[entry_].parameters;
   }
 
  private:
   Surroundings surroundings_;
   ir::Module floats_module_, exact_module_;
-  uint32_t floats_entry_, exact_entry_;
+  uint32_t entry_;
   ir::Interpreter interpreter_;
   reference::Evaluator evaluator_;
   std::vector<uint32_t> floats_;

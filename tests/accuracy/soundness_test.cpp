@@ -120,7 +120,8 @@ class Examination {
               uint64_t seed)
       : tape_(subject.tape),
         proof_(proof),
-        runs_(subject.tape.module, lower::lower(graph), lower::entry_name(graph)),
+        bindings_(subject.interface.bindings),
+        runs_(subject.tape.module, lower::lower(graph).module, subject.interface),
         runner_(tape_),
         exact_tape_(tape_, runner_),
         evaluator_(tape_),
@@ -166,14 +167,19 @@ class Examination {
       row[next] = std::bit_cast<uint32_t>(first);
       row[next + 1] = std::bit_cast<uint32_t>(second);
     };
-    for (const ir::Parameter& p : runs_.parameters()) {
-      if (p.group == "images")
+    namespace source = interface::source;
+    for (const interface::Binding& binding : bindings_) {
+      if (std::holds_alternative<source::Image>(binding.source))
         row[next] = static_cast<uint32_t>(static_cast<int>(random_() % (Surroundings::textures + 1)) - 1);
-      if (p.group == "camera" && p.name == "depth_numerator")
-        set(perspective ? 0.1f : 1000, perspective ? 0 : -999.9f);
-      if (p.group == "camera" && p.name == "depth_denominator") set(perspective ? 0 : 1, perspective ? 1 : 0);
-      if (p.name == "light_count" && random_() % 16 != 0) row[next] = static_cast<uint32_t>(random_() % 5);
-      next += p.type.width;
+      if (const auto* screen = std::get_if<source::ScreenValue>(&binding.source)) {
+        if (screen->value == interface::Screen::depth_numerator)
+          set(perspective ? 0.1f : 1000, perspective ? 0 : -999.9f);
+        if (screen->value == interface::Screen::depth_denominator)
+          set(perspective ? 0 : 1, perspective ? 1 : 0);
+      }
+      if (std::holds_alternative<source::LightCount>(binding.source) && random_() % 16 != 0)
+        row[next] = static_cast<uint32_t>(random_() % 5);
+      next += binding.parameter.type.width;
     }
   }
 
@@ -267,6 +273,7 @@ class Examination {
 
   const Tape& tape_;
   const Proof& proof_;
+  const std::vector<interface::Binding>& bindings_;
   DocumentRuns runs_;
   prove::TapeRunner runner_;
   RealTape exact_tape_;

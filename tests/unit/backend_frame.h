@@ -42,7 +42,7 @@ struct TestFrame {
     vertices = frame.vertices;
     for (size_t d = 0; d < frame.draws.size(); ++d) {
       const Draw& draw = frame.draws[d];
-      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, raster::Cull::none, draw.object},
+      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object},
                             frame.width, frame.height, vertices, triangles);
     }
   }
@@ -60,7 +60,7 @@ struct TestFrame {
     draw.first_vertex = static_cast<uint32_t>(frame.vertices.size() / lower::vertex_word::stride);
     draw.vertex_count = vertices_of_object;
     draw.indices = indices;
-    draw.cull = Cull::none;
+    draw.state.cull = interface::Cull::none;
     frame.draws.push_back(draw);
 
     frame.objects.resize(frame.objects.size() + object_stride);

@@ -53,7 +53,7 @@ class FrontEnd {
   }
   ir::Module lowered(const std::shared_ptr<const check::TypedGraph>& graph) {
     EXPECT_NE(graph, nullptr) << diagnostics.text();
-    return graph != nullptr ? isoshade::lower::lower(*graph) : ir::Module{};
+    return graph != nullptr ? isoshade::lower::lower(*graph).module : ir::Module{};
   }
 };
 

@@ -110,12 +110,12 @@ TEST(Build, EffectHasParametersAndPasses) {
   EXPECT_EQ(std::get<Link>(graph.nodes[0].ports[0].value).name, "map");
   ASSERT_EQ(graph.passes.size(), 2u);
   EXPECT_EQ(graph.passes[0].name, "base");
-  EXPECT_EQ(graph.passes[0].cull, Cull::back);
-  EXPECT_EQ(graph.passes[0].depth, DepthTest::nearer);
+  EXPECT_EQ(graph.passes[0].state.cull, interface::Cull::back);
+  EXPECT_EQ(graph.passes[0].state.depth, interface::DepthTest::nearer);
   EXPECT_FALSE(graph.passes[0].position.has_value());
   EXPECT_EQ(graph.passes[0].color.name, "lit");
-  EXPECT_EQ(graph.passes[1].cull, Cull::front);
-  EXPECT_EQ(graph.passes[1].depth, DepthTest::always);
+  EXPECT_EQ(graph.passes[1].state.cull, interface::Cull::front);
+  EXPECT_EQ(graph.passes[1].state.depth, interface::DepthTest::always);
   EXPECT_EQ(graph.passes[1].position->selectors, std::vector<std::string>{"xyz"});
   EXPECT_EQ(graph.passes[1].position_space, PositionSpace::view);
   EXPECT_EQ(graph.passes[1].enabled, 0u);

@@ -17,7 +17,7 @@ std::string effect(const std::string& nodes, const std::string& color = "color")
 
 /// Gives light_at a body: light i shines with color (2^i, 10 * 2^i, 0) along (0, i, 1).
 void define_lights(ir::Module& module) {
-  const uint32_t light_at = module.find(lower::light_at_name);
+  const uint32_t light_at = module.find(interface::names::light_at);
   ASSERT_NE(light_at, ir::none);
   ASSERT_TRUE(module.functions[light_at].is_declaration());
   ir::Builder b(module, light_at);
@@ -133,8 +133,8 @@ TEST(LowerEffect, PassesAreLoweredOneByOne) {
     "a": {"type": "color3", "value": [1, 1, 1]}, "b": {"type": "color3", "value": [1, 1, 1]}},
     "passes": [{"name": "p", "color": "a"}, {"name": "q", "color": "b"}]})");
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
-  EXPECT_EQ(lower::lower(*graph, {.pass = 0}).functions[0].parameters[0].name, "a");
-  EXPECT_EQ(lower::lower(*graph, {.pass = 1}).functions[0].parameters[0].name, "b");
+  EXPECT_EQ(lower::lower(*graph, {.pass = 0}).module.functions[0].parameters[0].name, "a");
+  EXPECT_EQ(lower::lower(*graph, {.pass = 1}).module.functions[0].parameters[0].name, "b");
 }
 
 TEST(LowerEffect, APositionIsAFunctionOfItsOwnThatAsksForNoMore) {
@@ -147,8 +147,8 @@ TEST(LowerEffect, APositionIsAFunctionOfItsOwnThatAsksForNoMore) {
     "passes": [{"name": "p", "color": "tint"}, {"name": "q", "color": "tint", "position": "moved"}]})");
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
   EXPECT_EQ(graph->position_of(0), nullptr);
-  const ir::Module module = lower::lower(*graph, {.pass = 1, .part = lower::PassPart::position});
-  const ir::Function& move_vertex = module.functions.at(module.find(lower::move_vertex_name));
+  const auto [module, interface] = lower::lower(*graph, {.pass = 1, .part = lower::PassPart::position});
+  const ir::Function& move_vertex = module.functions.at(interface.entry);
   std::string parameters;
   for (const ir::Parameter& parameter : move_vertex.parameters)
     parameters += parameter.group + "." + parameter.name + " ";
@@ -156,7 +156,7 @@ TEST(LowerEffect, APositionIsAFunctionOfItsOwnThatAsksForNoMore) {
   Program program(module);
   EXPECT_EQ(program({1, 2, 3, /* normal */ 0, 1, 0, /* pixel */ 0.5, /* width */ 4}),
             (std::vector<float>{1, 4, 3}));
-  EXPECT_EQ(lower::lower(*graph, {.pass = 1}).functions[0].parameters.size(), 1u);
+  EXPECT_EQ(lower::lower(*graph, {.pass = 1}).module.functions[0].parameters.size(), 1u);
 }
 
 }  // namespace

@@ -67,8 +67,8 @@ TEST(LowerFunction, NamesOfStagesAndOfLibraryFunctionsAreNotTaken) {
     const auto graph = front_end.check(R"({"isoshade": 1, "function": ")" + std::string(name) +
                                        R"(", "inputs": {"x": {"type": "float"}}, "outputs": {"out": "x"}})");
     ASSERT_NE(graph, nullptr);
-    EXPECT_EQ(lower::entry_name(*graph), "function_" + std::string(name));
-    EXPECT_EQ(lower::lower(*graph).functions.back().name, lower::entry_name(*graph));
+    const auto [module, interface] = lower::lower(*graph);
+    EXPECT_EQ(module.functions[interface.entry].name, "function_" + std::string(name));
   }
 }
 

@@ -14,7 +14,7 @@ std::string parameters_of(const std::string& nodes) {
     "parameters": {"tint": {"type": "color4", "value": [1, 1, 1, 1]}, "unused": {"type": "float", "value": 1}},
     "nodes": {)" + nodes + R"(}, "outputs": {"color": "color"}})");
   std::string list;
-  for (const ir::Parameter& parameter : module.functions[module.find(lower::post_name)].parameters)
+  for (const ir::Parameter& parameter : module.functions[module.find(interface::names::post_process)].parameters)
     list += (list.empty() ? "" : " ") + parameter.group + "." + parameter.name;
   return list;
 }

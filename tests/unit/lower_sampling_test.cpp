@@ -49,8 +49,9 @@ class Picture {
     function.parameters = {{"texture", ir::int_type, "", false}, {"texcoord", ir::vector_type(2), "", false}};
     function.results = {{"color", ir::vector_type(4)}};
     ir::Builder b(module, 0);
-    b.finish(std::array{lower::sample(b, sampling, b.parameter(0), b.parameter(1))});
-    lower::define_texture_reads(module);
+    interface::Interface interface;
+    b.finish(std::array{lower::sample(b, interface, sampling, b.parameter(0), b.parameter(1))});
+    lower::define_texture_reads(module, interface);
     functions::expand(module);
     ir::Interpreter interpreter(module);
     std::vector<uint32_t> texels, records(records_.begin(), records_.end());

@@ -62,7 +62,7 @@ TEST(NodeTable, EveryNodeLowersForEveryTypeThatItAccepts) {
       FrontEnd front_end;
       const auto graph = front_end.check(text);
       ASSERT_NE(graph, nullptr) << front_end.diagnostics.text() << text;
-      const ir::Module module = lower::lower(*graph);
+      const ir::Module module = lower::lower(*graph).module;
       EXPECT_EQ(ir::validate(module), "") << text;
       const ir::Function& function = module.functions.at(module.find("example"));
       EXPECT_EQ(function.results[0].type, nodes::ir_type(example.type_of(row.outputs[0].type))) << text;

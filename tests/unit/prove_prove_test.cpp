@@ -55,7 +55,7 @@ bool breaks(const Checked& c) {
   std::vector<float> arguments;
   for (const uint32_t word : c.proof.unproved.at(0).counterexample)
     arguments.push_back(std::bit_cast<float>(word));
-  Program program(lower::lower(*c.graph));
+  Program program(lower::lower(*c.graph).module);
   bool finite = true;
   for (const float result : program(arguments)) finite = finite && std::isfinite(result);
   return !finite;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/prove/document.h"
-#include "compiler/lower/limits.h"
+#include "compiler/interface/binding.h"
 #include "tests/unit/front_end.h"
 
 namespace isoshade {
@@ -94,7 +94,7 @@ TEST(Sound, SumsAreOverAsManyLightsAsASceneMayHave) {
   };
   EXPECT_FALSE(effect("1e30").unproved.empty()) << "1e36 each: 1024 of them are more than a float holds";
   EXPECT_TRUE(effect("3e29").unproved.empty());
-  EXPECT_GE(effect("1").outputs[0].hi, 1e6 * lower::max_lights);
+  EXPECT_GE(effect("1").outputs[0].hi, 1e6 * interface::max_lights);
 }
 
 TEST(Sound, SumsAreOverTheTapsThatAreWritten) {

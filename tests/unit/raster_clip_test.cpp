@@ -17,6 +17,8 @@
 namespace isoshade::raster {
 namespace {
 
+using interface::Cull;
+
 namespace word = lower::triangle_word;
 constexpr int stride = lower::vertex_word::stride;
 
@@ -43,7 +45,7 @@ Clipped run(const std::vector<float>& clip, const std::vector<uint32_t>& indices
   Surface surface;
   surface.clip = clip;
   surface.indices = indices;
-  surface.cull = cull;
+  surface.state.cull = cull;
   surface.object = 40;
   clip_and_snap(surface, width, height, result.vertices, result.triangles);
   return result;

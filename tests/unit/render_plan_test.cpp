@@ -138,10 +138,10 @@ TEST_F(PlanTest, MirroredObjectsKeepTheirOutside) {
     "a": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [1, -1, 1]}},
     "b": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [-1, -1, 1]}}})");
   ASSERT_TRUE(made) << diagnostics_.text();
-  EXPECT_EQ(made->frame.draws[0].cull, backends::Cull::back);  // the pass that culls fronts
-  EXPECT_EQ(made->frame.draws[1].cull, backends::Cull::front);
-  EXPECT_EQ(made->frame.draws[2].cull, backends::Cull::front);
-  EXPECT_EQ(made->frame.draws[3].cull, backends::Cull::back);
+  EXPECT_EQ(made->frame.draws[0].state.cull, interface::Cull::back);  // the pass that culls fronts
+  EXPECT_EQ(made->frame.draws[1].state.cull, interface::Cull::front);
+  EXPECT_EQ(made->frame.draws[2].state.cull, interface::Cull::front);
+  EXPECT_EQ(made->frame.draws[3].state.cull, interface::Cull::back);
 }
 
 TEST_F(PlanTest, ReportsParametersThatAnEffectHasNotOrThatDoNotFit) {

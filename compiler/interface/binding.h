@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// The interface between a document's function and the kernel around it: what each parameter of the function is, and which
+// functions the kernel provides. Lowering makes one Interface a module; kernels, the prover, tests and reflection read it.
+// Nothing is recognised by its name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "compiler/ir/module.h"
+
+namespace isoshade::interface {
+
+/// What is assumed of each component of a value; graphs/README.md tells users.
+struct Assumption {
+  double lo = 0, hi = 0;
+  bool unit = false;  ///< a vector of length 1
+  /// If not 0: a quotient by a sum that begins with this value lies from 0 to this.
+  double quotient = 0;
+};
+
+inline constexpr int max_size = 8192;  ///< of each side of an image or a texture, in pixels; the runtime refuses more
+inline constexpr int max_lights = 1024;  ///< of a scene; the runtime refuses more
+
+namespace assume {
+inline constexpr double limit = 1e6;  ///< of what has no limit of its own
+inline constexpr Assumption anywhere{-limit, limit}, direction{-1, 1, true}, distance{0, limit}, fraction{0, 1},
+    color{0, 1e3}, texture_coordinate{-1e4, 1e4}, ray{-1e3, 1e3}, image_place{0, max_size}, image_size{1, max_size},
+    light_count{0, max_lights}, texture{-1, limit}, boolean{0, 1};
+/// The distance of a depth of 0 is 1 / 0, which becomes the largest distance that there is.
+inline constexpr Assumption depth_divisor{-limit, limit, false, 1e9};
+}  // namespace assume
+
+enum class Surface : uint8_t {
+#define SURFACE(name, width, spaces, stages, assumed) name,
+#include "compiler/interface/values.def"
+};
+/// Values for posts.
+enum class Screen : uint8_t {
+#define SCREEN(name, group, parameter, width, assumed) name,
+#include "compiler/interface/values.def"
+};
+enum class SpaceMatrix : uint8_t {
+#define MATRIX(name) name,
+#include "compiler/interface/values.def"
+};
+
+#define SURFACE(name, width, spaces, stages, assumed) +1
+inline constexpr size_t surface_count = 0
+#include "compiler/interface/values.def"
+    ;
+#define SCREEN(name, group, parameter, width, assumed) +1
+inline constexpr size_t screen_value_count = 0
+#include "compiler/interface/values.def"
+    ;
+#define MATRIX(name) +1
+inline constexpr size_t space_matrix_count = 0
+#include "compiler/interface/values.def"
+    ;
+
+/// What coordinates are relative to.
+enum class Space : uint8_t {
+  world,
+  object,
+  view  ///< the eye at the origin, looking along -z, y up
+};
+inline constexpr size_t space_count = 3;
+
+/// An attribute in a space.
+struct SurfaceValue {
+  Surface attribute;
+  Space space = Space::world;
+
+  constexpr size_t index() const {
+    return space_count * static_cast<size_t>(attribute) + static_cast<size_t>(space);
+  }
+};
+inline constexpr size_t surface_value_count = space_count * surface_count;  ///< of SurfaceValue::index
+
+enum class SurfaceStages : uint8_t { all, vertices };
+
+struct SurfaceRow {
+  std::string_view name;
+  int width;
+  bool has_spaces;
+  SurfaceStages stages;
+  Assumption assumed;
+};
+const SurfaceRow& row(Surface attribute);
+/// "normal_object"; world space has no suffix.
+std::string name(SurfaceValue value);
+/// Every value that a document may ask for, in order.
+const std::vector<SurfaceValue>& surface_values();
+
+struct ScreenRow {
+  std::string_view group, parameter;
+  int width;
+  Assumption assumed;
+};
+const ScreenRow& row(Screen value);
+
+enum class Axis : uint8_t { x, y };
+
+/// An image that a post reads, by its record in `layer_records` (frame_layout.h).
+using ImageNumber = uint32_t;
+
+/// What a parameter is: one of these.
+namespace source {
+struct Attribute {
+  SurfaceValue value;
+};
+struct MatrixColumn {
+  SpaceMatrix matrix;
+  uint32_t column;
+};
+struct Time {};
+/// An input of a function document, or a parameter of an effect or post; of a matrix, one column.
+struct Input {
+  uint32_t input;  ///< in Graph::inputs
+  uint32_t column;
+};
+/// The number of a texture, negative for none.
+struct Image {
+  uint32_t slot;  ///< in ImageSlots::slots
+};
+struct LightCount {};
+struct ScreenValue {
+  Screen value;
+};
+/// The column or row of an image's pixel that lies under the centre of the pixel that is made.
+struct PixelOfImage {
+  ImageNumber image;
+  Axis axis;
+};
+/// Where in that pixel the centre lies: a vec2, 0 to 1.
+struct PlaceInPixel {
+  ImageNumber image;
+};
+struct SizeOfImage {
+  ImageNumber image;
+  Axis axis;
+};
+/// How many taps a node sums.
+struct TapCount {
+  uint32_t node;  ///< in Graph::nodes
+};
+}  // namespace source
+
+using Source =
+    std::variant<source::Attribute, source::MatrixColumn, source::Time, source::Input, source::Image,
+                 source::LightCount, source::ScreenValue, source::PixelOfImage, source::PlaceInPixel,
+                 source::SizeOfImage, source::TapCount>;
+
+/// Functions for std::visit, one an alternative: what forgets one does not compile.
+template <class... Case>
+struct Cases : Case... {
+  using Case::operator()...;
+};
+template <class... Case>
+Cases(Case...) -> Cases<Case...>;
+
+struct Binding {
+  Source source;
+  ir::Parameter parameter;
+  Assumption assumed;
+  int element = -1;  ///< of a matrix's column: the number of its first element in the matrix
+};
+
+/// For reflection: "surface attribute", "parameter", ...
+std::string_view kind_name(const Source& source);
+
+// Bindings whose parameter follows from what they are.
+Binding bind(SurfaceValue value);
+Binding bind(SpaceMatrix matrix, uint32_t column);
+Binding bind(Screen value);
+Binding bind_time();
+Binding bind_light_count();
+/// `slot_name`: ImageSlot::name.
+Binding bind_image(uint32_t slot, std::string slot_name);
+/// `prefix`: what names of the image begin with.
+Binding bind_pixel(ImageNumber image, const std::string& prefix, Axis axis);
+Binding bind_place(ImageNumber image, const std::string& prefix);
+Binding bind_size(ImageNumber image, const std::string& prefix, Axis axis);
+/// `count`: as many as the document asks for.
+Binding bind_taps(uint32_t node, std::string node_name, int count);
+
+/// A function that a document calls and the kernel around it answers: without a body until the kernel gives it one, but
+/// for samplers, whose bodies call `texel_at`.
+enum class Host : uint8_t {
+  light,         ///< light_at(index, position) -> (direction, color)
+  texel,         ///< texel_at(picture, x, y) -> texel
+  texture_size,  ///< texture_size(picture) -> (width, height, smaller)
+  image,         ///< NAME_at(x, y) -> color: of an image of a post
+  depth,         ///< depth_at(x, y) -> depth
+  mip_level,     ///< sample_level(picture, along_x, along_y) -> level, in 1/65536
+  sample_closest,
+  sample_linear,
+  sample_trilinear
+};
+
+struct HostFunction {
+  Host host{};
+  uint32_t function = 0;        ///< in the module
+  ImageNumber image = ir::none;  ///< of Host::image and Host::depth
+};
+
+struct Interface {
+  uint32_t entry = 0;              ///< the document's function in the module
+  std::vector<Binding> bindings;   ///< of its parameters, in order
+  std::vector<HostFunction> host;  ///< in the order of the module
+
+  const HostFunction* find(uint32_t function) const;
+  /// The function, or ir::none.
+  uint32_t find(Host host, ImageNumber image = ir::none) const;
+};
+
+/// Where the words of a document's record begin in `objects`: of each input (a matrix column by column; -1 for what has no
+/// words), each image slot, and each sum over taps.
+struct RecordLayout {
+  std::vector<int> inputs, images;
+  std::vector<std::pair<uint32_t, int>> taps;  ///< node, word
+};
+
+namespace names {
+#define KERNEL_FUNCTION(name) inline constexpr const char* name = #name;
+#include "compiler/interface/kernel_functions.def"
+/// What the names of samplers begin with.
+inline constexpr const char* sample_prefix = "sample_";
+}  // namespace names
+
+/// Whether no function of a document may have the name.
+bool is_kernel_function(std::string_view name);
+
+}  // namespace isoshade::interface
