@@ -11,7 +11,8 @@ using enum SurfaceStages;
 using namespace assume;
 
 constexpr std::array<SurfaceRow, surface_count> surface_rows{{
-#define SURFACE(name, width, spaces, stages, assumed) {#name, width, spaces, stages, assumed},
+#define SURFACE(name, node, width, spaces, stages, assumed, sets, doc) \
+  {#name, #node, width, spaces, stages, assumed, sets, doc},
 #include "compiler/interface/values.def"
 }};
 constexpr std::array<ScreenRow, screen_value_count> screen_rows{{

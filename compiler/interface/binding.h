@@ -36,7 +36,7 @@ inline constexpr Assumption depth_divisor{-limit, limit, false, 1e9};
 }  // namespace assume
 
 enum class Surface : uint8_t {
-#define SURFACE(name, width, spaces, stages, assumed) name,
+#define SURFACE(name, node, width, spaces, stages, assumed, sets, doc) name,
 #include "compiler/interface/values.def"
 };
 /// Values for posts.
@@ -49,7 +49,7 @@ enum class SpaceMatrix : uint8_t {
 #include "compiler/interface/values.def"
 };
 
-#define SURFACE(name, width, spaces, stages, assumed) +1
+#define SURFACE(name, node, width, spaces, stages, assumed, sets, doc) +1
 inline constexpr size_t surface_count = 0
 #include "compiler/interface/values.def"
     ;
@@ -84,11 +84,13 @@ inline constexpr size_t surface_value_count = space_count * surface_count;  ///<
 enum class SurfaceStages : uint8_t { all, vertices };
 
 struct SurfaceRow {
-  std::string_view name;
+  std::string_view name, node;
   int width;
   bool has_spaces;
   SurfaceStages stages;
   Assumption assumed;
+  std::string_view sets;  ///< what the node's port "index" counts; empty: it has no such port
+  std::string_view doc;
 };
 const SurfaceRow& row(Surface attribute);
 /// "normal_object"; world space has no suffix.

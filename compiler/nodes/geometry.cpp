@@ -21,45 +21,23 @@ void facing_ratio(Site& s) {
   s.out[0] = s.op(ir::Opcode::select, {s[3], inverted, facing});
 }
 
+/// The node of an attribute.
+Row surface_row(Surface attribute) {
+  constexpr PortType types[] = {Float, Vector2, Vector3, Color4};
+  const interface::SurfaceRow& row = interface::row(attribute);
+  Row node{row.node, row.doc, {}, types[row.width - 1], attribute};
+  if (row.has_spaces)
+    node.ports.push_back({"space", Choice, "the space that it is given in; \"model\" is \"object\"", "world", space_names});
+  if (row.sets.empty()) return node;
+  node.condition = row.has_spaces ? set_exists<1> : set_exists<0>;
+  node.ports.push_back({"index", WholeNumber, row.sets, 0.0f});
+  return node;
+}
+
 }  // namespace
 
 std::vector<Row> geometry_rows() {
-  const Port space{"space", Choice, "the space that it is given in; \"model\" is \"object\"", "world",
-                   space_names};
-  constexpr std::string_view corner_doc =
-      "The unit normal of one of up to three surfaces that meet at a vertex, as three sides of a box do; where fewer "
-      "meet, one of them again. The same for all vertices at a place. Only for the \"position\" of a pass.";
-  const Port set{"index", WholeNumber, "which set of texture coordinates", 0.0f};
-  return {
-      {"position", "Where the point is.", {space}, Vector3, Surface::position},
-      {"normal", "The unit normal of the surface.", {space}, Vector3, Surface::normal},
-      {"outlinenormal",
-       "The unit normal that leads out of the mesh, one for all vertices at a place: edges of a mesh that "
-       "have "
-       "two normals do not come apart when it moves along this one.",
-       {space},
-       Vector3,
-       Surface::outline_normal},
-      {"cornernormal1", corner_doc, {space}, Vector3, Surface::corner_normal1},
-      {"cornernormal2", corner_doc, {space}, Vector3, Surface::corner_normal2},
-      {"cornernormal3", corner_doc, {space}, Vector3, Surface::corner_normal3},
-      {"tangent",
-       "The unit vector along u on the surface.",
-       {space, set},
-       Vector3,
-       Surface::tangent,
-       set_exists<1>},
-      {"bitangent",
-       "The unit vector against v on the surface: up in the picture that it is covered with.",
-       {space, set},
-       Vector3,
-       Surface::bitangent,
-       set_exists<1>},
-      {"viewdirection",
-       "The unit vector from the point towards the viewer.",
-       {space},
-       Vector3,
-       Surface::view_direction},
+  std::vector<Row> rows{
       {"facingratio",
        "The cosine of the angle between `viewdirection` and `normal`.",
        {{"viewdirection", Vector3, "unit length", SurfaceValue{Surface::view_direction}},
@@ -68,25 +46,6 @@ std::vector<Row> geometry_rows() {
         {"invert", Boolean, "1 - the cosine", false}},
        Float,
        facing_ratio},
-      {"texcoord",
-       "The texture coordinates of the point: u to the right and v down in the picture, both 0 to 1.",
-       {set},
-       Vector2,
-       Surface::texcoord,
-       set_exists<0>},
-      {"vertexcolor",
-       "The colour that the mesh has there, linear; white where it has none. MaterialX's geomcolor.",
-       {{"index", WholeNumber, "which set of colours", 0.0f}},
-       Color4,
-       Surface::color,
-       set_exists<0>},
-      {"pixelsize",
-       "How many units of world space a pixel covers at the point, from top to bottom. In perspective it "
-       "grows "
-       "with the distance along the view.",
-       {},
-       Float,
-       Surface::pixel_size},
       {"ddx",
        "What `in` changes by from a pixel to the next on its right: its derivative, not a difference, along "
        "the "
@@ -106,6 +65,8 @@ std::vector<Row> geometry_rows() {
        Derivative::width},
       {"time", "Seconds since the beginning: the scene's \"time\".", {}, Float, Time{}},
   };
+  for (size_t i = 0; i < interface::surface_count; ++i) rows.push_back(surface_row(static_cast<Surface>(i)));
+  return rows;
 }
 
 }  // namespace isoshade::nodes
