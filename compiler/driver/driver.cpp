@@ -40,7 +40,8 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
 
 /// What lowering made, through all passes. The reference takes it as authored, but for the positions of vertices: these
 /// are what every backend has.
-void finish(Program& program, uint32_t kernel, const CompileOptions& options, support::Source source = nullptr) {
+void finish(Program& program, uint32_t kernel, const CompileOptions& options,
+            support::Source source = nullptr) {
   program.entry = kernel;
   program.source = std::move(source);
   if (options.reference && program.stage != Stage::vertex) return passes::derivatives(program.module);
@@ -100,20 +101,23 @@ std::vector<Image> images_of(const check::TypedGraph& typed) {
   return images;
 }
 
-/// Where the words of an effect's or post's record begin: parameters, then one word an image, then one a sum over taps.
-interface::RecordLayout layout_of(const std::vector<Field>& parameters, size_t images,
-                                  const std::vector<lower::TapSum>& sums, int word) {
+/// Where each value of a block lies in a record in which `first` words stand before the block. `sums` are those that
+/// the block's taps are of.
+interface::RecordLayout layout_of(const ParameterBlock& block, const std::vector<lower::TapSum>& sums,
+                                  size_t first) {
   interface::RecordLayout layout;
-  for (const Field& parameter : parameters) {
-    layout.inputs.push_back(parameter.words == 0 ? -1 : word);  // the name of a file has no words
-    word += parameter.words;
+  for (size_t i = 0; i < block.fields.size(); ++i) {
+    const bool has_words = block.fields[i].words > 0;  // the name of a file has none
+    layout.inputs.push_back(has_words ? static_cast<int>(first + block.word_of(i)) : -1);
   }
-  for (size_t i = 0; i < images; ++i) layout.images.push_back(word++);
-  for (const lower::TapSum& sum : sums) layout.taps.emplace_back(sum.node, word++);
+  for (size_t i = 0; i < block.images.size(); ++i)
+    layout.images.push_back(static_cast<int>(first + block.word_of_image(i)));
+  for (size_t i = 0; i < sums.size(); ++i)
+    layout.taps.emplace_back(sums[i].node, static_cast<int>(first + block.word_of_taps(i)));
   return layout;
 }
 interface::RecordLayout layout_of(const Effect& effect) {
-  return layout_of(effect.parameters, effect.images.size(), {}, lower::object_word::parameters);
+  return layout_of(effect.parameters, {}, lower::object_word::parameters);
 }
 
 /// The module of what a document computes, with the buffers that kernels load from.
@@ -131,8 +135,8 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
     return program;
   }
   lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::position});
-  const uint32_t kernel = lower::add_moving_vertex_kernel(lowered.module, lowered.interface, layout_of(effect),
-                                                          typed.graph.passes[pass].position_space);
+  const uint32_t kernel = lower::add_moving_vertex_kernel(
+      lowered.module, lowered.interface, layout_of(effect), typed.graph.passes[pass].position_space);
   program.module = std::move(lowered.module);
   program.bindings = std::move(lowered.interface.bindings);
   finish(program, kernel, options, typed.graph.source);
@@ -158,7 +162,8 @@ std::optional<graph::DocumentKind> kind_of(const support::Source& source, Diagno
   return document ? graph::document_kind(*document, diagnostics) : std::nullopt;
 }
 
-std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const CompileOptions& options,
+std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source,
+                                                        const CompileOptions& options,
                                                         Diagnostics& diagnostics) {
   return read_graph(source, std::nullopt, options, diagnostics);
 }
@@ -167,7 +172,7 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
                                      Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
-  Effect effect{typed->graph.name, typed->document, parameters_of(*typed), images_of(*typed), {}};
+  Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), pass.enabled,
@@ -181,8 +186,14 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
                                  Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::post, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
-  Post post{
-      typed->graph.name, typed->document, parameters_of(*typed), {}, {}, {}, false, typed->graph.enabled, {}};
+  Post post{typed->graph.name,
+            typed->document,
+            {parameters_of(*typed), {}, {}},
+            {},
+            {},
+            false,
+            typed->graph.enabled,
+            {}};
   for (const graph::InputImage& image : typed->graph.images) post.images.push_back(image.name);
   lower::Lowered lowered = lower_with_buffers(*typed);
   const interface::Interface& interface = lowered.interface;
@@ -191,12 +202,13 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
   post.reads_depth = interface.find(interface::Host::depth, lower::depth_image) != ir::none;
   const std::vector<lower::TapSum> sums = lower::tap_sums(*typed);
   for (const lower::TapSum& sum : sums) {
-    post.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
-    post.taps.back().value = {static_cast<float>(sum.taps)};
+    post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
+    post.parameters.taps.back().value = {static_cast<float>(sum.taps)};
   }
   const uint32_t kernel =
-      lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, 0, sums, 0));
-  post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {}, options.tier};
+      lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, sums, 0));
+  post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {},
+                  options.tier};
   post.program.bindings = std::move(lowered.interface.bindings);
   finish(post.program, kernel, options, typed->graph.source);
   return post;
@@ -207,10 +219,12 @@ std::optional<Program> compile_function(const support::Source& source, const Com
   const auto typed = read_graph(source, graph::DocumentKind::function, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
   lower::Lowered lowered = lower_with_buffers(*typed);
-  Program program{lower::Stage::eval, typed->graph.name, typed->document, std::move(lowered.module), 0, {}, {},
-                  options.tier};
+  Program program{
+      lower::Stage::eval, typed->graph.name, typed->document, std::move(lowered.module), 0, {}, {},
+      options.tier};
   program.bindings = std::move(lowered.interface.bindings);
-  finish(program, lower::add_eval_kernel(program.module, lowered.interface.entry), options, typed->graph.source);
+  finish(program, lower::add_eval_kernel(program.module, lowered.interface.entry), options,
+         typed->graph.source);
   for (const graph::Input& input : typed->graph.inputs) {
     program.inputs.push_back(field(input.name, input.type));
     program.inputs.back().min = input.min;

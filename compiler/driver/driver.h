@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "compiler/check/library.h"
+#include "compiler/driver/parameter_block.h"
 #include "compiler/driver/program.h"
 #include "compiler/graph/graph.h"
-#include "compiler/lower/image_slots.h"
 
 namespace isoshade::driver {
 
@@ -32,19 +32,12 @@ struct CompileOptions {
   Dump dump;  ///< empty: nothing is dumped
 };
 
-/// An image that an effect reads.
-struct Image {
-  lower::ImageSlot slot;
-  std::string file;     ///< the document's path for it, from where the document lies; empty: none
-  support::Span where;  ///< where the document says so
-};
-
 /// One pass of an effect.
 struct EffectPass {
   std::string name;
   interface::PassState state;
   bool moves_vertices = false;
-  std::optional<size_t> enabled;  ///< in Effect::parameters: it is drawn where that is not 0
+  std::optional<size_t> enabled;  ///< of the parameters' fields; the pass is drawn where it is not 0
   Program vertex;
   Program pixel;
 };
@@ -52,8 +45,7 @@ struct EffectPass {
 struct Effect {
   std::string name;
   std::string document;
-  std::vector<Field> parameters;  ///< with defaults, in the order of the object's record
-  std::vector<Image> images;      ///< one word each in the record, after the parameters
+  ParameterBlock parameters;  ///< in an object's record from object_word::parameters on
   std::vector<EffectPass> passes;
 };
 
@@ -61,13 +53,11 @@ struct Effect {
 struct Post {
   std::string name;
   std::string document;
-  std::vector<Field>
-      parameters;           ///< with defaults, in the order of its record: no other words stand before them
-  std::vector<Field> taps;  ///< after them the number of taps of each node that sums some: `value` has it
+  ParameterBlock parameters;        ///< its whole record; without images
   std::vector<std::string> images;  ///< that it asks for by name
   std::vector<bool> reads;          ///< of the image that it goes over, then of `images`: whether it reads it
   bool reads_depth = false;
-  std::optional<size_t> enabled;  ///< of `parameters`: where it is 0, the post does nothing
+  std::optional<size_t> enabled;  ///< of the parameters' fields; where it is 0, the post does nothing
   Program program;
 };
 
@@ -75,7 +65,8 @@ struct Post {
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
 /// The graph of a function or effect document, checked: the front half of the pipeline.
-std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source, const CompileOptions& options,
+std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source,
+                                                        const CompileOptions& options,
                                                         support::Diagnostics& diagnostics);
 
 /// `source` is an effect document.

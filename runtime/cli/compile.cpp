@@ -140,9 +140,9 @@ std::string pass_stem(const driver::Effect& effect, size_t pass) {
 // Reflection comes first: where it would replace a document, nothing else is written either.
 bool write_effect(const driver::Effect& effect, std::string_view precision, Writer& writer) {
   ordered_json reflection{{"effect", effect.name}, {"document", effect.document}, {"precision", precision}};
-  reflection["parameters"] = reflect(effect.parameters);
+  reflection["parameters"] = reflect(effect.parameters.fields);
   // In the record they follow the parameters, one word each.
-  for (const driver::Image& image : effect.images) {
+  for (const driver::Image& image : effect.parameters.images) {
     constexpr const char* decodings[] = {"linear", "srgb", "srgb if 8 bits"};
     ordered_json row{{"name", image.slot.name}, {"file", image.file}};
     if (!image.slot.parameter.empty()) row["parameter"] = image.slot.parameter;
@@ -159,7 +159,7 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
     row["vertex_inputs"] = reflect(pass.vertex.bindings);
     row["pixel_inputs"] = reflect(pass.pixel.bindings);
     row["moves_vertices"] = pass.moves_vertices;
-    if (pass.enabled) row["enabled"] = effect.parameters[*pass.enabled].name;
+    if (pass.enabled) row["enabled"] = effect.parameters.fields[*pass.enabled].name;
     reflection["passes"].push_back(row);
   }
   if (!writer.write(effect.name + ".json", reflection.dump(2) + "\n")) return false;
@@ -174,12 +174,12 @@ bool write_effect(const driver::Effect& effect, std::string_view precision, Writ
 
 bool write_post(const driver::Post& post, std::string_view precision, Writer& writer) {
   ordered_json reflection{{"post", post.name}, {"document", post.document}, {"precision", precision}};
-  reflection["parameters"] = reflect(post.parameters);
-  reflection["taps"] = reflect(post.taps);
+  reflection["parameters"] = reflect(post.parameters.fields);
+  reflection["taps"] = reflect(post.parameters.taps);
   reflection["images"] = post.images;
   reflection["reads_depth"] = post.reads_depth;
   reflection["inputs"] = reflect(post.program.bindings);
-  if (post.enabled) reflection["enabled"] = post.parameters[*post.enabled].name;
+  if (post.enabled) reflection["enabled"] = post.parameters.fields[*post.enabled].name;
   return writer.write(post.name + ".json", reflection.dump(2) + "\n") &&
          writer.program(post.name + ".post", post.program);
 }

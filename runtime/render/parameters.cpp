@@ -20,37 +20,17 @@ using support::quote;
 
 namespace {
 
-/// A field of the record by name, with the word where it begins.
-struct Found {
-  const driver::Field* field = nullptr;
-  Type type = Type::floating;
-  size_t first_word = 0;
-};
-
-std::optional<Found> find_field(const driver::Effect& effect, const std::string& name) {
-  size_t word = 0;
-  for (const driver::Field& field : effect.parameters) {
-    if (field.name == name) {
-      const std::optional<Type> type = graph::find_type(field.type);
-      support::assert_that(type.has_value(), "a parameter of a type that does not exist");
-      return Found{&field, *type, word};
-    }
-    word += static_cast<size_t>(field.words);
-  }
-  return std::nullopt;
-}
-
-void report_unknown(const scene::Object& object, const driver::Effect& effect, const std::string& name,
+void report_unknown(const driver::ParameterBlock& block, std::string_view giver, const std::string& name,
                     const support::Span& where, Diagnostics& diagnostics) {
   std::vector<std::string_view> names;
   std::string list;
-  for (const driver::Field& field : effect.parameters) {
+  for (const driver::Field& field : block.fields) {
     names.push_back(field.name);
     list.append(list.empty() ? "" : ", ").append(field.name);
   }
   support::Diagnostic& report = diagnostics.report_unknown(
-      Id::unknown_parameter, where,
-      "the effect of " + quote(object.name) + " has no parameter " + quote(name), name, names);
+      Id::unknown_parameter, where, "the effect of " + quote(giver) + " has no parameter " + quote(name),
+      name, names);
   if (report.fix.empty()) report.note(list.empty() ? "it has none at all" : "it has " + list);
 }
 
@@ -79,11 +59,11 @@ std::string listed(const std::vector<std::string>& names) {
   return list;
 }
 
-bool check_fit(const Found& found, const Literal& literal, const support::Span& where,
+bool check_fit(const driver::Field& field, const Literal& literal, const support::Span& where,
                Diagnostics& diagnostics) {
-  const Type type = found.type;
-  const std::string& name = found.field->name;
-  const std::vector<std::string>& values = found.field->names;
+  const Type type = driver::type_of(field);
+  const std::string& name = field.name;
+  const std::vector<std::string>& values = field.names;
   if (literal.kind == Literal::Kind::string && !values.empty()) {
     if (graph::named_value(values, literal.string)) return true;
     std::vector<std::string_view> names(values.begin(), values.end());
@@ -94,7 +74,7 @@ bool check_fit(const Found& found, const Literal& literal, const support::Span& 
         .note(graph::described_names(values));
     return false;
   }
-  if (graph::fits(type, literal)) return check_range(*found.field, type, literal, where, diagnostics);
+  if (graph::fits(type, literal)) return check_range(field, type, literal, where, diagnostics);
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
   if (type == Type::filename) expected += ", a path in quotes";
@@ -123,24 +103,24 @@ void store(Type type, const std::vector<std::string>& names, const Literal& lite
   }
 }
 
-/// The first numbers of `factors`, held in the parameter's range, if the effect has a parameter that takes
-/// them.
-void store_factors(const driver::Effect& effect, const std::string& name, std::span<const float> factors,
-                   std::vector<float>& words) {
-  const auto found = find_field(effect, name);
-  if (!found) return;
-  const auto count = static_cast<size_t>(std::max(graph::float_count(found->type), 0));
-  const bool takes_them = factors.size() == 1 ? count == 1 : count == 3 || count == factors.size();
-  if (!takes_them) return;
+/// Stores a factor of a material, held in the range of the field that takes it, if the block has such a field.
+void store_factor(const driver::ParameterBlock& block, std::string_view name, std::span<const float> factor,
+                  std::vector<float>& words) {
+  const auto number = block.find(name);
+  if (!number) return;
+  const driver::Field& field = block.fields[*number];
+  const auto count = static_cast<size_t>(std::max(graph::float_count(driver::type_of(field)), 0));
+  const bool takes_it = factor.size() == 1 ? count == 1 : count == 3 || count == factor.size();
+  if (!takes_it) return;
   for (size_t i = 0; i < count; ++i) {
-    float value = factors[i];
-    if (found->field->min) value = std::max(value, *found->field->min);
-    if (found->field->max) value = std::min(value, *found->field->max);
-    words[found->first_word + i] = value;
+    float value = factor[i];
+    if (field.min) value = std::max(value, *field.min);
+    if (field.max) value = std::min(value, *field.max);
+    words[block.word_of(*number) + i] = value;
   }
 }
 
-/// A path that a value has, from where the document lies that has it.
+/// Paths are relative to the document that gives them.
 std::string path_of(const Literal& literal, const support::Span& where) {
   if (literal.string.empty() || where.file == nullptr) return literal.string;
   return graph::path_beside(where.file->path(), literal.string);
@@ -148,106 +128,152 @@ std::string path_of(const Literal& literal, const support::Span& where) {
 
 }  // namespace
 
-bool ObjectParameters::resolve_image(const scene::Object& object, const driver::Image& image,
-                                     const scene::GltfMaterial* material, const FindTexture& find_texture) {
-  const std::string& name = image.slot.parameter;
-  const auto find = [&](const ImageSource& source) {
-    return source.path.empty() ? std::optional(-1) : find_texture(source, image.slot);
-  };
-  for (size_t axis = 0; axis < object.repeat.size() && !name.empty(); ++axis) {
-    for (const scene::Variation& variation : object.repeat[axis].variations) {
-      if (variation.name != name) continue;
-      VaryingImage varying{axis, images_.size(), {}};
-      for (const Literal& value : variation.values) {
-        const auto texture = find({path_of(value, variation.value_where), nullptr, variation.value_where});
-        if (!texture) return false;
-        varying.textures.push_back(*texture);
-      }
-      varying_images_.push_back(std::move(varying));
-      images_.push_back(-1);
-      return true;
+class ParameterValues::Resolver {
+ public:
+  Resolver(const driver::ParameterBlock& block, const ParameterGiver& giver, const FindTexture& find_texture,
+           Diagnostics& diagnostics)
+      : block_(block), giver_(giver), find_texture_(find_texture), diagnostics_(diagnostics) {
+    values_.repeat_ = giver.repeat;
+    values_.common_ = block.defaults();
+    values_.first_image_word_ = block.word_of_image(0);
+  }
+
+  std::optional<ParameterValues> resolve() {
+    const size_t errors_before = diagnostics_.error_count();
+    take_factors();
+    take_parameters();
+    take_variations();
+    if (diagnostics_.error_count() != errors_before) return std::nullopt;
+    for (const driver::Image& image : block_.images)
+      if (!take_image(image)) return std::nullopt;
+    return std::move(values_);
+  }
+
+ private:
+  void take_factors() {
+    const scene::GltfMaterial* const material = giver_.material;
+    if (material == nullptr) return;
+    const auto store = [&](std::string_view name, std::span<const float> factor) {
+      store_factor(block_, name, factor, values_.common_);
+    };
+    store("base_color", material->base_color);
+    store("metallic", std::array{material->metallic});
+    store("roughness", std::array{material->roughness});
+    store("emissive_color", material->emissive_color);
+    store("normal_scale", std::array{material->normal_scale});
+    store("occlusion_strength", std::array{material->occlusion_strength});
+  }
+
+  void take_parameters() {
+    for (const scene::Parameter& parameter : giver_.parameters) {
+      if (diagnostics_.full()) return;
+      const auto number = find(parameter.name, parameter.name_where);
+      if (!number) continue;
+      const driver::Field& field = block_.fields[*number];
+      if (!check_fit(field, parameter.value, parameter.value_where, diagnostics_)) continue;
+      store(driver::type_of(field), field.names, parameter.value,
+            values_.common_.data() + block_.word_of(*number));
     }
   }
-  ImageSource source{image.file, nullptr, image.where};
-  if (material != nullptr && material->textures.contains(name)) {
-    const scene::GltfImage& own = material->textures.at(name);
-    source = {own.name, own.bytes, object.mesh_where, own.srgb};
+
+  void take_variations() {
+    for (size_t axis = 0; axis < giver_.repeat.size(); ++axis) {
+      const std::vector<scene::Variation>& variations = giver_.repeat[axis].variations;
+      for (size_t i = 0; i < variations.size() && !diagnostics_.full(); ++i) {
+        const scene::Variation& variation = variations[i];
+        const auto number = find(variation.name, variation.name_where);
+        if (!number) continue;
+        const driver::Field& field = block_.fields[*number];
+        for (const Literal& value : variation.values)
+          if (!check_fit(field, value, variation.value_where, diagnostics_)) break;
+        const Type type = driver::type_of(field);
+        if (type == Type::filename) continue;
+        if (!variation.listed && type == Type::integer) {
+          diagnostics_.report(Id::wrong_type, variation.value_where,
+                              "the parameter " + quote(variation.name) + " is an integer: list its values");
+        }
+        values_.varying_.push_back({axis, i, type, field.names, block_.word_of(*number)});
+      }
+    }
   }
-  for (const scene::Parameter& parameter : object.parameters) {
-    if (name.empty() || parameter.name != name) continue;
-    source = {path_of(parameter.value, parameter.value_where), nullptr, parameter.value_where};
+
+  /// The field of the block, or a report that it has none.
+  std::optional<size_t> find(const std::string& name, const support::Span& where) {
+    const auto number = block_.find(name);
+    if (!number) report_unknown(block_, giver_.name, name, where, diagnostics_);
+    return number;
   }
-  const auto texture = find(source);
-  images_.push_back(texture.value_or(-1));
-  return texture.has_value();
+
+  bool take_image(const driver::Image& image) {
+    ImageWord& word = values_.images_.emplace_back();
+    const std::string& name = image.slot.parameter;
+    for (size_t axis = 0; axis < giver_.repeat.size() && !name.empty(); ++axis) {
+      for (const scene::Variation& variation : giver_.repeat[axis].variations) {
+        if (variation.name != name) continue;
+        word.axis = axis;
+        for (const Literal& value : variation.values) {
+          const auto texture =
+              texture_of({path_of(value, variation.value_where), nullptr, variation.value_where}, image);
+          if (!texture) return false;
+          word.along_axis.push_back(*texture);
+        }
+        return true;
+      }
+    }
+    const auto texture = texture_of(source_of(image), image);
+    word.texture = texture.value_or(-1);
+    return texture.has_value();
+  }
+
+  ImageSource source_of(const driver::Image& image) const {
+    const std::string& name = image.slot.parameter;
+    if (!name.empty()) {
+      for (const scene::Parameter& parameter : giver_.parameters)
+        if (parameter.name == name)
+          return {path_of(parameter.value, parameter.value_where), nullptr, parameter.value_where};
+    }
+    if (giver_.material != nullptr && giver_.material->textures.contains(name)) {
+      const scene::GltfImage& own = giver_.material->textures.at(name);
+      return {own.name, own.bytes, giver_.material_where, own.srgb};
+    }
+    return {image.file, nullptr, image.where};
+  }
+
+  std::optional<int> texture_of(const ImageSource& source, const driver::Image& image) const {
+    return source.path.empty() ? std::optional(-1) : find_texture_(source, image.slot);
+  }
+
+  const driver::ParameterBlock& block_;
+  const ParameterGiver& giver_;
+  const FindTexture& find_texture_;
+  Diagnostics& diagnostics_;
+  ParameterValues values_;
+};
+
+std::optional<ParameterValues> ParameterValues::resolve(const driver::ParameterBlock& block,
+                                                        const ParameterGiver& giver,
+                                                        const FindTexture& find_texture,
+                                                        Diagnostics& diagnostics) {
+  return Resolver(block, giver, find_texture, diagnostics).resolve();
 }
 
-std::optional<ObjectParameters> ObjectParameters::resolve(const scene::Object& object,
-                                                          const driver::Effect& effect,
-                                                          const scene::GltfMaterial* material,
-                                                          const FindTexture& find_texture,
-                                                          Diagnostics& diagnostics) {
-  const size_t errors_before = diagnostics.error_count();
-  ObjectParameters result;
-  for (const driver::Field& field : effect.parameters)
-    result.common_.insert(result.common_.end(), field.value.begin(), field.value.end());
-  if (material != nullptr) {
-    store_factors(effect, "base_color", material->base_color, result.common_);
-    store_factors(effect, "metallic", std::array{material->metallic}, result.common_);
-    store_factors(effect, "roughness", std::array{material->roughness}, result.common_);
-    store_factors(effect, "emissive_color", material->emissive_color, result.common_);
-    store_factors(effect, "normal_scale", std::array{material->normal_scale}, result.common_);
-    store_factors(effect, "occlusion_strength", std::array{material->occlusion_strength}, result.common_);
-  }
-
-  for (const scene::Parameter& parameter : object.parameters) {
-    if (diagnostics.full()) break;
-    const auto found = find_field(effect, parameter.name);
-    if (!found) {
-      report_unknown(object, effect, parameter.name, parameter.name_where, diagnostics);
-    } else if (check_fit(*found, parameter.value, parameter.value_where, diagnostics)) {
-      store(found->type, found->field->names, parameter.value, result.common_.data() + found->first_word);
-    }
-  }
-  for (size_t axis = 0; axis < object.repeat.size(); ++axis) {
-    const std::vector<scene::Variation>& variations = object.repeat[axis].variations;
-    for (size_t i = 0; i < variations.size() && !diagnostics.full(); ++i) {
-      const scene::Variation& variation = variations[i];
-      const auto found = find_field(effect, variation.name);
-      if (!found) {
-        report_unknown(object, effect, variation.name, variation.name_where, diagnostics);
-        continue;
-      }
-      for (const Literal& value : variation.values)
-        if (!check_fit(*found, value, variation.value_where, diagnostics)) break;
-      if (found->type == Type::filename) continue;
-      if (!variation.listed && found->type == Type::integer) {
-        diagnostics.report(Id::wrong_type, variation.value_where,
-                           "the parameter " + quote(variation.name) + " is an integer: list its values");
-      }
-      result.varying_.push_back({axis, i, found->type, found->field->names, found->first_word});
-    }
-  }
-  if (diagnostics.error_count() != errors_before) return std::nullopt;
-  for (const driver::Image& image : effect.images)
-    if (!result.resolve_image(object, image, material, find_texture)) return std::nullopt;
-  return result;
-}
-
-std::vector<float> ObjectParameters::words(const scene::Object& object, const scene::Instance& instance,
-                                           const std::function<int(int)>& record_of) const {
+std::vector<float> ParameterValues::words(const scene::Instance& instance,
+                                          const std::function<int(int)>& record_of) const {
   std::vector<float> words = common_;
   for (const Varying& varying : varying_) {
-    const scene::Repeat& repeat = object.repeat[varying.axis];
+    const scene::Repeat& repeat = repeat_[varying.axis];
     const Literal value = scene::variation_value(repeat.variations[varying.variation],
                                                  instance.place[varying.axis], repeat.count);
     store(varying.type, varying.names, value, words.data() + varying.first_word);
   }
   for (float& word : words) word = scene::canonical(word);
-  std::vector<int> textures = images_;
-  for (const VaryingImage& varying : varying_images_)
-    textures[varying.image] = varying.textures[static_cast<size_t>(instance.place[varying.axis])];
-  for (const int texture : textures) words.push_back(static_cast<float>(record_of(texture)));
+  for (size_t i = 0; i < images_.size(); ++i) {
+    const ImageWord& image = images_[i];
+    const int texture = image.along_axis.empty()
+                            ? image.texture
+                            : image.along_axis[static_cast<size_t>(instance.place[image.axis])];
+    words[first_image_word_ + i] = static_cast<float>(record_of(texture));
+  }
   return words;
 }
 

@@ -1,63 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters of an object as words of its record.
+// The values of a parameter block: what an object gives to its effect, or the scene to a post, as words of a record.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
-#include "compiler/driver/driver.h"
+#include "compiler/driver/parameter_block.h"
 #include "runtime/render/textures.h"
 #include "runtime/scene/gltf.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::render {
 
-/// What an object gives to the parameters of its effect, found once for all of its copies.
-/// The number of the texture that is to fill an image of the effect; nothing where there is none, which is reported.
+/// Returns the number of the texture for an image of the block, or nothing if there is none, which is then reported.
 using FindTexture =
     std::function<std::optional<int>(const ImageSource& source, const lower::ImageSlot& slot)>;
 
-class ObjectParameters {
+/// What gives values to a block: an object or a post of the scene, which must outlive the ParameterValues.
+struct ParameterGiver {
+  std::string_view name;  ///< for messages
+  std::span<const scene::Parameter> parameters;
+  std::span<const scene::Repeat> repeat = {};
+  const scene::GltfMaterial* material = nullptr;
+  support::Span material_where = {};  ///< what names the material's file
+};
+
+/// The values that a giver has for a block, found once for all copies of an object.
+class ParameterValues {
  public:
-  /// Reports parameters that the effect has not, and values that do not fit their type.
-  /// What neither the object gives nor a variation is the material's, if there is one and the effect calls it
-  /// base_color (of 3 or 4 components), metallic, roughness, or as another of its members or textures; else the effect's own. Paths that the object gives
-  /// count from the scene's folder. Asks for no texture of what no pass reads.
-  static std::optional<ObjectParameters> resolve(const scene::Object& object, const driver::Effect& effect,
-                                                 const scene::GltfMaterial* material,
-                                                 const FindTexture& find_texture,
-                                                 support::Diagnostics& diagnostics);
+  /// A field takes its value from the first of these that has one: the variations of the giver's grid, its parameters,
+  /// its material (base_color of 3 or 4 components, metallic, roughness, and whatever else a material has under the
+  /// field's name), the defaults of the document. Paths are relative to the document that gives them.
+  /// Reports parameters that the block does not have, and values that do not fit their types or ranges. Looks up the
+  /// textures of the block's images only, which are those that some pass reads.
+  static std::optional<ParameterValues> resolve(const driver::ParameterBlock& block,
+                                                const ParameterGiver& giver, const FindTexture& find_texture,
+                                                support::Diagnostics& diagnostics);
 
-  /// The words of one copy, from object_word::parameters on. `record_of` tells where the texture of a number, or -1, is
-  /// stored. Computed under lanes::FpGuard, which the caller holds.
-  std::vector<float> words(const scene::Object& object, const scene::Instance& instance,
-                           const std::function<int(int)>& record_of) const;
+  /// The record of one copy. `record_of` maps the number of a texture, or -1, to the number of its record. The caller
+  /// holds lanes::FpGuard.
+  std::vector<float> words(const scene::Instance& instance, const std::function<int(int)>& record_of) const;
 
-  int64_t word_count() const { return static_cast<int64_t>(common_.size() + images_.size()); }
+  int64_t word_count() const { return static_cast<int64_t>(common_.size()); }
 
  private:
-  /// A variation, the axis along which it runs, and where its words go.
+  class Resolver;
+
+  /// A field that varies along an axis of the grid.
   struct Varying {
     size_t axis, variation;
     graph::Type type;
     std::vector<std::string> names;  ///< of an integer's values
     size_t first_word;
   };
-  /// The same of an image: its textures along the axis.
-  struct VaryingImage {
-    size_t axis, image;
-    std::vector<int> textures;
+  struct ImageWord {
+    int texture = -1;             ///< of all copies, if `along_axis` is empty
+    size_t axis = 0;              ///< of the grid
+    std::vector<int> along_axis;  ///< the textures along the axis
   };
-  bool resolve_image(const scene::Object& object, const driver::Image& image,
-                     const scene::GltfMaterial* material, const FindTexture& find_texture);
 
-  std::vector<float> common_;  ///< of all copies
-  std::vector<int> images_;    ///< of all copies: the number of each image's texture, or -1
-  std::vector<VaryingImage> varying_images_;
+  std::span<const scene::Repeat> repeat_;
+  std::vector<float> common_;  ///< the record, but for what varies and for the images
   std::vector<Varying> varying_;
+  std::vector<ImageWord> images_;
+  size_t first_image_word_ = 0;
 };
 
 }  // namespace isoshade::render

@@ -40,13 +40,6 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
   return kinds;
 }
 
-/// Where a parameter begins, in words.
-size_t word_of(const driver::Effect& effect, size_t parameter) {
-  size_t word = 0;
-  for (size_t i = 0; i < parameter; ++i) word += static_cast<size_t>(effect.parameters[i].words);
-  return word;
-}
-
 class Planner {
  public:
   Planner(const Scene& scene, const PlanOptions& options, Diagnostics& diagnostics)
@@ -89,7 +82,7 @@ class Planner {
   std::vector<size_t> effect_of_object_;
   std::vector<std::vector<PassPrograms>> programs_of_effect_;
   std::map<std::string, uint32_t> program_by_text_;
-  std::vector<std::vector<ObjectParameters>> parameters_;  ///< of each object, for each part of its mesh
+  std::vector<std::vector<ParameterValues>> parameters_;  ///< of each object, for each part of its mesh
   MeshStore meshes_;
   uint32_t most_vertices_ = 0;  ///< of a mesh
   std::vector<size_t> mesh_of_object_;
@@ -184,10 +177,11 @@ void Planner::note_largest_mesh(const Object& object, const StoredMesh& mesh) {
 /// What the next object and the materials of its mesh give to the effect.
 bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
                             const FindTexture& find_texture) {
-  std::vector<ObjectParameters>& parameters = parameters_.emplace_back();
+  std::vector<ParameterValues>& parameters = parameters_.emplace_back();
   for (const MeshPart& part : mesh.parts) {
     const scene::GltfMaterial* material = part.material ? &*part.material : nullptr;
-    auto resolved = ObjectParameters::resolve(object, effect, material, find_texture, diagnostics_);
+    const ParameterGiver giver{object.name, object.parameters, object.repeat, material, object.mesh_where};
+    auto resolved = ParameterValues::resolve(effect.parameters, giver, find_texture, diagnostics_);
     if (!resolved) return false;  // further parts would report the same again
     parameters.push_back(*std::move(resolved));
   }
@@ -252,10 +246,8 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
   std::vector<std::vector<float>> parameters;
-  for (const ObjectParameters& part : parameters_[o]) {
-    parameters.push_back(
-        part.words(object, copy.instance, [&](int number) { return textures_.record(number); }));
-  }
+  for (const ParameterValues& part : parameters_[o])
+    parameters.push_back(part.words(copy.instance, [&](int number) { return textures_.record(number); }));
   const glm::vec3& scale = object.transform.scale;
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
   for (size_t p = 0; p < effect.passes.size(); ++p) {
@@ -263,7 +255,7 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
     const bool unseen = copy.outside && !pass.moves_vertices;
     bool left_out = false;
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
-      if (pass.enabled && parameters[part][word_of(effect, *pass.enabled)] == 0) {
+      if (effect.parameters.is_off(pass.enabled, parameters[part])) {
         ++skipped[p].disabled;
       } else if (unseen) {
         left_out = true;

@@ -18,29 +18,6 @@ using support::Diagnostics;
 using support::Id;
 using support::quote;
 
-/// The words of a post's parameters, then its numbers of taps.
-std::optional<std::vector<float>> record_of(const scene::Post& post, const driver::Post& document,
-                                            Diagnostics& diagnostics) {
-  // As an object has parameters of an effect.
-  scene::Object object;
-  object.name = post.name;
-  object.parameters = post.parameters;
-  driver::Effect effect;
-  effect.parameters = document.parameters;
-  const auto parameters = ObjectParameters::resolve(object, effect, nullptr, {}, diagnostics);
-  if (!parameters) return std::nullopt;
-  std::vector<float> record = parameters->words(object, {}, {});
-  for (const driver::Field& count : document.taps) record.push_back(count.value[0]);
-  return record;
-}
-
-bool is_switched_off(const driver::Post& document, const std::vector<float>& record) {
-  if (!document.enabled) return false;
-  size_t word = 0;
-  for (size_t i = 0; i < *document.enabled; ++i) word += static_cast<size_t>(document.parameters[i].words);
-  return record[word] == 0;
-}
-
 /// A side of an image that is this part of another's; exact, as a double holds the product.
 int part_of(int side, float part) {
   return static_cast<int>(std::ceil(static_cast<double>(side) * static_cast<double>(part)));
@@ -123,13 +100,16 @@ bool ChainPlanner::find_sources(size_t p, Planned& planned) {
 bool ChainPlanner::read_post(size_t p) {
   Planned& planned = planned_.emplace_back();
   const bool has_sources = find_sources(p, planned);
-  auto record = record_of(scene_.posts[p], *documents_[p], diagnostics_);
-  if (!record || !has_sources) return false;
-  planned.record = *std::move(record);
-  if (!skip_ || !is_switched_off(*documents_[p], planned.record)) return true;
+  const scene::Post& post = scene_.posts[p];
+  const driver::Post& document = *documents_[p];
+  const auto values =
+      ParameterValues::resolve(document.parameters, {post.name, post.parameters}, {}, diagnostics_);
+  if (!values || !has_sources) return false;
+  planned.record = values->words({}, {});
+  if (!skip_ || !document.parameters.is_off(document.enabled, planned.record)) return true;
   planned.runs = false;
-  const std::string& parameter = documents_[p]->parameters[*documents_[p]->enabled].name;
-  skips_.push_back({"post " + scene_.posts[p].name, parameter + " is 0"});
+  const std::string& parameter = document.parameters.fields[*document.enabled].name;
+  skips_.push_back({"post " + post.name, parameter + " is 0"});
   return true;
 }
 

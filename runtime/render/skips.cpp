@@ -28,7 +28,7 @@ void report_skips(const scene::Object& object, const driver::Effect& effect, int
     const driver::EffectPass& pass = effect.passes[p];
     if (!alike) report(passes[p].unseen, copies, "copies", pass.name, "outside of the view");
     if (!pass.enabled) continue;
-    const driver::Field& field = effect.parameters[*pass.enabled];
+    const driver::Field& field = effect.parameters.fields[*pass.enabled];
     report(passes[p].disabled, copies * parts, parts == 1 ? "copies" : "parts", pass.name,
            field.name + " is " + (field.type == "boolean" ? "false" : "0"));
   }

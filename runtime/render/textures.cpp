@@ -36,9 +36,10 @@ bool is_srgb(lower::Decoding decoding, const ImageSource& source, const scene::I
 std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects) {
   std::vector<Skip> skips;
   for (const driver::Effect& effect : effects) {
-    for (const driver::Field& field : effect.parameters) {
-      const bool read = std::ranges::any_of(
-          effect.images, [&](const driver::Image& image) { return image.slot.parameter == field.name; });
+    for (const driver::Field& field : effect.parameters.fields) {
+      const bool read = std::ranges::any_of(effect.parameters.images, [&](const driver::Image& image) {
+        return image.slot.parameter == field.name;
+      });
       if (field.type == graph::type_name(graph::Type::filename) && !read)
         skips.push_back(
             {"the images of " + field.name + " of the effect " + effect.name, "no pass reads them"});

@@ -120,8 +120,8 @@ TEST(Posts, SumTheirTapsInOrderFromZero) {
     "w": {"type": "expression", "code": "c.rgb * (1 + 0.1 * i)", "c": "c", "i": "i"},
     "color": {"type": "sum_taps", "in": "w", "first": -2, "last": 3})json"),
                 9, 1, {}, {image});
-  ASSERT_EQ(screen.post.taps.size(), 1u);
-  EXPECT_EQ(screen.post.taps[0].value[0], 6.0f);
+  ASSERT_EQ(screen.post.parameters.taps.size(), 1u);
+  EXPECT_EQ(screen.post.parameters.taps[0].value[0], 6.0f);
   const std::vector<float> found = screen.interpreted();
   for (int x = 0; x < 9; ++x) {
     float sum = 0;

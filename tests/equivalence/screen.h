@@ -34,9 +34,7 @@ class Screen {
     auto compiled = driver::compile_post(source, options, diagnostics);
     EXPECT_TRUE(compiled) << diagnostics.text();
     if (compiled) post = *std::move(compiled);
-    for (const driver::Field& field : post.parameters)
-      record_.insert(record_.end(), field.value.begin(), field.value.end());
-    for (const driver::Field& field : post.taps) record_.push_back(field.value[0]);
+    record_ = post.parameters.defaults();
     frame.resize(lower::frame_word::count);
     add({width, height, {}});
     add(depth);
@@ -47,16 +45,11 @@ class Screen {
   Screen& operator=(const Screen&) = delete;
 
   void set(const std::string& parameter, std::initializer_list<float> words) {
-    size_t word = 0;
-    for (const driver::Field& field : post.parameters) {
-      if (field.name == parameter) {
-        ASSERT_EQ(words.size(), static_cast<size_t>(field.words));
-        std::copy(words.begin(), words.end(), record_.begin() + static_cast<ptrdiff_t>(word));
-        return;
-      }
-      word += static_cast<size_t>(field.words);
-    }
-    ADD_FAILURE() << "no parameter " << parameter;
+    const auto field = post.parameters.find(parameter);
+    ASSERT_TRUE(field) << "no parameter " << parameter;
+    ASSERT_EQ(words.size(), static_cast<size_t>(post.parameters.fields[*field].words));
+    const auto word = static_cast<ptrdiff_t>(post.parameters.word_of(*field));
+    std::copy(words.begin(), words.end(), record_.begin() + word);
   }
 
   std::vector<float> run(backends::Backend& backend) {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of an effect or a post, and where each lies in the record that its programs read.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/driver/program.h"
+#include "compiler/graph/graph.h"
+#include "compiler/lower/image_slots.h"
+#include "compiler/support/source.h"
+
+namespace isoshade::driver {
+
+/// An image that a program reads by way of a texture's record.
+struct Image {
+  lower::ImageSlot slot;
+  std::string file;  ///< the path that the document gives, relative to the document; empty if it gives none
+  support::Span where;  ///< where the document gives it
+};
+
+/// The record consists of the fields, one word for each image and one word for each count of taps, in this order.
+struct ParameterBlock {
+  std::vector<Field> fields;  ///< with their defaults
+  std::vector<Image> images;  ///< the word is the number of the texture's record, or -1
+  std::vector<Field> taps;    ///< of each node that sums taps; the default is the count, which is fixed
+
+  /// The field with this name.
+  std::optional<size_t> find(std::string_view name) const;
+  /// The first word of a field in the record.
+  size_t word_of(size_t field) const;
+  size_t word_of_image(size_t image) const { return word_of(fields.size()) + image; }
+  size_t word_of_taps(size_t node) const { return word_of_image(images.size()) + node; }
+  size_t word_count() const { return word_of_taps(taps.size()); }
+  /// The record of an object or post that gives no values: no image has a texture.
+  std::vector<float> defaults() const;
+  /// Whether the field that switches a pass or post on, if there is one, is 0 in this record.
+  bool is_off(std::optional<size_t> enabled, std::span<const float> record) const {
+    return enabled && record[word_of(*enabled)] == 0;
+  }
+};
+
+/// The type of a field of a parameter block.
+graph::Type type_of(const Field& field);
+
+}  // namespace isoshade::driver
