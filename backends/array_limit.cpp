@@ -29,6 +29,7 @@ Contents contents_of(FrameBuffer array) {
       return {"the textures of 8 bits a number", "use smaller images", &Frame::largest_in_texel_bytes};
     case FrameBuffer::inputs: return {"the table's inputs", "evaluate fewer rows at a time"};
     case FrameBuffer::layers: return {"the images that a post reads", smaller_image};
+    case FrameBuffer::view: return {"the matrices of all copies of objects", "draw fewer copies"};
     case FrameBuffer::frame:
     case FrameBuffer::textures:
     case FrameBuffer::layer_records: break;

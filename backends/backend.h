@@ -31,6 +31,7 @@ struct Draw {
   uint32_t vertex_program = 0;  ///< indices into Frame::programs
   uint32_t pixel_program = 0;
   int object = 0;             ///< the first word of its record in Frame::objects
+  int projected = 0;          ///< the first word of its matrix in Frame::view
   uint32_t first_vertex = 0;  ///< its vertices in Frame::vertices
   uint32_t vertex_count = 0;
   std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
@@ -58,6 +59,7 @@ struct Frame {
   std::vector<float> objects;
   std::vector<float> lights;
   std::vector<float> frame;
+  std::vector<float> view;
   std::vector<float> texels;
   std::vector<uint32_t> texel_bytes;
   std::vector<int32_t> textures;
@@ -73,6 +75,7 @@ struct ScreenPass {
   int width = 0;  ///< of the image that is made
   int height = 0;
   std::span<const float> frame;
+  std::span<const float> view;
   std::span<const float> record;  ///< parameters and numbers of taps, as `objects`
   std::span<const float> images;
   std::span<const int32_t> image_records;

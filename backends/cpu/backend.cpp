@@ -55,6 +55,7 @@ class Buffers {
            bind<float>(FrameBuffer::objects, frame_->objects, diagnostics) &&
            bind<float>(FrameBuffer::lights, frame_->lights, diagnostics) &&
            bind<float>(FrameBuffer::frame, frame_->frame, diagnostics) &&
+           bind<float>(FrameBuffer::view, frame_->view, diagnostics) &&
            bind<float>(FrameBuffer::texels, frame_->texels, diagnostics) &&
            bind<uint32_t>(FrameBuffer::texel_bytes, frame_->texel_bytes, diagnostics) &&
            bind<int32_t>(FrameBuffer::textures, frame_->textures, diagnostics);
@@ -167,7 +168,7 @@ bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& 
     const auto [d, first] = tasks[i];
     const Draw& draw = frame.draws[d];
     const size_t count = std::min(vertex_chunk, draw.vertex_count - first);
-    kernels[draw.vertex_program]->vertex(buffers.views(), draw.object,
+    kernels[draw.vertex_program]->vertex(buffers.views(), draw.object, draw.projected,
                                          static_cast<int>(draw.first_vertex + first), static_cast<int>(count),
                                          clip[d].data() + 4 * first);
   });
@@ -228,6 +229,7 @@ bool CpuBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba
   if (!kernels) return false;
   Buffers buffers(nullptr);
   const bool fits = buffers.bind(FrameBuffer::frame, pass.frame, diagnostics) &&
+                    buffers.bind(FrameBuffer::view, pass.view, diagnostics) &&
                     buffers.bind(FrameBuffer::objects, pass.record, diagnostics) &&
                     buffers.bind(FrameBuffer::layers, pass.images, diagnostics) &&
                     buffers.bind(FrameBuffer::layer_records, pass.image_records, diagnostics);

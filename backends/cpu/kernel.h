@@ -23,7 +23,8 @@ struct BufferView {
   const void* data;
   int size;
 };
-using VertexFunction = void(const BufferView* buffers, int object, int first, int count, float* clip);
+using VertexFunction = void(const BufferView* buffers, int object, int projected, int first, int count,
+                            float* clip);
 using PixelFunction = void(const BufferView* buffers, int object, int light_count, int count, const int* x,
                            const int* y, const int* triangle, float* rgba);
 using PostFunction = void(const BufferView* buffers, int first, int y, int count, float* rgba);

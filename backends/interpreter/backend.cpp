@@ -39,6 +39,7 @@ class Buffers {
     bind<float>(FrameBuffer::objects, frame.objects);
     bind<float>(FrameBuffer::lights, frame.lights);
     bind<float>(FrameBuffer::frame, frame.frame);
+    bind<float>(FrameBuffer::view, frame.view);
     bind<float>(FrameBuffer::texels, frame.texels);
     bind<uint32_t>(FrameBuffer::texel_bytes, frame.texel_bytes);
     bind<int32_t>(FrameBuffer::textures, frame.textures);
@@ -147,7 +148,7 @@ class InterpreterBackend final : public backends::Backend {
       clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
       for (uint32_t i = 0; i < draw.vertex_count; ++i) {
         std::array<uint32_t, 4> position;
-        vertex.run({static_cast<int>(draw.first_vertex + i), draw.object}, position);
+        vertex.run({static_cast<int>(draw.first_vertex + i), draw.object, draw.projected}, position);
         for (size_t k = 0; k < 4; ++k) clip[d][4 * i + k] = std::bit_cast<float>(position[k]);
       }
     }
@@ -163,6 +164,7 @@ class InterpreterBackend final : public backends::Backend {
     if (!bears(*pass.program, diagnostics)) return false;
     Buffers buffers;
     buffers.bind(FrameBuffer::frame, pass.frame);
+    buffers.bind(FrameBuffer::view, pass.view);
     buffers.bind(FrameBuffer::objects, pass.record);
     buffers.bind(FrameBuffer::layers, pass.images);
     buffers.bind(FrameBuffer::layer_records, pass.image_records);

@@ -127,7 +127,8 @@ bool VulkanBackend::upload_frame(const Frame& frame, std::span<const float> vert
   return upload(*device_, FrameBuffer::vertices, vertices, &frame, diagnostics) &&
          upload<float>(*device_, FrameBuffer::objects, frame.objects, &frame, diagnostics) &&
          upload<float>(*device_, FrameBuffer::lights, frame.lights, &frame, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::frame, frame.frame, &frame, diagnostics);
+         upload<float>(*device_, FrameBuffer::frame, frame.frame, &frame, diagnostics) &&
+         upload<float>(*device_, FrameBuffer::view, frame.view, &frame, diagnostics);
 }
 
 bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics) {
@@ -173,7 +174,8 @@ bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>
                          .push = {.object = draw.object,
                                   .light_count = frame.light_count,
                                   .first = static_cast<int32_t>(first),
-                                  .count = static_cast<int32_t>(chunk.output)},
+                                  .count = static_cast<int32_t>(chunk.output),
+                                  .projected = draw.projected},
                          .first_vertex = first,
                          .vertex_count = chunk.count,
                          .scissor = {0, 0, 1, 1}});
@@ -204,6 +206,7 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
   return guarded(diagnostics, [&] {
     if (!check_size(pass.width, pass.height, diagnostics) ||
         !upload(*device_, FrameBuffer::frame, pass.frame, nullptr, diagnostics) ||
+        !upload(*device_, FrameBuffer::view, pass.view, nullptr, diagnostics) ||
         !upload(*device_, FrameBuffer::objects, pass.record, nullptr, diagnostics) ||
         !upload(*device_, FrameBuffer::layers, pass.images, nullptr, diagnostics) ||
         !upload(*device_, FrameBuffer::layer_records, pass.image_records, nullptr, diagnostics))

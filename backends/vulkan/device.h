@@ -37,6 +37,7 @@ struct Push {
   /// The pixel of the frame at the first one of the target; set by what renders.
   int32_t origin_x = 0;
   int32_t origin_y = 0;
+  int32_t projected = 0;
 };
 
 /// What a pipeline writes; all its fixed state follows from this.

@@ -50,7 +50,7 @@ constexpr std::string_view vertex_main =
     "  using Ints = int_of<Lanes>;\n"
     "  for (int begin = 0; begin < count; begin += batch) {\n"
     "    const Ints vertex_index = lane_index<Ints>() + (first + begin);\n"
-    "    const vec4<Lanes> position = vertex<Lanes>(buffers, vertex_index, object);\n"
+    "    const vec4<Lanes> position = vertex<Lanes>(buffers, vertex_index, object, projected);\n"
     "    float words[4][batch];\n"
     "    store_lanes(words[0], position.x);\n"
     "    store_lanes(words[1], position.y);\n"
@@ -141,7 +141,9 @@ std::string cpp_stage(const ir::Module& module, uint32_t entry, lower::Stage sta
   std::string signature, body;
   switch (stage) {
     case lower::Stage::vertex:
-      signature = "isoshade_vertex(const BufferView* views, int object, int first, int count, float* clip)";
+      signature = 
+          "isoshade_vertex(const BufferView* views, int object, int projected, int first, int count,\n"
+          "                                float* clip)";
       body = vertex_main;
       break;
     case lower::Stage::pixel:

@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view push_constants =
     "layout(push_constant) uniform Push {\n"
     "  int object;\n  int light_count;\n  int program;\n  int first;\n  int count;\n  int width;\n"
-    "  int origin_x;\n  int origin_y;\n"
+    "  int origin_x;\n  int origin_y;\n  int projected;\n"
     "} push;\n";
 
 // A uniform will not do: lavapipe compiles a shader again for the values of some.
@@ -63,7 +63,7 @@ std::string buffers_of(const ir::Module& module, std::vector<bool> used) {
 std::string vertex_main() {
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
-         "  precise vec4 position = vertex(gl_VertexIndex, push.object);\n"
+         "  precise vec4 position = vertex(gl_VertexIndex, push.object, push.projected);\n"
          "  clip[gl_VertexIndex - push.first + push.count] = uvec4(canonical(position));\n"
          "  gl_PointSize = 1.0;\n"
          "}\n";

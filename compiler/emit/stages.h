@@ -3,8 +3,8 @@
 //
 // GLSL. Set 0: bindings 0 to n - 1 are the buffers of lower/frame_layout.h (only those used are declared), n `clip`
 // (uvec4, written by vertex), n + 1 `ids` (isampler2D, read by pixel), n + 2 a word that is 0.0 (see ir::Opcode). Push
-// constants, eight ints:
-//   object, light_count, program, first, count, width, origin_x, origin_y
+// constants, nine ints:
+//   object, light_count, program, first, count, width, origin_x, origin_y, projected
 //   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as bits at
 //           clip[gl_VertexIndex - first + count].
 //   depth   a fragment shader: `flat in int triangle` at location 0; gl_FragDepth; out int at 0: triangle + 1. The
@@ -16,7 +16,7 @@
 //
 // C++. Lanes are chosen by the macros ISOSHADE_LANES (1, 4, 8, 16) and ISOSHADE_REGISTERS (1, 2). A file
 // exports one of
-//   void isoshade_vertex(const BufferView* buffers, int object, int first, int count, float* clip)
+//   void isoshade_vertex(const BufferView* buffers, int object, int projected, int first, int count, float* clip)
 //   void isoshade_pixel(const BufferView* buffers, int object, int light_count, int count, const int* x,
 //                       const int* y, const int* triangle, float* rgba)
 //   void isoshade_eval(const BufferView* buffers, int first, int count, int* results)

@@ -17,6 +17,7 @@ enum class FrameBuffer : uint32_t {
   objects,
   lights,
   frame,
+  view,
   inputs,
   texels,
   texel_bytes,
@@ -34,12 +35,13 @@ inline constexpr FrameBufferInfo frame_buffers[] = {
     {"triangles", ir::Scalar::integer},  ///< clipped and snapped, see runtime/raster
     {"objects", ir::Scalar::floating},   ///< transforms and effect parameters; of `post` its parameters alone
     {"lights", ir::Scalar::floating},    //
-    {"frame", ir::Scalar::floating},     ///< the camera and the time
+    {"frame", ir::Scalar::floating},     ///< what is the same for all views: the time
+    {"view", ir::Scalar::floating},      ///< of the view that is drawn: its camera, and a matrix for each draw
     {"inputs", ir::Scalar::integer},     ///< of `eval`: one row a record, floats as bits
     {"texels", ir::Scalar::floating},    ///< of textures of floats: r g b a, linear, row by row from the top
     {"texel_bytes", ir::Scalar::integer},  ///< of textures of bytes: r g b a in a word, r in its lowest byte
     {"textures", ir::Scalar::integer},     ///< where each texture lies in one of the two
-    {"layers", ir::Scalar::floating},      ///< of `post`: images, rows top down; r g b a, or the depth alone
+    {"layers", ir::Scalar::floating},      ///< images that were made before, rows top down: r g b a, or depth alone
     {"layer_records", ir::Scalar::integer},
 };
 
@@ -81,10 +83,9 @@ namespace object_word {
 inline constexpr int model = 0;  ///< 4 columns of 3: object space -> world space
 inline constexpr int normal =
     12;  ///< 3 columns of 3: object -> world for normals (cofactors; not normalised)
-inline constexpr int projected = 21;  ///< 4 columns of 4: object space -> clip space
-inline constexpr int program = 37;    ///< the index of the surface program as a float
-inline constexpr int inverse = 38;    ///< 4 columns of 3: world space -> object space
-inline constexpr int parameters = 50;
+inline constexpr int inverse = 21;  ///< 4 columns of 3: world space -> object space
+inline constexpr int program = 33;  ///< the index of the surface program as a float
+inline constexpr int parameters = 34;
 }  // namespace object_word
 
 /// lights: one record a light.
@@ -118,39 +119,50 @@ inline constexpr int linear = 0;   ///< n / 255; alpha is always by this
 inline constexpr int srgb = size;  ///< srgb_decode(n / 255)
 }  // namespace byte_table
 
-/// frame: the camera and the time.
+/// frame: what is the same for all views.
 namespace frame_word {
+inline constexpr int time = 0;  ///< seconds
+inline constexpr int count = 1;
+}  // namespace frame_word
+
+/// view: the camera, then `matrix` words for each draw: 4 columns of 4, object space -> clip space. The uniform
+/// `projected` of the vertex kernel is the first word of its draw's matrix.
+namespace view_word {
 inline constexpr int eye =
     0;  ///< homogeneous, world space: position and 1, or the direction to the viewer and 0
 inline constexpr int view = 4;           ///< 4 columns of 3: world space -> view space
 inline constexpr int inverse_view = 16;  ///< 4 columns of 3: view space -> world space
-inline constexpr int time = 28;          ///< seconds
-inline constexpr int projection = 29;    ///< 4 columns of 4: view space -> clip space
+inline constexpr int projection = 28;    ///< 4 columns of 4: view space -> clip space
 /// What a pixel covers vertically, in world units: a constant, and what is added for each unit of distance along the
 /// view. One of them is 0.
-inline constexpr int pixel_size = 45;
-// What posts know of the camera.
-inline constexpr int camera_position = 47;   ///< world space
-inline constexpr int camera_direction = 50;  ///< unit, world space: the way it looks
+inline constexpr int pixel_size = 44;
+// What only posts read.
+inline constexpr int camera_position = 46;   ///< world space
+inline constexpr int camera_direction = 49;  ///< unit, world space: the way it looks
 /// World space, in the middle of the screen; then what is added from there to its right and to its lower edge: the way
 /// from the camera that reaches one unit of distance along the view further ...
-inline constexpr int view_ray = 53;
+inline constexpr int view_ray = 52;
 /// ... and where it begins, from the camera's position: 0 in perspective.
-inline constexpr int ray_origin = 62;
+inline constexpr int ray_origin = 61;
 /// The distance along the view is (n0 + n1 * depth) / (d0 + d1 * depth).
-inline constexpr int depth_numerator = 71;
-inline constexpr int depth_denominator = 73;
-inline constexpr int count = 75;
-}  // namespace frame_word
+inline constexpr int depth_numerator = 70;
+inline constexpr int depth_denominator = 72;
+inline constexpr int camera_words = 74;  ///< the matrices begin here
+inline constexpr int matrix = 16;        ///< words of each
+}  // namespace view_word
 
-/// layer_records: one record an image, in this order: the one that is made, the scene's depth, the one that the post
-/// goes over, and the images that its document lists.
+/// layer_records: one record an image. The first is of the image that is made. Of a post, there follow the depth of the
+/// picture, the image that the post goes over, and those that its document lists; of a view, the depth and the color of
+/// each target that it reads.
 namespace image_word {
 inline constexpr int made = 0, depth = 1, color = 2;  ///< records
 inline constexpr int first = 0;  ///< its first word in `layers`; not of the one that is made
 inline constexpr int width = 1;  ///< in pixels
 inline constexpr int height = 2;
-inline constexpr int stride = 3;
+/// The first of the words in `layers` that hold the camera of the view that drew it (view_word, without matrices); -1
+/// where there are none.
+inline constexpr int camera = 3;
+inline constexpr int stride = 4;
 }  // namespace image_word
 
 }  // namespace isoshade::lower

@@ -59,7 +59,7 @@ struct LowerOptions {
 ///     and .NAME_inside vec2 (where in that pixel): "depth", "color" for the one that the post goes over, "image_NAME"
 ///     for those that the document lists
 ///   sizes.screen     vec2, uniform; and .NAME_width, .NAME_height int
-///   camera.position, .direction vec3, uniform; .depth_numerator, .depth_denominator vec2 (frame_word)
+///   camera.position, .direction vec3, uniform; .depth_numerator, .depth_denominator vec2 (view_word)
 ///   frame.time, parameters.NAME  as in a pass
 ///   taps.NODE        int, uniform: how many taps the node sums
 /// It reads images by NAME_at(x: int, y: int) -> (color: vec4), and the depth by depth_at -> (depth: float): declared

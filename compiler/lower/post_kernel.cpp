@@ -107,29 +107,29 @@ class ScreenPoint {
 
   /// A vector in the middle of the screen, and what it changes by to the right and downwards.
   ir::ValueId over_screen(int word) {
-    const auto vector = [&](int i) { return k_.load3(FrameBuffer::frame, k_.constant(0), word + 3 * i); };
+    const auto vector = [&](int i) { return k_.load3(FrameBuffer::view, k_.constant(0), word + 3 * i); };
     const Vec3 across = vector(1) * functions::splat<3>(from_middle(0));
     const Vec3 down = vector(2) * functions::splat<3>(from_middle(1));
     return ((vector(0) + across) + down).value;
   }
 
-  ir::ValueId frame_vector2(int word) {
-    const auto load = [&](int at) { return k_.load(FrameBuffer::frame, k_.constant(at)); };
+  ir::ValueId view_vector2(int word) {
+    const auto load = [&](int at) { return k_.load(FrameBuffer::view, k_.constant(at)); };
     return Vec2(load(word), load(word + 1)).value;
   }
-  ir::ValueId frame_vector3(int word) { return k_.load3(FrameBuffer::frame, k_.constant(0), word).value; }
+  ir::ValueId view_vector3(int word) { return k_.load3(FrameBuffer::view, k_.constant(0), word).value; }
 
   ir::ValueId screen(Screen value) {
     switch (value) {
       case Screen::pixel: return Vec2(centre(0), centre(1)).value;
       case Screen::coordinate: return Vec2(coordinate(0), coordinate(1)).value;
-      case Screen::view_ray: return over_screen(frame_word::view_ray);
-      case Screen::relative_origin: return over_screen(frame_word::ray_origin);
+      case Screen::view_ray: return over_screen(view_word::view_ray);
+      case Screen::relative_origin: return over_screen(view_word::ray_origin);
       case Screen::size: return Vec2(to_float(made(0)), to_float(made(1))).value;
-      case Screen::camera_position: return frame_vector3(frame_word::camera_position);
-      case Screen::camera_direction: return frame_vector3(frame_word::camera_direction);
-      case Screen::depth_numerator: return frame_vector2(frame_word::depth_numerator);
-      case Screen::depth_denominator: return frame_vector2(frame_word::depth_denominator);
+      case Screen::camera_position: return view_vector3(view_word::camera_position);
+      case Screen::camera_direction: return view_vector3(view_word::camera_direction);
+      case Screen::depth_numerator: return view_vector2(view_word::depth_numerator);
+      case Screen::depth_denominator: return view_vector2(view_word::depth_denominator);
     }
     support::bug("no such value of the screen");
   }

@@ -49,13 +49,10 @@ void add_edge_gradients(ir::Module& module) {
   }
 }
 
-/// By the matrix of 4 columns of 4 that stands in a record.
-Vec4 to_clip(Kernel& k, FrameBuffer buffer, Int record, int word, Vec3 position) {
-  const auto column = [&](int i) { return k.load4(buffer, record, word + 4 * i); };
+/// By the matrix of 4 columns of 4 in `view` from this word on.
+Vec4 to_clip(Kernel& k, Int matrix, Vec3 position) {
+  const auto column = [&](int i) { return k.load4(FrameBuffer::view, matrix, 4 * i); };
   return weighted<Vec4>({column(0), column(1), column(2)}, position) + column(3);
-}
-Vec4 object_to_clip(Kernel& k, Int object, Vec3 position) {
-  return to_clip(k, FrameBuffer::objects, object, object_word::projected, position);
 }
 
 /// What surfaces and records give to the parameters of a document's function.
@@ -167,18 +164,18 @@ ir::Module frame_module() {
 }
 
 uint32_t add_vertex_kernel(ir::Module& module) {
-  Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
+  Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object"), uniform_int("projected")},
            {{"clip", ir::vector_type(4)}});
   const Int first = k.integer(0) * Int(vertex_word::stride);
   const Vec3 position = k.load3(FrameBuffer::vertices, first, vertex_word::position);
-  k.b.finish(std::array{object_to_clip(k, k.integer(1), position).value});
+  k.b.finish(std::array{to_clip(k, k.integer(2), position).value});
   return k.index;
 }
 
 uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface& interface,
                                   const interface::RecordLayout& record, graph::PositionSpace space) {
   define_texture_reads(module, interface);
-  Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object")},
+  Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object"), uniform_int("projected")},
            {{"clip", ir::vector_type(4)}});
   const Int object = k.integer(1);
   SurfacePoint surface(k, object, attributes_of_vertex(k, k.integer(0)));
@@ -186,11 +183,11 @@ uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface
   Vec3 position(k.b, k.b.call(interface.entry, arguments.of(interface))[0]);
   k.named("position", position);
   if (space == graph::PositionSpace::object) {
-    k.b.finish(std::array{object_to_clip(k, object, position).value});
+    k.b.finish(std::array{to_clip(k, k.integer(2), position).value});
     return k.index;
   }
   if (space == graph::PositionSpace::world) position = k.named("view_position", surface.to_view(position));
-  const Vec4 clip = to_clip(k, FrameBuffer::frame, k.constant(0), frame_word::projection, position);
+  const Vec4 clip = to_clip(k, k.constant(view_word::projection), position);
   k.b.finish(std::array{clip.value});
   return k.index;
 }

@@ -13,12 +13,13 @@
 namespace isoshade::lower {
 
 /// Each kernel is a function of the module named as the enumerator:
-///   vertex (vertex: int, object: int uniform) -> (clip: vec4)
+///   vertex (vertex: int, object: int uniform, projected: int uniform) -> (clip: vec4)
 ///   depth  (x: int, y: int, triangle: int) -> (depth: float)                      the same for every scene
 ///   pixel  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform) -> (color: vec4)
 ///   eval   (row: int) -> (the function's results)
 ///   post   (x: int, y: int uniform) -> (color: vec4)
-/// `object` is the first word of the object's record; x and y are whole pixels.
+/// `object` is the first word of the object's record, and `projected` that of its matrix in `view`; x and y are whole
+/// pixels.
 enum class Stage : uint8_t { vertex, depth, pixel, eval, post };
 std::string_view name(Stage stage);
 
@@ -32,7 +33,7 @@ struct LightKinds {
 /// A module with the frame's buffers and no function.
 ir::Module frame_module();
 
-/// Object space to clip space by the object's matrix. Adds `vertex`; returns its index.
+/// Object space to clip space by the draw's matrix. Adds `vertex`; returns its index.
 uint32_t add_vertex_kernel(ir::Module& module);
 
 /// Adds `vertex` around the document's `move_vertex`, which returns positions in `space`.

@@ -71,16 +71,16 @@ ir::ValueId SurfacePoint::once(ir::ValueId& value, int width, int word) {
 
 Vec3 SurfacePoint::column(SpaceMatrix matrix, uint32_t column_number) {
   const int number = static_cast<int>(column_number);
-  const Int frame = k_.constant(0);
+  const Int view = k_.constant(0);
   switch (matrix) {
     case SpaceMatrix::world_from_object:
       return k_.load3(FrameBuffer::objects, object_, object_word::model + 3 * number);
     case SpaceMatrix::object_from_world:
       return k_.load3(FrameBuffer::objects, object_, object_word::inverse + 3 * number);
     case SpaceMatrix::view_from_world:
-      return k_.load3(FrameBuffer::frame, frame, frame_word::view + 3 * number);
+      return k_.load3(FrameBuffer::view, view, view_word::view + 3 * number);
     case SpaceMatrix::world_from_view:
-      return k_.load3(FrameBuffer::frame, frame, frame_word::inverse_view + 3 * number);
+      return k_.load3(FrameBuffer::view, view, view_word::inverse_view + 3 * number);
   }
   support::bug("no such matrix");
 }
@@ -133,9 +133,9 @@ Vec3 SurfacePoint::to_view(Vec3 point) {
 }
 
 Float SurfacePoint::pixel_size() {
-  const Int frame(k_.b, k_.b.constant(frame_word::pixel_size));
-  const Float constant = k_.load(FrameBuffer::frame, frame);
-  const Float growth = k_.load(FrameBuffer::frame, frame + Int(1));
+  const Int view(k_.b, k_.b.constant(view_word::pixel_size));
+  const Float constant = k_.load(FrameBuffer::view, view);
+  const Float growth = k_.load(FrameBuffer::view, view + Int(1));
   return constant - growth * to_view(position())[2];
 }
 
@@ -150,7 +150,7 @@ Vec3 SurfacePoint::bitangent() {
 
 // The eye is homogeneous: a point for perspective, a direction for orthographic projection.
 Vec3 SurfacePoint::towards_eye() {
-  const Vec4 eye = k_.load4(FrameBuffer::frame, Int(k_.b, k_.b.constant(frame_word::eye)), 0);
+  const Vec4 eye = k_.load4(FrameBuffer::view, Int(k_.b, k_.b.constant(view_word::eye)), 0);
   return Vec3(eye[0], eye[1], eye[2]) - position() * functions::splat<3>(eye[3]);
 }
 

@@ -225,7 +225,8 @@ bool Planner::make_objects() {
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
       vertices.total += draws * mesh.parts[part].vertex_count;
       triangles.total += draws * static_cast<int64_t>(mesh.parts[part].indices.size() / 3);
-      words.total += draws * (lower::object_word::parameters + parameters_.back()[part].word_count());
+      words.total += draws * (lower::object_word::parameters + lower::view_word::matrix +
+                              parameters_.back()[part].word_count());
     }
     for (const Count* count : {&vertices, &triangles, &words}) {
       if (count->total <= count->limit) continue;
@@ -278,6 +279,7 @@ backends::Draw& Planner::place_draw(const ObjectTransforms& place, const PassPro
   draw.vertex_program = programs.vertex;
   draw.pixel_program = programs.pixel;
   draw.object = static_cast<int>(first);
+  draw.projected = append_matrix(place.projected, plan_.frame.view);
   draw.first_vertex = part.first_vertex;
   draw.vertex_count = part.vertex_count;
   draw.indices = part.indices;
@@ -323,7 +325,8 @@ std::optional<Plan> Planner::plan() {
     const lanes::FpGuard guard;
     // The camera and the size of a pixel are those of the image.
     view_ = scene::make_view(scene_.camera, width, height);
-    frame.frame = frame_words(scene_, view_, width, height);
+    frame.frame = frame_words(scene_);
+    frame.view = view_words(scene_.camera, view_, width, height);
     for (const scene::Light& light : scene_.lights) {
       const auto record = scene::light_record(light);
       frame.lights.insert(frame.lights.end(), record.begin(), record.end());

@@ -238,6 +238,7 @@ struct Arrays {
       to[word::first] = static_cast<int32_t>(first);
       to[word::width] = width;
       to[word::height] = height;
+      to[word::camera] = -1;
     };
     describe(word::made, 0, step.width, step.height);
     describe(word::depth, 0, image.width, image.height);
@@ -265,7 +266,7 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
   return ChainPlanner(scene, documents, width, height, skip, skips, diagnostics).plan();
 }
 
-bool run_posts(const PostChain& chain, std::span<const float> frame, backends::Backend& backend,
+bool run_posts(const PostChain& chain, const backends::Frame& frame, backends::Backend& backend,
                backends::Image& image, DrawStats& stats, Diagnostics& diagnostics) {
   stats.non_finite.result = stats.non_finite.drawn;
   if (chain.steps.empty()) return true;
@@ -280,8 +281,8 @@ bool run_posts(const PostChain& chain, std::span<const float> frame, backends::B
     stats.kept_images = std::max(stats.kept_images, ++kept);
     {
       const Arrays arrays(step, layers, image);
-      const backends::ScreenPass pass{&step.post->program, step.width,    step.height,   frame,
-                                      step.record,         arrays.images, arrays.records};
+      const backends::ScreenPass pass{&step.post->program, step.width,  step.height,   frame.frame,
+                                      frame.view,          step.record, arrays.images, arrays.records};
       if (!backend.post(pass, made.rgba, diagnostics)) return false;
     }
     note_non_finite(step, layers, made, stats.non_finite);

@@ -31,23 +31,34 @@ void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::s
   store_rows(place.model, 3, record + word::model);
   store_rows(place.inverse, 3, record + word::inverse);
   store_rows(place.normal, 3, record + word::normal);
-  store_rows(place.projected, 4, record + word::projected);
   record[word::program] = static_cast<float>(pixel_program);
   objects.insert(objects.end(), parameters.begin(), parameters.end());
 }
 
-std::vector<float> frame_words(const scene::Scene& scene, const scene::View& view, int width, int height) {
-  namespace word = lower::frame_word;
-  std::vector<float> words(word::count);
+std::vector<float> frame_words(const scene::Scene& scene) {
+  std::vector<float> words(lower::frame_word::count);
+  words[lower::frame_word::time] = scene::canonical(scene.time);
+  return words;
+}
+
+std::vector<float> view_words(const scene::Camera& camera, const scene::View& view, int width, int height) {
+  namespace word = lower::view_word;
+  std::vector<float> words(word::camera_words);
   for (int i = 0; i < 4; ++i) words[word::eye + i] = scene::canonical(view.eye[i]);
   store_rows(view.view, 3, &words[word::view]);
   store_rows(view.inverse, 3, &words[word::inverse_view]);
-  words[word::time] = scene::canonical(scene.time);
   store_rows(view.clip_from_view, 4, &words[word::projection]);
   for (int i = 0; i < 2; ++i)
     words[static_cast<size_t>(word::pixel_size + i)] = scene::canonical(view.pixel_size[i]);
-  scene::store_camera(scene.camera, width, height, words);
+  scene::store_camera(camera, width, height, words);
   return words;
+}
+
+int append_matrix(const glm::mat4& projected, std::vector<float>& view) {
+  const size_t first = view.size();
+  view.resize(first + lower::view_word::matrix);
+  store_rows(projected, 4, &view[first]);
+  return static_cast<int>(first);
 }
 
 }  // namespace isoshade::render

@@ -67,7 +67,7 @@ bool render(const Plan& plan, backends::Backend& backend, backends::Image& image
   stats.samples = plan.samples;
   if (!draw(frame, plan.samples, vertices, triangles, backend, image, stats, diagnostics)) return false;
   stats.draw_seconds = lap();
-  if (!run_posts(plan.posts, frame.frame, backend, image, stats, diagnostics)) return false;
+  if (!run_posts(plan.posts, frame, backend, image, stats, diagnostics)) return false;
   stats.post_seconds = lap();
   return true;
 }

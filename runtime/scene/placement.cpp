@@ -87,10 +87,10 @@ View make_view(const Camera& camera, int width, int height) {
   return view;
 }
 
-void store_camera(const Camera& camera, int width, int height, std::span<float> frame) {
-  namespace word = lower::frame_word;
+void store_camera(const Camera& camera, int width, int height, std::span<float> view) {
+  namespace word = lower::view_word;
   const auto store = [&](int at, const glm::vec3& v) {
-    for (int i = 0; i < 3; ++i) frame[static_cast<size_t>(at + i)] = canonical(v[i]);
+    for (int i = 0; i < 3; ++i) view[static_cast<size_t>(at + i)] = canonical(v[i]);
   };
   const auto store_over_screen = [&](int at, const glm::vec3& middle, const glm::vec3& across,
                                      const glm::vec3& down) {
@@ -99,8 +99,8 @@ void store_camera(const Camera& camera, int width, int height, std::span<float> 
     store(at + 6, down);
   };
   const auto store_pair = [&](int at, float a, float b) {
-    frame[static_cast<size_t>(at)] = canonical(a);
-    frame[static_cast<size_t>(at + 1)] = canonical(b);
+    view[static_cast<size_t>(at)] = canonical(a);
+    view[static_cast<size_t>(at + 1)] = canonical(b);
   };
   const auto [right, up, back] = axes_of(camera);
   const float aspect = static_cast<float>(width) / static_cast<float>(height);

@@ -20,13 +20,13 @@ struct View {
   glm::mat4 inverse;     ///< view space -> world space
   glm::mat4 projection;  ///< world space -> clip space
   glm::mat4 clip_from_view;
-  glm::vec4 eye;         ///< frame_word::eye
-  glm::vec2 pixel_size;  ///< frame_word::pixel_size
+  glm::vec4 eye;         ///< view_word::eye
+  glm::vec2 pixel_size;  ///< view_word::pixel_size
 };
 View make_view(const Camera& camera, int width, int height);
 
-/// Writes what posts know of the camera into an array of lower::frame_word.
-void store_camera(const Camera& camera, int width, int height, std::span<float> frame);
+/// Writes what posts read of the camera into an array of lower::view_word.
+void store_camera(const Camera& camera, int width, int height, std::span<float> view);
 
 /// Object space to world space.
 glm::mat4 model_matrix(const Object& object, const Instance& instance);

@@ -8,6 +8,7 @@
 #include "backends/reference/evaluator.h"
 #include "compiler/interface/binding.h"
 #include "compiler/ir/interpreter.h"
+#include "compiler/lower/frame_layout.h"
 
 namespace isoshade::accuracy {
 
@@ -26,7 +27,7 @@ class Surroundings {
   }
 
  private:
-  std::array<std::vector<uint32_t>, 11> buffers_;
+  std::array<std::vector<uint32_t>, std::size(lower::frame_buffers)> buffers_;
 };
 
 /// Runs the function of a document: `floats` has bodies for the library's functions, `exact` none.

@@ -56,7 +56,7 @@ double worst_error(const support::Source& source, const scene::Camera& camera) {
   screen.set("fog_end", {static_cast<float>(fog_end)});
   {
     const lanes::FpGuard guard;
-    scene::store_camera(camera, width, height, screen.frame);
+    scene::store_camera(camera, width, height, screen.view);
   }
   const std::vector<float> found = screen.interpreted();
   double worst = 0;
@@ -117,7 +117,7 @@ TEST(Fog, IsGuardedWhereItBeginsAsItEnds) {
   camera.target = {0, 1, -2};
   {
     const lanes::FpGuard guard;
-    scene::store_camera(camera, 2, 1, screen.frame);
+    scene::store_camera(camera, 2, 1, screen.view);
   }
   const std::vector<float> found = screen.interpreted();
   EXPECT_EQ(found[0], 0.25f);     // near the camera, above the fog
@@ -135,7 +135,7 @@ TEST(Fog, DistancesAreExactToTwoRoundings) {
                 4, 1, {4, 1, {near / 1, near / 10, near / 100, near / 1000}}, {{1, 1, {0, 0, 0, 0}}});
   {
     const lanes::FpGuard guard;
-    scene::store_camera(camera, 4, 1, screen.frame);
+    scene::store_camera(camera, 4, 1, screen.view);
   }
   const std::vector<float> found = screen.interpreted();
   std::printf("distance   relative error from reversed depth, and from a depth that is 1 at %g\n",

@@ -175,7 +175,7 @@ void expect_points_found_again(const scene::Camera& camera) {
   }
   depth.floats[0] = 0;
   Screen screen(post_text(positions), width, height, depth, {numbered(1, 1)});
-  scene::store_camera(camera, width, height, screen.frame);
+  scene::store_camera(camera, width, height, screen.view);
   const std::vector<float> found = screen.interpreted();
   for (size_t i = 1; i < points.size(); ++i)
     for (int c = 0; c < 3; ++c)
@@ -231,7 +231,7 @@ TEST(Posts, AreTheSameOnEveryBackendAtEverySize) {
     Screen screen(post_text(everything, R"("images": ["other"], )"), width, height, depth,
                   {numbered(width, height), numbered((width + 1) / 2, (height + 2) / 3)});
     const lanes::FpGuard guard;
-    scene::store_camera(camera, width, height, screen.frame);
+    scene::store_camera(camera, width, height, screen.view);
     const std::vector<float> expected = screen.run(*interpreter);
     for (const auto& [name, backend] : others)
       EXPECT_TRUE(screen.run(*backend) == expected) << name << " " << width << "x" << height;

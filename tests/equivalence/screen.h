@@ -36,10 +36,11 @@ class Screen {
     if (compiled) post = *std::move(compiled);
     record_ = post.parameters.defaults();
     frame.resize(lower::frame_word::count);
+    view.resize(lower::view_word::camera_words);
     add({width, height, {}});
     add(depth);
     for (const Pixels& image : images) add(image);
-    pass_ = {&post.program, width, height, frame, record_, images_, records_};
+    pass_ = {&post.program, width, height, frame, view, record_, images_, records_};
   }
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
@@ -62,10 +63,11 @@ class Screen {
 
   driver::Post post;
   std::vector<float> frame;  ///< words of lower::frame_word
+  std::vector<float> view;   ///< words of lower::view_word
 
  private:
   void add(const Pixels& pixels) {
-    records_.insert(records_.end(), {static_cast<int32_t>(images_.size()), pixels.width, pixels.height});
+    records_.insert(records_.end(), {static_cast<int32_t>(images_.size()), pixels.width, pixels.height, -1});
     images_.insert(images_.end(), pixels.floats.begin(), pixels.floats.end());
   }
   std::vector<float> record_, images_;

@@ -69,7 +69,9 @@ struct TestFrame {
     record[lower::object_word::program] = 1;
     record[lower::object_word::parameters] = random();
     // Columns of a perspective with the near plane at 0.25; what is at z = 0 is 1 away.
-    float* columns = record + lower::object_word::projected;
+    frame.draws.back().projected = static_cast<int>(frame.view.size());
+    frame.view.resize(frame.view.size() + lower::view_word::matrix);
+    float* columns = &frame.view[static_cast<size_t>(frame.draws.back().projected)];
     columns[0] = columns[5] = record[0];
     columns[11] = 1;
     columns[14] = 0.25f;

@@ -26,7 +26,7 @@ struct BufferView { const void* data; int size; };
 
 /// Positions times the first word of the object's record; w is 1.
 inline const std::string vertex_text = program_head + R"(
-EXPORT void isoshade_vertex(const BufferView* buffers, int object, int first, int count, float* clip) {
+EXPORT void isoshade_vertex(const BufferView* buffers, int object, int, int first, int count, float* clip) {
   using namespace program;
   const FloatBuffer vertices{static_cast<const float*>(buffers[0].data), buffers[0].size};
   const FloatBuffer objects{static_cast<const float*>(buffers[2].data), buffers[2].size};
@@ -74,7 +74,7 @@ EXPORT void isoshade_pixel(const BufferView* buffers, int object, int light_coun
 inline const std::string eval_text = program_head + R"(
 EXPORT void isoshade_eval(const BufferView* buffers, int first, int count, int* results) {
   using namespace program;
-  const IntBuffer inputs{static_cast<const int*>(buffers[5].data), buffers[5].size};
+  const IntBuffer inputs{static_cast<const int*>(buffers[6].data), buffers[6].size};
   for (int begin = 0; begin < count; begin += batch) {
     const I row = lane_index<I>() + (first + begin);
     const F a = from_bits(load(inputs, row * 2)), b = from_bits(load(inputs, row * 2 + 1));

@@ -275,19 +275,19 @@ TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   EXPECT_EQ(made->frame.light_count, 2);
   EXPECT_EQ(made->frame.lights.size(), 2u * lower::light_word::stride);
   EXPECT_EQ(made->frame.lights[lower::light_word::stride + lower::light_word::color], 5.0f);
-  EXPECT_EQ(made->frame.frame.size(), static_cast<size_t>(lower::frame_word::count));
+  EXPECT_EQ(made->frame.frame, std::vector<float>{2.5f});
+  EXPECT_EQ(made->frame.view.size(), static_cast<size_t>(lower::view_word::camera_words));
   const auto words = [&](int first, size_t count) {
-    return std::vector(made->frame.frame.begin() + first, made->frame.frame.begin() + first + count);
+    return std::vector(made->frame.view.begin() + first, made->frame.view.begin() + first + static_cast<int>(count));
   };
-  EXPECT_EQ(words(lower::frame_word::eye, 4), (std::vector<float>{0, 0, 5, 1}));
-  EXPECT_EQ(words(lower::frame_word::view, 12), (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -5}));
-  EXPECT_EQ(words(lower::frame_word::inverse_view, 12),
+  EXPECT_EQ(words(lower::view_word::eye, 4), (std::vector<float>{0, 0, 5, 1}));
+  EXPECT_EQ(words(lower::view_word::view, 12), (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -5}));
+  EXPECT_EQ(words(lower::view_word::inverse_view, 12),
             (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 5}));
-  EXPECT_EQ(words(lower::frame_word::time, 1), std::vector<float>{2.5f});
-  const std::vector<float> projection = words(lower::frame_word::projection, 16);
+  const std::vector<float> projection = words(lower::view_word::projection, 16);
   EXPECT_EQ(projection[11], -1.0f);  // w is the distance along the view
   EXPECT_EQ(projection[10], 0.0f);
-  const std::vector<float> pixel = words(lower::frame_word::pixel_size, 2);
+  const std::vector<float> pixel = words(lower::view_word::pixel_size, 2);
   EXPECT_EQ(pixel[0], 0.0f);
   EXPECT_FLOAT_EQ(pixel[1] * projection[5] * 9, 2.0f);  // nine pixels are the height of clip space
   EXPECT_EQ(made->frame.background[3], 0.4f);

@@ -134,7 +134,7 @@ TEST_F(SamplesTest, MakeTheFrameLargerAndLeaveTheCameraAndThePixelAsTheyAre) {
     ASSERT_TRUE(several) << diagnostics_.text();
     EXPECT_EQ(several->frame.width, 30 * side);
     EXPECT_EQ(several->frame.height, 20 * side);
-    EXPECT_EQ(several->frame.frame, one->frame.frame);  // pixel_size is among these words
+    EXPECT_EQ(several->frame.view, one->frame.view);  // pixel_size is among these words
     EXPECT_EQ(several->frame.objects, one->frame.objects);
     const Image image = drawn(*several);
     EXPECT_EQ(image.width, 30);

@@ -22,7 +22,7 @@ std::string transform_glsl() {
 layout(std430, set = 0, binding = )" +
          std::to_string(output_binding) + R"() writeonly buffer clip_block { uvec4 clip[]; };
 void main() {
-  vec4 position = vec4(float(gl_VertexIndex), objects[push.object], vertices[8 * (gl_VertexIndex % 4)], frame[0]);
+  vec4 position = vec4(float(gl_VertexIndex), objects[push.object], vertices[8 * (gl_VertexIndex % 4)], view[push.projected]);
   clip[gl_VertexIndex - push.first + push.count] = floatBitsToUint(position);
   gl_PointSize = 1.0;
 }
@@ -37,12 +37,13 @@ TEST(VulkanTransform, GivesEachDrawItsVerticesInOrder) {
   frame.vertices.resize(4 * 8);
   for (size_t i = 0; i < 4; ++i) frame.vertices[8 * i] = static_cast<float>(i) + 0.5f;
   frame.objects = {3.0f, 4.0f};
-  frame.frame = {-0.0f};
+  frame.view = {1.0f, -0.0f};
   frame.draws.resize(3);
   frame.draws[0].first_vertex = 1;
   frame.draws[0].vertex_count = 2;
   frame.draws[1].vertex_count = 1;
   frame.draws[1].object = 1;
+  frame.draws[1].projected = 1;
   // More than one run of the device takes.
   frame.draws[2].first_vertex = 3;
   frame.draws[2].vertex_count = max_output_words / 4 + 7;
@@ -56,7 +57,8 @@ TEST(VulkanTransform, GivesEachDrawItsVerticesInOrder) {
     for (uint32_t v = 0; v < draw.vertex_count; ++v) {
       const uint32_t vertex = draw.first_vertex + v;
       const float expected[4] = {static_cast<float>(vertex), frame.objects[static_cast<size_t>(draw.object)],
-                                 frame.vertices[size_t{8} * (vertex % 4)], -0.0f};
+                                 frame.vertices[size_t{8} * (vertex % 4)],
+                                 frame.view[static_cast<size_t>(draw.projected)]};
       ASSERT_EQ(std::memcmp(clip[d].data() + size_t{4} * v, expected, sizeof(expected)), 0)
           << "draw " << d << ", vertex " << v;
     }
@@ -86,7 +88,8 @@ void main() {
   int triangle = texelFetch(ids, ivec2(gl_FragCoord.xy), 0).x - 1;
   if (triangle < 0) discard;
   int object = triangles[16 * triangle + 3] >> 2;
-  if (int(objects[object + 37]) != push.program) discard;
+  if (int(objects[object + )" + std::to_string(lower::object_word::program) +
+         R"(]) != push.program) discard;
   color = vec4(gl_FragCoord.xy, float(triangle) + lights[push.light_count - 1], )" +
          alpha + ");\n}\n";
 }

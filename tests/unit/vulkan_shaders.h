@@ -21,9 +21,11 @@ layout(std430, set = 0, binding = 1) readonly buffer triangles_block { int trian
 layout(std430, set = 0, binding = 2) readonly buffer objects_block { float objects[]; };
 layout(std430, set = 0, binding = 3) readonly buffer lights_block { float lights[]; };
 layout(std430, set = 0, binding = 4) readonly buffer frame_block { float frame[]; };
-layout(std430, set = 0, binding = 5) readonly buffer inputs_block { int inputs[]; };
+layout(std430, set = 0, binding = 5) readonly buffer view_block { float view[]; };
+layout(std430, set = 0, binding = 6) readonly buffer inputs_block { int inputs[]; };
 layout(push_constant) uniform Push {
   int object; int light_count; int program; int first; int count; int width;
+  int origin_x; int origin_y; int projected;
 } push;
 )";
 }
