@@ -40,7 +40,7 @@ void define_read(ir::Module& module, uint32_t function, int image) {
   const Int first = image_size(k, image, image_word::first);
   const Int width = image_size(k, image, image_word::width);
   const Int place = k.named("place", k.integer(1) * width + k.integer(0));
-  if (image == image_word::depth) {
+  if (image == image_record::depth) {
     k.b.finish(std::array{k.load(FrameBuffer::layers, first + place).value});
   } else {
     k.b.finish(std::array{k.load4(FrameBuffer::layers, first + shift_left(place, Int(2)), 0).value});
@@ -91,7 +91,7 @@ class ScreenPoint {
   Int made(int axis) {
     Int& value = made_[static_cast<size_t>(axis)];
     if (value.builder == nullptr) {
-      value = image_size(k_, image_word::made, axis == 0 ? image_word::width : image_word::height);
+      value = image_size(k_, image_record::made, axis == 0 ? image_word::width : image_word::height);
       k_.named(axis == 0 ? "made_width" : "made_height", value);
     }
     return value;

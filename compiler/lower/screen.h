@@ -52,10 +52,10 @@ struct ScreenInputs {
 };
 
 /// The images that a post reads: the scene's depth; the image that the post goes over; those of Graph::images.
-inline constexpr interface::ImageNumber depth_image = image_word::depth;
+inline constexpr interface::ImageNumber depth_image = image_record::depth;
 /// 0: the image that the post goes over; then those of Graph::images.
 constexpr interface::ImageNumber post_image(size_t number) {
-  return static_cast<interface::ImageNumber>(image_word::color + number);
+  return static_cast<interface::ImageNumber>(image_record::color + number);
 }
 
 /// Declares the functions that read images, without bodies.
