@@ -3,7 +3,7 @@
 // A select that computes only the sides that are wanted.
 #pragma once
 
-#include "runtime/lanes/pair.h"
+#include "runtime/lanes/vector.h"
 
 namespace isoshade::lanes {
 

@@ -3,7 +3,7 @@
 // Reading and writing memory: tables by index, and lanes side by side.
 #pragma once
 
-#include "runtime/lanes/pair.h"
+#include "runtime/lanes/vector.h"
 
 namespace isoshade::lanes {
 

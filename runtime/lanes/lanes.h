@@ -26,7 +26,6 @@
 #include "runtime/lanes/branch.h"
 #include "runtime/lanes/buffer.h"
 #include "runtime/lanes/float_rules.h"
-#include "runtime/lanes/pair.h"
 #include "runtime/lanes/scalar.h"
 #include "runtime/lanes/vec.h"
 #include "runtime/lanes/vector.h"

@@ -6,7 +6,7 @@
 // then the more special one.)
 #pragma once
 
-#include "runtime/lanes/pair.h"
+#include "runtime/lanes/vector.h"
 
 namespace isoshade::lanes {
 
