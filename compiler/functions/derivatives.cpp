@@ -37,7 +37,7 @@ struct Absent {};
       return change_;                                                       \
     }                                                                       \
   };
-#include "compiler/functions/derivatives.def"
+#include "compiler/functions/functions.def"
 
 template <class Change, class... T>
 ir::ValueId contribution(ir::Builder& b, std::span<const ir::ValueId> arguments, ir::ValueId change) {
@@ -81,7 +81,7 @@ const DerivativeRule* find_derivative(const Variant& variant) {
     Rules all;
 #define FLAT(row) add_flat<Row_##row>(all, Row_##row::Variants{});
 #define DERIVATIVE(row, argument, change) add_changes<Change_##row##_##argument>(all, Row_##row::Variants{});
-#include "compiler/functions/derivatives.def"
+#include "compiler/functions/functions.def"
     return all;
   }();
   const auto found = rules.find(&variant);

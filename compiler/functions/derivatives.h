@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// derivatives.def as IR.
+// The DERIVATIVE and FLAT rows of functions.def as IR.
 #pragma once
 
 #include <array>

@@ -42,7 +42,7 @@ using namespace traced;
       return tier_::name(arguments...);               \
     }                                                 \
   };
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
 
 template <class Body, class... T>
 void build(ir::Builder& b) {
@@ -123,7 +123,7 @@ const std::vector<Variant>& variants() {
 #define TIER(tier, name, ulp, domain, unit) \
   add_tier<Body_##tier##_##name>(rows, #name, Body_##name::Variants{});
 #define FOLLOWS(tier, name, ulp, domain, unit) set_accuracy(rows, #name, Tier::tier, {ulp, #unit});
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
     return rows;
   }();
   return table;

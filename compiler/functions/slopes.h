@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What derivatives.def is written with: slopes that take more than a line.
+// What the changes in functions.def are written with: slopes that take more than a line.
 #pragma once
 
 #include "compiler/functions/noise.h"

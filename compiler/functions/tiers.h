@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every body of tiers.def.
+// Every body of the fast and the precise tier.
 #pragma once
 
 #include "compiler/functions/fast_color.h"

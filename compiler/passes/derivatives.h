@@ -12,7 +12,7 @@ namespace isoshade::passes {
 ///
 /// The source of all change is a function (of a stage) beside which the module has two others with its parameters,
 /// called as it is and then ddx_suffix or ddy_suffix: they give what its results change by from a pixel to the next.
-/// From there changes go on by the rules of ops (tangents.h) and of library functions (functions/derivatives.def).
+/// From there changes go on by the rules of ops (tangents.h) and of library functions (functions/functions.def).
 /// A function that asks for changes of its parameters gets them as more parameters, in the group "gradients", from
 /// its callers. What called functions change by is computed in functions of their own, `..._change`.
 ///

@@ -327,13 +327,13 @@ constexpr bool rising = true, falling = false;
   Outcome rule_##row(Arguments in, uint32_t, const Accuracy& accuracy) {         \
     return bounded(least, most, in, accuracy.promised ? 2 * ulp : most - least); \
   }
-#include "compiler/functions/ranges.def"
+#include "compiler/functions/functions.def"
 
 constexpr Rule rules[] = {
 #define MONOTONE(row, direction, least, most, breach, value, slope) {#row, rule_##row},
 #define BOUNDED(row, least, most) {#row, rule_##row},
 #define SPECIAL(row) {#row, rule_##row},
-#include "compiler/functions/ranges.def"
+#include "compiler/functions/functions.def"
 };
 
 struct Domain {
@@ -356,7 +356,7 @@ const std::vector<RowFacts>& row_facts() {
 #include "compiler/functions/functions.def"
 #define TIER(tier, name, ulp, domain, unit) \
   {#name, "", functions::Tier::tier, ulp, domain, std::string_view(#unit) == "ones(result)"},
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
   };
 #undef D
   return all;

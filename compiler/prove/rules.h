@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of ranges.def: what is known of a function's result without looking into its body.
+// The range rules of functions.def: what is known of a function's result without looking into its body.
 #pragma once
 
 #include <span>

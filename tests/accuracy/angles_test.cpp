@@ -50,7 +50,7 @@ Exact exact_of(float x) {
 
 enum Which : size_t { sine, cosine, tangent };
 
-/// A row of functions.def or tiers.def.
+/// A row of functions.def, or of one of its tiers.
 struct Measured {
   const char* name;
   float (*function)(float);
@@ -66,7 +66,7 @@ constexpr double bound_of(std::string_view tier, std::string_view row) {
 #include "compiler/functions/functions.def"
 #define TIER(tier_, name, ulp, domain, unit) \
   if (tier == #tier_ && row == #name) return ulp;
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
   return 0;
 }
 #undef D

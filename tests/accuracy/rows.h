@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of functions.def and tiers.def as types, and how they are held to their bounds.
+// The rows of functions.def and those of its tiers as types, and how they are held to their bounds.
 #pragma once
 
 #include <cstdio>
@@ -21,7 +21,7 @@ using reference::rows::Absent;
 
 #define D(...) \
   { __VA_ARGS__ }
-// What functions.def and tiers.def both tell of a row.
+// What both kinds of rows tell.
 #define MEASURED(ulp, unit_, ...)                                                                     \
   static constexpr double bound = ulp;                                                                \
   static constexpr bool cancels = std::string_view(#unit_) != "result";                               \
@@ -55,7 +55,7 @@ using reference::rows::Absent;
   struct tier##_##row##_row : row##_row {      \
     MEASURED(ulp, unit_, ranges)               \
   };
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
 
 }  // namespace rows
 

@@ -18,7 +18,7 @@ using functions::Tier;
   TEST(FunctionErrorIsWithinTheBoundOfTheTier, row##_##tier) {                                              \
     expect_variants_within<rows::tier##_##row##_row>(#row " " #tier, rows::tier##_##row##_row::Variants{}); \
   }
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
 
 // How arguments and results lie in a function's parameters and results.
 void flatten(float x, std::vector<uint32_t>& out) { out.push_back(std::bit_cast<uint32_t>(x)); }
@@ -105,7 +105,7 @@ struct RowOf {
     using Type = rows::tier##_##row##_row;    \
   };
 #define FOLLOWS TIER
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
 
 #define FUNCTION(row, signature, ulp, domain, reference_, unit_)                                             \
   TEST(IrErrorIsWithinTheBoundOfTheTier, row) {                                                              \
@@ -120,7 +120,7 @@ TEST(EveryFloat, KeepsTheBoundOfItsTier) {
   if (std::getenv("ISOSHADE_FULL") == nullptr) GTEST_SKIP() << "long; set ISOSHADE_FULL=1";
 #define TIER(tier, row, ulp, domain, unit) \
   expect_all_floats_within<rows::tier##_##row##_row>(#row, rows::tier##_##row##_row::Variants{});
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
 }
 
 }  // namespace

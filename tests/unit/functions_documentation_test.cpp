@@ -48,7 +48,7 @@ TEST(Docstrings, SayDomainAndTheErrorThatTheTableHas) {
 #define FUNCTION(row, signature, ulp, domain, reference, unit) expect_told(docs, #row, ulp);
 #include "compiler/functions/functions.def"
 #define TIER(tier, row, ulp, domain, unit) expect_told(docs, #tier "::" #row, ulp);
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(Tiers, HaveBodiesOfTheirOwnWhereTheTableSaysSo) {
 #define TIER(tier, row, ulp, domain, unit) \
   EXPECT_NE(expanded(#row, Tier::tier), expanded(#row, Tier::standard)) << #row " " #tier;
 #define FOLLOWS TIER
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
   EXPECT_EQ(expanded("mix", Tier::fast), expanded("mix", Tier::standard));
 }
 

@@ -23,7 +23,7 @@ struct Row {
   functions::Tier tier = functions::Tier::standard;
 };
 
-/// The domains that functions.def and tiers.def state.
+/// The domains that functions.def states.
 const std::vector<Row>& rows() {
 #define D(...) \
   { __VA_ARGS__ }
@@ -32,7 +32,7 @@ const std::vector<Row>& rows() {
 #include "compiler/functions/functions.def"
 #define TIER(tier, name, ulp, domain, unit) {#name, domain, functions::Tier::tier},
 #define FOLLOWS(tier, name, ulp, domain, unit) {#name, domain, functions::Tier::tier},
-#include "compiler/functions/tiers.def"
+#include "compiler/functions/functions.def"
   };
 #undef D
   return all;
