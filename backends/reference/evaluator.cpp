@@ -18,73 +18,41 @@ namespace {
 
 float float_of(uint32_t bits) { return std::bit_cast<float>(ir::flush_denormal(bits)); }
 
+// The functions that the column `cpp` of ops.def names, of numbers. + - * / sqrt floor abs are Real's own.
+Real negate(const Real& x) { return -x; }
 uint32_t to_int(const Real& x) {
   const auto cut = std::clamp<int64_t>(static_cast<int64_t>(x), INT32_MIN, INT32_MAX);
   return static_cast<uint32_t>(static_cast<int32_t>(cut));
 }
+Real to_float(uint32_t x) { return static_cast<int32_t>(x); }
+uint32_t bits(const Real& x) { return std::bit_cast<uint32_t>(stored(x)); }
+uint32_t bits_nonnan(const Real& x) { return bits(x); }
+Real from_bits(uint32_t x) { return float_of(x); }
+Real from_bits_normal(uint32_t x) { return float_of(x); }
 
-/// One component of the result of a primitive op.
+}  // namespace
+
 void compute(Opcode op, const Cell& a, const Cell& b, const Cell& c, Cell& to) {
   const Real &x = a.number, &y = b.number;
+#define TEXT_1_call(function) function(x)
+#define TEXT_2_infix(sign) x sign y
+#define COMPUTE_same(text) to.number = text;
+#define COMPUTE_compare(text) to.word = text;
+#define COMPUTE_to_int(text) to.word = text;
+#define COMPUTE_to_float(text) { const uint32_t x = a.word; to.number = text; }
+#define COMPUTE_choose(text) to = a.word != 0 ? b : c;
+#define COMPUTE_integer(text) to.word = ir::evaluate(op, a.word, b.word, c.word);
+#define COMPUTE_icompare(text) COMPUTE_integer(text)
+#define COMPUTE_logic(text) COMPUTE_integer(text)
   switch (op) {
-    case Opcode::fadd: to.number = x + y; return;
-    case Opcode::fsub: to.number = x - y; return;
-    case Opcode::fmul: to.number = x * y; return;
-    case Opcode::fdiv: to.number = x / y; return;
-    case Opcode::fsqrt: to.number = sqrt(x); return;
-    case Opcode::floor: to.number = floor(x); return;
-    case Opcode::fneg: to.number = -x; return;
-    case Opcode::fabs: to.number = abs(x); return;
-    case Opcode::flt: to.word = x < y; return;
-    case Opcode::fle: to.word = x <= y; return;
-    case Opcode::fgt: to.word = x > y; return;
-    case Opcode::fge: to.word = x >= y; return;
-    case Opcode::feq: to.word = x == y; return;
-    case Opcode::fne: to.word = x != y; return;
-    case Opcode::select: to = a.word != 0 ? b : c; return;
-    case Opcode::ftoi: to.word = to_int(x); return;
-    case Opcode::itof: to.number = static_cast<int32_t>(a.word); return;
-    case Opcode::fbits:
-    case Opcode::fbits_nonnan: to.word = std::bit_cast<uint32_t>(stored(x)); return;
-    case Opcode::bitsf:
-    case Opcode::bitsf_normal: to.number = float_of(a.word); return;
-    case Opcode::iadd:
-    case Opcode::isub:
-    case Opcode::imul:
-    case Opcode::imulhi:
-    case Opcode::umulhi:
-    case Opcode::iand:
-    case Opcode::ior:
-    case Opcode::ixor:
-    case Opcode::ishl:
-    case Opcode::ishr:
-    case Opcode::isar:
-    case Opcode::ilt:
-    case Opcode::ile:
-    case Opcode::igt:
-    case Opcode::ige:
-    case Opcode::ieq:
-    case Opcode::ine:
-    case Opcode::ult:
-    case Opcode::band:
-    case Opcode::bor:
-    case Opcode::bxor:
-    case Opcode::bnot: to.word = ir::evaluate(op, a.word, b.word, c.word); return;
-    case Opcode::constant:
-    case Opcode::construct:
-    case Opcode::extract:
-    case Opcode::hidden_zero:
-    case Opcode::load:
-    case Opcode::call:
-    case Opcode::branch:
-    case Opcode::loop:
-    case Opcode::ddx:
-    case Opcode::ddy: break;
+#define OP(name, arity, rule, glsl, cpp, ...) \
+  case Opcode::name: COMPUTE_##rule(TEXT_##arity##_##cpp) return;
+#define FORM(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+      break;
   }
   support::bug("the reference computes an op that is none of numbers");
 }
-
-}  // namespace
 
 Evaluator::Evaluator(const ir::Module& module)
     : module_(module), buffers_(module.buffers.size()), frames_(module.functions.size()) {}
@@ -159,12 +127,15 @@ void Evaluator::instruction(CallFrame& frame, const ir::Instruction& made) {
       return;
     }
     case Opcode::loop: loop(frame, made); return;
-    default: primitive(frame, made); return;
+    case Opcode::ddx:
+    case Opcode::ddy: support::bug("the reference met an op that a pass had to replace");
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+      primitive(frame, made);
   }
 }
 
 void Evaluator::primitive(CallFrame& frame, const ir::Instruction& made) {
-  assert_that(ir::is_primitive(made.op), "the reference met an op that a pass had to replace");
   const auto operands = frame.function->operands_of(made);
   const bool chooses = ir::info(made.op).rule == ir::Rule::choose;
   const uint32_t to = frame.first[made.first_result];

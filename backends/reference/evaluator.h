@@ -18,6 +18,9 @@ struct Cell {
   uint32_t word = 0;  ///< of an int or a bool (0, 1)
 };
 
+/// One component of the result of a primitive op, into `to`.
+void compute(ir::Opcode op, const Cell& a, const Cell& b, const Cell& c, Cell& to);
+
 /// For modules as lowering makes them: calls of functions.def are calls, and computed by the reference column of their
 /// rows. Every float is a Real: nothing is rounded, overflows or underflows. Literals are the floats of the module;
 /// what is loaded are the floats of the buffers. Comparisons decide on numbers, and so may decide otherwise than a

@@ -3,21 +3,14 @@
 
 namespace isoshade::functions::traced {
 
-#define UNARY(result, name, type, op) \
-  result name(type a) { return record<result>(ir::Opcode::op, a); }
-#define BINARY(result, name, type, op) \
-  result name(type a, type b) { return record<result>(ir::Opcode::op, a, b); }
-#include "compiler/functions/traced_ops.def"
-
-Float select(Bool condition, Float then, Float other) {
-  return record<Float>(ir::Opcode::select, condition, then, other);
-}
-Int select(Bool condition, Int then, Int other) {
-  return record<Int>(ir::Opcode::select, condition, then, other);
-}
-Bool select(Bool condition, Bool then, Bool other) {
-  return record<Bool>(ir::Opcode::select, condition, then, other);
-}
+#define TRACE_1(result, function, type, op) \
+  result function(type a) { return record<result>(ir::Opcode::op, a); }
+#define TRACE_2(result, function, type, op) \
+  result function(type a, type b) { return record<result>(ir::Opcode::op, a, b); }
+#define TRACE_3(result, function, type, op) \
+  result function(Bool condition, type a, type b) { return record<result>(ir::Opcode::op, condition, a, b); }
+#define OP(name, arity, rule, glsl, cpp, ...) TRACE_##rule(arity, SPELLED_##cpp, name)
+#include "compiler/ir/ops.def"
 
 ir::ValueId construct(ir::Builder& builder, std::span<const Float> components) {
   std::array<ir::ValueId, 4> ids;

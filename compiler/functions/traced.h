@@ -35,14 +35,31 @@ struct Float : Scalar<float> {
   using Scalar::Scalar;
 };
 
-// Not templates, so that a literal on either side converts.
-#define UNARY(result, name, type, op) result name(type a);
-#define BINARY(result, name, type, op) result name(type a, type b);
-#include "compiler/functions/traced_ops.def"
+// The functions of runtime/lanes on traced values, from the column `cpp` of ops.def; each records its op.
+// TRACE_rule(arity, function, op) is what a row becomes.
+#define SPELLED_infix(sign) operator sign
+#define SPELLED_prefix(sign) operator sign
+#define SPELLED_call(function) function
+#define TRACE_same(arity, function, op) TRACE_##arity(Float, function, Float, op)
+#define TRACE_compare(arity, function, op) TRACE_##arity(Bool, function, Float, op)
+#define TRACE_icompare(arity, function, op) TRACE_##arity(Bool, function, Int, op)
+#define TRACE_integer(arity, function, op) TRACE_##arity(Int, function, Int, op)
+#define TRACE_logic(arity, function, op) TRACE_##arity(Bool, function, Bool, op)
+#define TRACE_to_int(arity, function, op) TRACE_##arity(Int, function, Float, op)
+#define TRACE_to_float(arity, function, op) TRACE_##arity(Float, function, Int, op)
+#define TRACE_choose(arity, function, op) \
+  TRACE_##arity(Float, function, Float, op) TRACE_##arity(Int, function, Int, op) \
+  TRACE_##arity(Bool, function, Bool, op)
 
-Float select(Bool condition, Float then, Float other);
-Int select(Bool condition, Int then, Int other);
-Bool select(Bool condition, Bool then, Bool other);
+// Not templates, so that a literal on either side converts.
+#define TRACE_1(result, function, type, op) result function(type a);
+#define TRACE_2(result, function, type, op) result function(type a, type b);
+#define TRACE_3(result, function, type, op) result function(Bool condition, type a, type b);
+#define OP(name, arity, rule, glsl, cpp, ...) TRACE_##rule(arity, SPELLED_##cpp, name)
+#include "compiler/ir/ops.def"
+#undef TRACE_1
+#undef TRACE_2
+#undef TRACE_3
 
 /// The builder of a value; null for a literal.
 template <class T>
@@ -101,16 +118,24 @@ namespace isoshade::functions::traced {
 template <int N>
 using V = lanes::vec<Float, N>;
 
+// The ops that work on vectors, too.
 // clang-format off
-template <int N> V<N> operator+(V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::fadd, a, b); }
-template <int N> V<N> operator-(V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::fsub, a, b); }
-template <int N> V<N> operator*(V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::fmul, a, b); }
-template <int N> V<N> operator/(V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::fdiv, a, b); }
-template <int N> V<N> negate(V<N> a) { return record<V<N>>(ir::Opcode::fneg, a); }
-template <int N> V<N> abs(V<N> a) { return record<V<N>>(ir::Opcode::fabs, a); }
-template <int N> V<N> sqrt(V<N> a) { return record<V<N>>(ir::Opcode::fsqrt, a); }
-template <int N> V<N> floor(V<N> a) { return record<V<N>>(ir::Opcode::floor, a); }
-template <int N> V<N> select(Bool c, V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::select, c, a, b); }
+#define TRACE_VECTOR_1(function, op) \
+  template <int N> V<N> function(V<N> a) { return record<V<N>>(ir::Opcode::op, a); }
+#define TRACE_VECTOR_2(function, op) \
+  template <int N> V<N> function(V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::op, a, b); }
+#define TRACE_VECTOR_3(function, op) \
+  template <int N> V<N> function(Bool c, V<N> a, V<N> b) { return record<V<N>>(ir::Opcode::op, c, a, b); }
+#define TRACE_VECTOR_same(arity, function, op) TRACE_VECTOR_##arity(function, op)
+#define TRACE_VECTOR_choose(arity, function, op) TRACE_VECTOR_##arity(function, op)
+#define TRACE_VECTOR_compare(arity, function, op)
+#define TRACE_VECTOR_icompare(arity, function, op)
+#define TRACE_VECTOR_integer(arity, function, op)
+#define TRACE_VECTOR_logic(arity, function, op)
+#define TRACE_VECTOR_to_int(arity, function, op)
+#define TRACE_VECTOR_to_float(arity, function, op)
+#define OP(name, arity, rule, glsl, cpp, ...) TRACE_VECTOR_##rule(arity, SPELLED_##cpp, name)
+#include "compiler/ir/ops.def"
 // clang-format on
 
 }  // namespace isoshade::functions::traced

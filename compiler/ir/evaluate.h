@@ -88,16 +88,9 @@ inline uint32_t evaluate(Opcode op, uint32_t a, uint32_t b, uint32_t c) {
     case Opcode::bor: return a | b;
     case Opcode::bxor: return a ^ b;
     case Opcode::bnot: return a ^ 1;
-    case Opcode::constant:
-    case Opcode::construct:
-    case Opcode::extract:
-    case Opcode::hidden_zero:
-    case Opcode::load:
-    case Opcode::call:
-    case Opcode::branch:
-    case Opcode::loop:
-    case Opcode::ddx:
-    case Opcode::ddy: break;
+#define FORM(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+      break;
   }
   return 0;  // not a primitive op
 }

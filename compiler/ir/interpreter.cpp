@@ -84,12 +84,15 @@ class Interpreter::Compiler {
       case Opcode::call: call(instruction); return;
       case Opcode::branch: branch(instruction); return;
       case Opcode::loop: loop(instruction); return;
-      default: primitive(instruction); return;
+      case Opcode::ddx:
+      case Opcode::ddy: support::bug("the interpreter met an op that a pass had to replace");
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        primitive(instruction);
     }
   }
 
   void primitive(const Instruction& instruction) {
-    assert_that(is_primitive(instruction.op), "the interpreter met an op that a pass had to replace");
     std::array<uint32_t, 3> from{};
     const auto operands = function_.operands_of(instruction);
     for (size_t i = 0; i < operands.size(); ++i) from[i] = registers_[operands[i]];

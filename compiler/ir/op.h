@@ -9,25 +9,63 @@
 namespace isoshade::ir {
 
 enum class Opcode : uint8_t {
-#define OP(name, arity, rule, glsl, cpp, precondition) name,
+#define OP(name, ...) name,
+#define FORM(name, immediate, blocks) name,
 #include "compiler/ir/ops.def"
-  // The rest have no row: they compute nothing.
-  constant,     ///< imm: the bits of a bool (0, 1), int or float (never a denormal; NaN is 0x7fc00000)
-  construct,    ///< 2-4 floats -> vector
-  extract,      ///< vector, imm: component -> float
-  hidden_zero,  ///< 0.0, but what makes it so is not in the program: nothing can be folded with it
-  load,         ///< imm: buffer; int index -> the buffer's element; an index outside [0, size) is undefined
-  call,         ///< imm: callee (an index into Module::functions)
-  branch,       ///< bool; two blocks, each yields the results; only one is run
-  loop,         ///< int count, initial values; one block with parameters (index, carried...), yields carried
-  ddx,  ///< float or vector -> what it changes by per pixel to the right; only until passes/derivatives
-  ddy,  ///< likewise, per pixel down
 };
 
 enum class Rule : uint8_t { same, compare, icompare, integer, logic, choose, to_int, to_float };
 enum class Precondition : uint8_t { none, finite_in_int_range, not_nan, not_denormal_bits, shift_amount };
 
-/// One row of ops.def.
+/// How the range of an op's result follows from those of its operands: prove/ends.cpp, and with errors
+/// prove/bound_choice.cpp.
+enum class RangeRule : uint8_t {
+  // Comparisons: the set of orders of the operands that they accept, as bits.
+  less = 1,
+  equal = 2,
+  less_or_equal = less | equal,
+  greater = 4,
+  not_equal = less | greater,
+  greater_or_equal = equal | greater,
+  // Floats.
+  sum = 8,
+  difference,
+  product,
+  quotient,
+  root,
+  floor,
+  negative,
+  magnitude,
+  choice,
+  // Ints and truth values.
+  truncated,
+  rounded,
+  integer_sum,
+  integer_difference,
+  both,
+  either,
+  different,
+  inverse,
+  any,  ///< nothing is known of the result but its type
+};
+
+/// How an op's result changes with its operands: passes/tangents.cpp.
+enum class ChangeRule : uint8_t {
+  flat,  ///< nowhere but where it jumps
+  sum,
+  difference,
+  product,
+  quotient,
+  root,
+  negative,
+  magnitude,
+  choice,
+};
+
+/// What Instruction::imm is.
+enum class Immediate : uint8_t { none, bits, component, buffer, function };
+
+/// One OP row of ops.def.
 struct OpInfo {
   std::string_view name;
   int arity;
@@ -35,12 +73,43 @@ struct OpInfo {
   std::string_view glsl;
   std::string_view cpp;
   Precondition precondition;
+  RangeRule range;
+  ChangeRule change;
 };
 
-inline constexpr int primitive_count = static_cast<int>(Opcode::constant);
+inline constexpr int primitive_count = 0
+#define OP(name, ...) +1
+#include "compiler/ir/ops.def"
+    ;
 
-constexpr bool is_primitive(Opcode op) { return op < Opcode::constant; }
-constexpr bool is_derivative(Opcode op) { return op == Opcode::ddx || op == Opcode::ddy; }
+constexpr bool is_primitive(Opcode op) { return static_cast<int>(op) < primitive_count; }
+constexpr bool is_derivative(Opcode op) {
+  return false
+#define DERIVATIVE(name) || op == Opcode::name
+#include "compiler/ir/ops.def"
+      ;
+}
+constexpr Immediate immediate(Opcode op) {
+  constexpr Immediate of[] = {
+#define OP(name, ...) Immediate::none,
+#define FORM(name, immediate, blocks) Immediate::immediate,
+#include "compiler/ir/ops.def"
+  };
+  return of[static_cast<int>(op)];
+}
+constexpr int block_count(Opcode op) {
+  constexpr int of[] = {
+#define OP(name, ...) 0,
+#define FORM(name, immediate, blocks) blocks,
+#include "compiler/ir/ops.def"
+  };
+  return of[static_cast<int>(op)];
+}
+/// Whether a comparison accepts operands in this order, one of less, equal and greater.
+constexpr bool accepts(RangeRule comparison, RangeRule order) {
+  return (static_cast<int>(comparison) & static_cast<int>(order)) != 0;
+}
+
 /// The row of a primitive op.
 const OpInfo& info(Opcode op);
 /// Any opcode's name, as text IR has it.

@@ -214,11 +214,16 @@ class BodyParser : Reader {
       case Opcode::call: return call(made.imm, operands, types);
       case Opcode::branch: return reference(operands.emplace_back());
       case Opcode::loop: return loop(operands, types, carried);
-      default: return primitive(made.op, operands, types);
+      case Opcode::ddx:
+      case Opcode::ddy:
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        return by_rule(made.op, operands, types);
     }
+    return false;
   }
 
-  bool primitive(Opcode op, std::vector<ValueId>& operands, std::vector<Type>& types) {
+  bool by_rule(Opcode op, std::vector<ValueId>& operands, std::vector<Type>& types) {
     if (!references(operands)) return false;
     std::vector<Type> given;
     for (ValueId operand : operands) given.push_back(f_.type(operand));

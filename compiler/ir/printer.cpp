@@ -141,7 +141,14 @@ class Printer {
         out_ += ")";
         break;
       case Opcode::loop: loop(instruction); break;
-      default: list(operands);
+      case Opcode::construct:
+      case Opcode::hidden_zero:
+      case Opcode::branch:
+      case Opcode::ddx:
+      case Opcode::ddy:
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        list(operands);
     }
   }
 

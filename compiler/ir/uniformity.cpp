@@ -22,17 +22,16 @@ class Uniformity {
   void visit(BlockId block) {
     for (InstructionId id : f_.blocks[block].instructions) {
       const Instruction& made = f_.instructions[id];
-      switch (made.op) {
-        case Opcode::branch: visit_branch(made); break;
-        case Opcode::loop: visit_loop(made); break;
-        default: {
-          const auto operands = f_.operands_of(made);
-          const bool uniform =
-              std::all_of(operands.begin(), operands.end(), [&](ValueId v) { return uniform_[v]; });
-          for (uint32_t k = 0; k < made.result_count; ++k) uniform_[made.first_result + k] = uniform;
-        }
-      }
+      if (block_count(made.op) == 0)
+        visit_plain(made);
+      else
+        made.op == Opcode::branch ? visit_branch(made) : visit_loop(made);
     }
+  }
+
+  void visit_plain(const Instruction& made) {
+    const bool uniform = std::ranges::all_of(f_.operands_of(made), [&](ValueId v) { return uniform_[v]; });
+    for (uint32_t k = 0; k < made.result_count; ++k) uniform_[made.first_result + k] = uniform;
   }
 
   void visit_branch(const Instruction& made) {

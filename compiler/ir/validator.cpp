@@ -138,8 +138,7 @@ class BodyValidator {
       if (!is_visible(operand)) return "operand " + std::to_string(operands.size()) + " is not visible";
       operands.push_back(f_.type(operand));
     }
-    const size_t block_count = made.op == Opcode::branch ? 2 : made.op == Opcode::loop ? 1 : 0;
-    for (size_t i = block_count; i < made.blocks.size(); ++i)
+    for (auto i = static_cast<size_t>(block_count(made.op)); i < made.blocks.size(); ++i)
       if (made.blocks[i] != none) return "it has a block too many";
     if (std::string e = types(made, operands, results, depth); !e.empty()) return e;
     if (results.size() != made.result_count) return "it has the wrong number of results";
@@ -151,9 +150,7 @@ class BodyValidator {
   // Fills in the types that the results must have; validates the blocks inside.
   std::string types(const Instruction& made, std::span<const Type> operands, std::vector<Type>& results,
                     int depth) {
-    const bool takes_imm = made.op == Opcode::constant || made.op == Opcode::extract ||
-                           made.op == Opcode::load || made.op == Opcode::call;
-    if (!takes_imm && made.imm != 0) return "it takes no immediate";
+    if (immediate(made.op) == Immediate::none && made.imm != 0) return "it takes no immediate";
     switch (made.op) {
       case Opcode::constant: return constant(made, operands, results);
       case Opcode::construct:
@@ -179,13 +176,17 @@ class BodyValidator {
       case Opcode::call: return call(made, operands, results);
       case Opcode::branch: return branch(made, operands, results, depth);
       case Opcode::loop: return loop(made, operands, results, depth);
-      default:
+      case Opcode::ddx:
+      case Opcode::ddy:
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
         if (const auto type = result_type(made.op, operands)) {
           results = {*type};
           return {};
         }
         return "its operands do not fit its rule";
     }
+    return "it is no op";
   }
 
   std::string constant(const Instruction& made, std::span<const Type> operands, std::vector<Type>& results) {

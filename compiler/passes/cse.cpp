@@ -6,34 +6,13 @@
 #include <numeric>
 #include <utility>
 
+#include "compiler/ir/laws.h"
+
 namespace isoshade::passes {
 
 namespace {
 
 using namespace ir;
-
-// Exact on all values: NaN is one value, so it does not matter whose payload an op would keep.
-bool commutes(Opcode op) {
-  switch (op) {
-    case Opcode::fadd:
-    case Opcode::fmul:
-    case Opcode::feq:
-    case Opcode::fne:
-    case Opcode::iadd:
-    case Opcode::imul:
-    case Opcode::imulhi:
-    case Opcode::umulhi:
-    case Opcode::iand:
-    case Opcode::ior:
-    case Opcode::ixor:
-    case Opcode::ieq:
-    case Opcode::ine:
-    case Opcode::band:
-    case Opcode::bor:
-    case Opcode::bxor: return true;
-    default: return false;
-  }
-}
 
 class Merger {
  public:

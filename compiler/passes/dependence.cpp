@@ -9,10 +9,9 @@ using namespace ir;
 
 namespace {
 
-/// Ops of floats that give floats, of which the derivative is one too.
+/// Whether an op's result changes with its operands.
 bool passes_changes_on(Opcode op) {
-  if (is_primitive(op))
-    return (info(op).rule == Rule::same && op != Opcode::floor) || info(op).rule == Rule::choose;
+  if (is_primitive(op)) return info(op).change != ChangeRule::flat;
   return op == Opcode::construct || op == Opcode::extract || is_derivative(op);
 }
 

@@ -98,13 +98,18 @@ class Folder {
       case Opcode::call: return call(id, made);
       case Opcode::branch: return branch(id, made);
       case Opcode::loop: return loop(id, made);
-      default: {
-        auto same = evaluated(made);
-        if (!same) same = chosen(made);
-        if (!same) same = identity(edit_, made);
-        return replace_or_keep(id, same);
-      }
+      case Opcode::ddx:
+      case Opcode::ddy: return edit_.keep(id);
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        return replace_or_keep(id, folded(made));
     }
+  }
+
+  std::optional<ValueId> folded(const Instruction& made) {
+    if (const auto same = evaluated(made)) return same;
+    if (const auto same = chosen(made)) return same;
+    return identity(edit_, made);
   }
 
   void replace_or_keep(InstructionId id, std::optional<ValueId> with) {

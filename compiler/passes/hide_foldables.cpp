@@ -8,6 +8,7 @@
 
 #include "compiler/ir/call_graph.h"
 #include "compiler/ir/evaluate.h"
+#include "compiler/ir/laws.h"
 #include "compiler/passes/editor.h"
 #include "runtime/lanes/float_rules.h"
 
@@ -55,27 +56,44 @@ class Hider {
     if (const auto compared = compare_with_zero(made)) return edit_.replace(made.first_result, *compared);
     switch (made.op) {
       case Opcode::construct: for_operands(made, 0, [&](ValueId v) { return chosen(v); }); break;
-      case Opcode::select: for_operands(made, 1, [&](ValueId v) { return chosen(v); }); break;
       case Opcode::call: arguments(made); break;
       case Opcode::branch: inside(id, Yields::chosen); break;
       case Opcode::loop: loop(id, made); break;
-      case Opcode::ftoi:
+      case Opcode::constant:
+      case Opcode::extract:
+      case Opcode::hidden_zero:
+      case Opcode::load:
+      case Opcode::ddx:
+      case Opcode::ddy: break;
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        primitive(made);
+    }
+    if (made.blocks[0] == none) edit_.keep(id);
+    mark_open(made);
+  }
+
+  void primitive(const Instruction& made) {
+    switch (info(made.op).rule) {
+      case Rule::choose: for_operands(made, 1, [&](ValueId v) { return chosen(v); }); break;
+      case Rule::to_int:
+        if (made.op != Opcode::ftoi) break;
         // int(float(i))
         for_operands(made, 0, [&](ValueId v) {
           return is_open(v) ? edit_.make(Opcode::fadd, {v, zero()}) : v;
         });
         break;
-      case Opcode::itof:
-      case Opcode::bitsf:
-      case Opcode::bitsf_normal:
+      case Rule::to_float:
         for_operands(made, 0, [&](ValueId v) {
           return is_open(v) ? edit_.make(Opcode::ior, {v, bits()}) : v;
         });
         break;
-      default: break;
+      case Rule::same:
+      case Rule::compare:
+      case Rule::icompare:
+      case Rule::integer:
+      case Rule::logic: break;
     }
-    if (made.blocks[0] == none) edit_.keep(id);
-    mark_open(made);
   }
 
   template <class Replace>
@@ -95,21 +113,53 @@ class Hider {
     bool is_open = false;
     switch (made.op) {
       case Opcode::constant: is_open = f_.type(made.first_result) == int_type; break;
-      case Opcode::itof:
       case Opcode::call:
       case Opcode::branch:
       case Opcode::loop: is_open = true; break;
       case Opcode::extract:
-      case Opcode::construct:
-      case Opcode::select:
-      case Opcode::floor:
-      case Opcode::fneg:
-      case Opcode::fabs: is_open = std::any_of(operands.begin(), operands.end(), open); break;
-      default:
-        is_open = is_primitive(made.op) && info(made.op).rule == Rule::integer &&
-                  std::all_of(operands.begin(), operands.end(), open);
+      case Opcode::construct: is_open = std::ranges::any_of(operands, open); break;
+      case Opcode::hidden_zero:
+      case Opcode::load:
+      case Opcode::ddx:
+      case Opcode::ddy: break;
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        is_open = primitive_is_open(info(made.op), operands);
     }
     for (uint32_t k = 0; k < made.result_count; ++k) open_[made.first_result + k] = is_open;
+  }
+
+  bool primitive_is_open(const OpInfo& row, std::span<const ValueId> operands) const {
+    const auto open = [&](ValueId value) { return is_open(value); };
+    if (row.rule == Rule::integer) return std::ranges::all_of(operands, open);
+    switch (row.range) {
+      case RangeRule::rounded: return true;
+      // An int's float stays one.
+      case RangeRule::choice:
+      case RangeRule::floor:
+      case RangeRule::negative:
+      case RangeRule::magnitude: return std::ranges::any_of(operands, open);
+      case RangeRule::less:
+      case RangeRule::equal:
+      case RangeRule::less_or_equal:
+      case RangeRule::greater:
+      case RangeRule::not_equal:
+      case RangeRule::greater_or_equal:
+      case RangeRule::sum:
+      case RangeRule::difference:
+      case RangeRule::product:
+      case RangeRule::quotient:
+      case RangeRule::root:
+      case RangeRule::truncated:
+      case RangeRule::integer_sum:
+      case RangeRule::integer_difference:
+      case RangeRule::both:
+      case RangeRule::either:
+      case RangeRule::different:
+      case RangeRule::inverse:
+      case RangeRule::any: return false;
+    }
+    return false;
   }
 
   void arithmetic(InstructionId id, const Instruction& made) {
@@ -166,13 +216,13 @@ class Hider {
       const uint32_t smallest = smallest_normal_bits | (negative ? sign_bit : 0u);
       return edit_.make(op, {x, edit_.constant(float_type, smallest)});
     };
-    switch (made.op) {
-      case Opcode::flt: return zero_first ? with(Opcode::fge, false) : with(Opcode::fle, true);
-      case Opcode::fgt: return zero_first ? with(Opcode::fle, true) : with(Opcode::fge, false);
-      case Opcode::fle: return zero_first ? with(Opcode::fgt, true) : with(Opcode::flt, false);
-      case Opcode::fge: return zero_first ? with(Opcode::flt, false) : with(Opcode::fgt, true);
-      default: return std::nullopt;
-    }
+    // x < 0 is x <= -smallest, x <= 0 is x < smallest, and so on.
+    const Opcode op = zero_first ? swapped(made.op) : made.op;
+    const RangeRule orders = info(op).range;
+    const bool below = accepts(orders, RangeRule::less), above = accepts(orders, RangeRule::greater);
+    if (below == above) return std::nullopt;  // == and !=
+    const bool strict = !accepts(orders, RangeRule::equal);
+    return with(swapped(opposite(op)), below == strict);
   }
 
   void arguments(const Instruction& made) {

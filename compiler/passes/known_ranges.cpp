@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "compiler/functions/library.h"
+#include "compiler/prove/ends.h"
 
 namespace isoshade::passes {
 
@@ -31,72 +32,12 @@ KnownRange constant(Scalar scalar, uint32_t bits) {
   return std::isfinite(value) ? KnownRange{value, value} : KnownRange{};
 }
 
-KnownRange finite(double lo, double hi) {
-  return std::isfinite(lo) && std::isfinite(hi) ? KnownRange{lo, hi} : KnownRange{};
-}
-
-/// What an operation that is monotone in both operands gives between their ends: rounding is monotone, too.
-template <class Operation>
-KnownRange corners(const KnownRange& a, const KnownRange& b, Operation operation) {
-  const auto al = static_cast<float>(a.lo), ah = static_cast<float>(a.hi);
-  const auto bl = static_cast<float>(b.lo), bh = static_cast<float>(b.hi);
-  const auto [lo, hi] =
-      std::minmax({operation(al, bl), operation(al, bh), operation(ah, bl), operation(ah, bh)});
-  return finite(static_cast<double>(lo), static_cast<double>(hi));
-}
-
-KnownRange magnitude(const KnownRange& a) {
-  const double l = std::abs(a.lo), h = std::abs(a.hi);
-  return {a.lo <= 0 && a.hi >= 0 ? 0 : std::min(l, h), std::max(l, h)};
-}
-
-/// Of floats; integers that are computed may be any.
-KnownRange arithmetic(Opcode op, KnownRange a, KnownRange b, bool same) {
-  switch (op) {
-    case Opcode::fadd: return corners(a, b, [](float x, float y) { return x + y; });
-    case Opcode::fsub: return corners(a, b, [](float x, float y) { return x - y; });
-    case Opcode::fmul:
-      if (same) a = b = magnitude(a);
-      return corners(a, b, [](float x, float y) { return x * y; });
-    case Opcode::fdiv:
-      if (b.lo <= 0 && b.hi >= 0) return {};
-      return corners(a, b, [](float x, float y) { return x / y; });
-    case Opcode::fsqrt: {
-      if (a.lo < 0) return {};
-      const float lo = std::sqrt(static_cast<float>(a.lo)), hi = std::sqrt(static_cast<float>(a.hi));
-      return {static_cast<double>(lo), static_cast<double>(hi)};
-    }
-    case Opcode::fneg: return {-a.hi, -a.lo};
-    case Opcode::fabs: return magnitude(a);
-    case Opcode::floor: return {std::floor(a.lo), std::floor(a.hi)};
-    case Opcode::itof: return {prove::rounded(a.lo), prove::rounded(a.hi)};
-    default: return any_of(ir::info(op).rule == ir::Rule::to_float ? Scalar::floating : Scalar::integer);
-  }
-}
-
-KnownRange truth(Opcode op, const KnownRange& a, const KnownRange& b) {
-  using enum Opcode;
-  const auto decided = [](bool always, bool never) {
-    return KnownRange{always ? 1.0 : 0.0, never ? 0.0 : 1.0};
-  };
-  switch (op) {
-    case flt:
-    case ilt: return decided(a.hi < b.lo, a.lo >= b.hi);
-    case fle:
-    case ile: return decided(a.hi <= b.lo, a.lo > b.hi);
-    case fgt:
-    case igt: return decided(a.lo > b.hi, a.hi <= b.lo);
-    case fge:
-    case ige: return decided(a.lo >= b.hi, a.hi < b.lo);
-    case feq:
-    case ieq: return decided(a.is_point() && b.is_point() && a.lo == b.lo, a.hi < b.lo || a.lo > b.hi);
-    case fne:
-    case ine: return decided(a.hi < b.lo || a.lo > b.hi, a.is_point() && b.is_point() && a.lo == b.lo);
-    case bnot: return {1 - a.hi, 1 - a.lo};
-    case band: return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
-    case bor: return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
-    default: return {0, 1};
-  }
+/// What is known of a result by its op's range rule, where its operands are known.
+KnownRange by_range_rule(ir::RangeRule rule, const KnownRange& a, const KnownRange& b, bool same,
+                         Scalar scalar) {
+  const std::optional<prove::Ends> ends = prove::ends_of(rule, {a.lo, a.hi}, {b.lo, b.hi}, same);
+  if (!ends) return any_of(scalar);
+  return std::isfinite(ends->lo) && std::isfinite(ends->hi) ? KnownRange{ends->lo, ends->hi} : KnownRange{};
 }
 
 /// The variants of functions.def, by name.
@@ -212,11 +153,17 @@ void RangeWalker::instruction(RangeFrame& frame, const ir::Instruction& made,
               either(frame.values[f.blocks[made.blocks[0]].yields[r]][c],
                      frame.values[f.blocks[made.blocks[1]].yields[r]][c]);
       return;
-    default: out = ir::is_primitive(made.op) ? primitive(frame, made) : any(type); return;
+    case Opcode::load:
+    case Opcode::ddx:
+    case Opcode::ddy: out = any(type); return;
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+      out = primitive(frame, made);
   }
 }
 
 KnownRanges RangeWalker::primitive(const RangeFrame& frame, const ir::Instruction& made) const {
+  const ir::OpInfo& row = ir::info(made.op);
   const ir::Type type = frame.function->type(made.first_result);
   const auto in = frame.function->operands_of(made);
   KnownRanges out = any(type);
@@ -225,11 +172,10 @@ KnownRanges RangeWalker::primitive(const RangeFrame& frame, const ir::Instructio
   };
   for (uint32_t c = 0; c < type.width; ++c) {
     const KnownRange &a = of(0, c), &b = of(in.size() > 1 ? 1 : 0, c);
-    if (made.op == Opcode::select)
+    if (row.rule == ir::Rule::choose)
       out[c] = a.is_point() ? of(a.lo != 0 ? 1 : 2, c) : either(of(1, c), of(2, c));
     else if (a && b)
-      out[c] = type.scalar == Scalar::boolean ? truth(made.op, a, b)
-                                              : arithmetic(made.op, a, b, in.size() > 1 && in[0] == in[1]);
+      out[c] = by_range_rule(row.range, a, b, in.size() > 1 && in[0] == in[1], type.scalar);
   }
   return out;
 }
@@ -303,7 +249,7 @@ void RangeWalker::call(RangeFrame& frame, const ir::Instruction& made) {
     frame.values[made.first_result] = chosen(frame, made, library.row);
     return;
   }
-  // Of nothing comes nothing, at a price.
+  // No argument has a known range, so no result has one; skip the expensive walk.
   const bool is_lost = !callee.library.empty() && std::ranges::none_of(in, is_known);
   if (is_lost) {
     for (uint32_t r = 0; r < made.result_count; ++r)

@@ -78,13 +78,18 @@ void Tangents::copy(const Instruction& made) {
     case Opcode::extract: result = b_.extract(operands[0], made.imm); return;
     case Opcode::load: result = b_.load(made.imm, operands[0]); return;
     case Opcode::call: return take_results(made, call_(made, operands));
+    case Opcode::hidden_zero:
+    case Opcode::branch:
+    case Opcode::loop: support::bug("differentiated after hide_foldables, or not as a block");
     case Opcode::ddx:
     case Opcode::ddy:
       for (const Way& way : ways_)
         if (way.op == made.op) result = change(way, from_.operands_of(made)[0]);
       support::assert_that(result != none, "a derivative in what is differentiated");
       return;
-    default: result = b_.op(made.op, operands);
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+      result = b_.op(made.op, operands);
   }
 }
 
@@ -178,29 +183,34 @@ ValueId Tangents::change_of(const Instruction& made, const Way& way) {
   const auto times = [&](ValueId a, ValueId b) { return a == none ? none : b_.op(Opcode::fmul, {a, b}); };
   const ValueId result = values_[made.first_result];
   const Type type = from_.type(made.first_result);
-  switch (made.op) {
-    case Opcode::fadd: return sum(change(0), change(1));
-    case Opcode::fsub:
+  if (made.op == Opcode::extract) return b_.extract(change(0), made.imm);
+  if (made.op == Opcode::construct)
+    return componentwise(type, [&](uint32_t i) { return this->change(way, operands[i]); });
+  support::assert_that(is_primitive(made.op), "no derivative of " + std::string(ir::name(made.op)));
+  switch (info(made.op).change) {
+    case ChangeRule::flat: break;
+    case ChangeRule::sum: return sum(change(0), change(1));
+    case ChangeRule::difference:
       if (change(1) == none) return change(0);
       if (change(0) == none) return b_.op(Opcode::fneg, {change(1)});
       return b_.op(Opcode::fsub, {change(0), change(1)});
-    case Opcode::fmul: return sum(times(change(0), value(1)), times(change(1), value(0)));
-    case Opcode::fdiv: {  // (x / y)' = (x' - (x / y) y') / y
+    case ChangeRule::product: return sum(times(change(0), value(1)), times(change(1), value(0)));
+    case ChangeRule::quotient: {  // (x / y)' = (x' - (x / y) y') / y
       const ValueId part = times(change(1), result);
       if (part == none) return b_.op(Opcode::fdiv, {change(0), value(1)});
       const ValueId above =
           change(0) == none ? b_.op(Opcode::fneg, {part}) : b_.op(Opcode::fsub, {change(0), part});
       return b_.op(Opcode::fdiv, {above, value(1)});
     }
-    case Opcode::fsqrt:
+    case ChangeRule::root:
       return componentwise(type, [&](uint32_t i) {
         const ValueId root = b_.extract(result, i);
         const ValueId half = b_.op(Opcode::fmul, {b_.extract(change(0), i), b_.constant(0.5f)});
         const ValueId positive = b_.op(Opcode::fgt, {root, b_.constant(0.0f)});
         return b_.op(Opcode::select, {positive, b_.op(Opcode::fdiv, {half, root}), b_.constant(0.0f)});
       });
-    case Opcode::fneg: return b_.op(Opcode::fneg, {change(0)});
-    case Opcode::fabs:
+    case ChangeRule::negative: return b_.op(Opcode::fneg, {change(0)});
+    case ChangeRule::magnitude:
       return componentwise(type, [&](uint32_t i) {
         const ValueId x = b_.extract(value(0), i), d = b_.extract(change(0), i);
         const ValueId negative = b_.op(Opcode::flt, {x, b_.constant(0.0f)});
@@ -209,14 +219,11 @@ ValueId Tangents::change_of(const Instruction& made, const Way& way) {
             b_.op(Opcode::select, {negative, b_.op(Opcode::fneg, {d}), b_.constant(0.0f)});
         return b_.op(Opcode::select, {positive, d, otherwise});
       });
-    case Opcode::select:
+    case ChangeRule::choice:
       return b_.op(Opcode::select,
                    {value(0), this->change(way, operands[1]), this->change(way, operands[2])});
-    case Opcode::construct:
-      return componentwise(type, [&](uint32_t i) { return this->change(way, operands[i]); });
-    case Opcode::extract: return b_.extract(change(0), made.imm);
-    default: support::bug("no derivative of " + std::string(ir::name(made.op)));
   }
+  support::bug("what changes nowhere has no derivative: " + std::string(ir::name(made.op)));
 }
 
 }  // namespace isoshade::passes

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "compiler/ir/evaluate.h"
-
 namespace isoshade::prove {
 namespace {
+
+using ir::RangeRule;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -17,18 +17,10 @@ double up(double x) { return x * (1 + 0x1p-44); }
 /// 0 * infinity is 0 here: an error that is unknown does no harm where it is multiplied by nothing.
 double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-struct Ends {
-  double lo, hi;
-};
-
-/// The ends of what an operation gives at the four corners.
-template <class Operation>
-Ends corners(const Bound& a, const Bound& b, Operation operation) {
-  const auto at = [&](double x, double y) {
-    return static_cast<double>(operation(static_cast<float>(x), static_cast<float>(y)));
-  };
-  const auto [lo, hi] = std::minmax({at(a.lo, b.lo), at(a.lo, b.hi), at(a.hi, b.lo), at(a.hi, b.hi)});
-  return {lo, hi};
+/// Of what ops compute whose rule always tells.
+Bound computed(ir::RangeRule rule, const Bound& a, const Bound& b, bool same = false) {
+  const Ends ends = *ends_of(rule, a.ends(), b.ends(), same);
+  return {ends.lo, ends.hi};
 }
 
 /// What is no more, and no less, than the exact value of a few operations on doubles that gave `x`.
@@ -72,9 +64,8 @@ bool is_power_of_two(const Bound& a) {
   return a.is_point() && a.absolute == 0 && a.lo != 0 && std::abs(std::frexp(a.lo, &exponent)) == 0.5;
 }
 
-/// The product's error, where the computed product lies within [lo, hi].
-Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
-  Bound r{ends.lo, ends.hi};
+/// The product's error; `r`: where the computed product lies.
+Outcome product(const Bound& a, const Bound& b, Bound r, bool rounds) {
   place_exact_corners(r, a, b, times);
   const double u = rounds ? half_ulp : 0;
   const bool grows = !rounds && (a.least_magnitude() >= 1 || b.least_magnitude() >= 1);  // by a power of two
@@ -97,10 +88,9 @@ Outcome product(const Bound& a, const Bound& b, Ends ends, bool rounds) {
 Bound quotient_by_nonzero(const Bound& a, const Bound& b) {
   Bound r = anything();
   if (b.lo == 0 && b.hi == 0) return r;
-  const auto quotient = [](float x, float y) { return x / y; };
   Ends ends{infinity, -infinity};
   const auto take = [&](double lo, double hi) {
-    const Ends part = corners(a, between(lo, hi), quotient);
+    const Bound part = computed(RangeRule::quotient, a, between(lo, hi));
     ends = {std::min(ends.lo, part.lo), std::max(ends.hi, part.hi)};
   };
   if (b.hi >= smallest) take(smallest, b.hi);
@@ -112,10 +102,8 @@ Bound quotient_by_nonzero(const Bound& a, const Bound& b) {
 
 }  // namespace
 
-double Bound::magnitude() const { return std::max(std::abs(lo), std::abs(hi)); }
-double Bound::least_magnitude() const {
-  return lo <= 0 && hi >= 0 ? 0 : std::min(std::abs(lo), std::abs(hi));
-}
+double Bound::magnitude() const { return magnitudes(ends()).hi; }
+double Bound::least_magnitude() const { return magnitudes(ends()).lo; }
 
 double Bound::exact_lo() const {
   double least = std::max(exact_least, lo - absolute);
@@ -189,9 +177,6 @@ Outcome settled(Bound r) {
   return {r, breach};
 }
 
-// Not inlined: where g++ 12 does this to two numbers at once, it takes the way to float and back for nothing.
-[[gnu::noinline]] double rounded(double value) { return static_cast<double>(static_cast<float>(value)); }
-
 Bound exactly(double value) { return {value, value}; }
 Bound between(double lo, double hi) { return {lo, hi}; }
 Bound anything() { return {-largest, largest, infinity, infinity, infinity}; }
@@ -210,8 +195,7 @@ Outcome approximate(double lo, double hi, double relative_error, double carried)
 }
 
 Outcome add(const Bound& a, const Bound& b) {
-  Bound r{static_cast<double>(static_cast<float>(a.lo) + static_cast<float>(b.lo)),
-          static_cast<double>(static_cast<float>(a.hi) + static_cast<float>(b.hi))};
+  Bound r = computed(RangeRule::sum, a, b);
   const bool nothing_added =
       (a.magnitude() == 0 && a.absolute == 0) || (b.magnitude() == 0 && b.absolute == 0);
   const bool exact = nothing_added || difference_is_exact(a, negate(b));
@@ -237,13 +221,11 @@ Outcome subtract(const Bound& a, const Bound& b) { return add(a, negate(b)); }
 
 Outcome multiply(const Bound& a, const Bound& b) {
   const bool exact = is_power_of_two(a) || is_power_of_two(b);
-  return product(a, b, corners(a, b, [](float x, float y) { return x * y; }), !exact);
+  return product(a, b, computed(RangeRule::product, a, b), !exact);
 }
 
 Outcome square(const Bound& a) {
-  const auto least = static_cast<float>(a.least_magnitude()), most = static_cast<float>(a.magnitude());
-  Outcome squared =
-      product(a, a, {static_cast<double>(least * least), static_cast<double>(most * most)}, true);
+  Outcome squared = product(a, a, computed(RangeRule::product, a, a, true), true);
   Bound& r = squared.bound;
   const double exact = a.exact_least_magnitude();
   r.exact_least = std::max(r.exact_least, outward_down(exact * exact));
@@ -253,8 +235,7 @@ Outcome square(const Bound& a) {
 
 Outcome divide(const Bound& a, const Bound& b) {
   if (b.lo <= 0 && b.hi >= 0) return {quotient_by_nonzero(a, b), Breach::division_by_zero};
-  const Ends ends = corners(a, b, [](float x, float y) { return x / y; });
-  Bound r{ends.lo, ends.hi};
+  Bound r = computed(RangeRule::quotient, a, b);
   const double u = is_power_of_two(b) ? 0 : half_ulp;
   const double b_least = b.least_magnitude();
   const double b_exact = b.exact_least_magnitude();
@@ -275,9 +256,8 @@ Outcome divide(const Bound& a, const Bound& b) {
 
 Outcome square_root(const Bound& a) {
   const Breach breach = a.lo < 0 ? Breach::root_of_negative : Breach::none;
-  const double lo = std::max(a.lo, 0.0);
-  Bound r{static_cast<double>(std::sqrt(static_cast<float>(lo))),
-          static_cast<double>(std::sqrt(static_cast<float>(std::max(a.hi, 0.0))))};
+  const Bound positive = between(std::max(a.lo, 0.0), std::max(a.hi, 0.0));
+  Bound r = computed(RangeRule::root, positive, positive);
   const bool exists = a.absolute == 0 || a.exact_lo() >= 0;  // the exact root
   if (exists) place_exact(r, std::sqrt(std::max(a.exact_lo(), 0.0)), std::sqrt(std::max(a.exact_hi(), 0.0)));
   const auto moved = [&](double error) {
@@ -306,7 +286,7 @@ Bound magnitude(const Bound& a) {
 }
 
 Bound floor_of(const Bound& a) {
-  Bound r{std::floor(a.lo), std::floor(a.hi)};
+  Bound r = computed(RangeRule::floor, a, a);
   place_exact(r, std::floor(a.exact_lo()), std::floor(a.exact_hi()));
   const bool same = a.absolute == 0 ||
                     (r.lo == r.hi && std::floor(a.exact_lo()) == r.lo && std::floor(a.exact_hi()) == r.lo);

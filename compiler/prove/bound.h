@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "compiler/ir/op.h"
+#include "compiler/prove/ends.h"
 
 namespace isoshade::prove {
 
@@ -39,6 +39,7 @@ struct Bound {
   double magnitude() const;        ///< the largest |y|
   double least_magnitude() const;  ///< the smallest |y|
   bool is_point() const { return lo == hi; }
+  Ends ends() const { return {lo, hi}; }
   /// The least e for which |y - x| <= e |x| + slack is known, with a slack of at most 2^-100 (what flushing takes);
   /// infinite where there is none.
   struct Share {
@@ -68,9 +69,6 @@ struct Outcome {
   Breach breach = Breach::none;  ///< `bound` holds where the breach does not happen
 };
 
-/// The float nearest to a double.
-double rounded(double value);
-
 Bound exactly(double value);
 Bound between(double lo, double hi);
 /// Any float, error unknown.
@@ -89,10 +87,9 @@ Bound floor_of(const Bound& a);
 Bound lesser(const Bound& a, const Bound& b);
 Bound greater(const Bound& a, const Bound& b);
 Bound select(const Bound& condition, const Bound& then, const Bound& other);
-/// Of floats or integers, by flt, ilt and so on.
-Bound compare(ir::Opcode op, const Bound& a, const Bound& b);
-/// The other ops: of integers, bits and booleans.
-Outcome other(ir::Opcode op, const Bound& a, const Bound& b);
+/// Of any primitive op but select, by its range rule. `b` is not looked at where the op is unary; `same`: both operands
+/// are one value.
+Outcome bound_of(ir::Opcode op, const Bound& a, const Bound& b, bool same = false);
 /// The sum of at most `count` values within `a`, from 0 on.
 Outcome sum_of(const Bound& a, double count);
 

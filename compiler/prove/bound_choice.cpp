@@ -5,23 +5,32 @@
 #include <limits>
 
 #include "compiler/prove/bound.h"
-#include "compiler/support/assert.h"
 
 namespace isoshade::prove {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_integer = -0x1p31, greatest_integer = 0x1p31 - 1;
+using ir::RangeRule;
 
-Bound truth(bool can_be_false, bool can_be_true, bool may_differ) {
-  return {can_be_false ? 0.0 : 1.0, can_be_true ? 1.0 : 0.0, may_differ ? 1.0 : 0.0, 0, 0};
+constexpr double infinity = std::numeric_limits<double>::infinity();
+Bound any_integer() { return {-0x1p31, 0x1p31 - 1, infinity, infinity, infinity}; }
+
+Bound integer(const Ends& ends, double absolute) {
+  return {ends.lo, ends.hi, absolute, absolute == 0 ? 0 : infinity, absolute};
 }
 
-Outcome any_integer() { return {{least_integer, greatest_integer, infinity, infinity, infinity}}; }
-
-Outcome integer(double lo, double hi, double absolute) {
-  if (lo < least_integer || hi > greatest_integer) return any_integer();
-  return {{lo, hi, absolute, absolute == 0 ? 0 : infinity, absolute}};
+/// What is known of a result by its type alone.
+Outcome any_of(ir::Rule rule, double differs) {
+  switch (rule) {
+    case ir::Rule::same:
+    case ir::Rule::to_float:
+    case ir::Rule::choose: return {anything(), Breach::unknown};
+    case ir::Rule::integer:
+    case ir::Rule::to_int: return {any_integer()};
+    case ir::Rule::compare:
+    case ir::Rule::icompare:
+    case ir::Rule::logic: return {{0, 1, differs}};
+  }
+  return {anything(), Breach::unknown};
 }
 
 /// The bound of the result that is one or the other, both computed and exactly.
@@ -63,74 +72,73 @@ Bound select(const Bound& condition, const Bound& then, const Bound& other) {
   return settled(r).bound;
 }
 
-Bound compare(ir::Opcode op, const Bound& a, const Bound& b) {
-  using enum ir::Opcode;
-  const bool surely_below = a.hi<b.lo, surely_above = a.lo> b.hi;
-  const bool never_below = a.lo >= b.hi, never_above = a.hi <= b.lo;
+namespace {
+
+Bound compared(RangeRule comparison, const Bound& a, const Bound& b) {
+  const Ends truth = *ends_of(comparison, a.ends(), b.ends());
   const bool exact = a.absolute == 0 && b.absolute == 0;
   const bool apart = surely_less(a, b) || surely_less(b, a);
-  const bool may_differ = !exact && !apart;
-  const bool may_differ_below = may_differ && !surely_not_less(a, b);
-  const bool may_differ_above = may_differ && !surely_not_less(b, a);
-  const bool disjoint = surely_below || surely_above;
-  const bool one = a.is_point() && b.is_point() && a.lo == b.lo;
-  switch (op) {
-    case flt:
-    case ilt: return truth(!surely_below, !never_below, may_differ_below);
-    case fle:
-    case ile: return truth(!never_above, !surely_above, may_differ_above);
-    case fgt:
-    case igt: return truth(!surely_above, !never_above, may_differ_above);
-    case fge:
-    case ige: return truth(!never_below, !surely_below, may_differ_below);
-    case feq:
-    case ieq: return truth(!one, !disjoint, may_differ);
-    case fne:
-    case ine: return truth(!disjoint, !one, may_differ);
-    default: support::bug("a bound is compared by an op that does not compare");
-  }
+  bool may_differ = !exact && !apart;
+  // Where it takes equal operands like greater ones, it differs only where exact arithmetic may find a < b.
+  const auto alike = [&](RangeRule order) {
+    return ir::accepts(comparison, RangeRule::equal) == ir::accepts(comparison, order);
+  };
+  if (alike(RangeRule::greater)) may_differ = may_differ && !surely_not_less(a, b);
+  if (alike(RangeRule::less)) may_differ = may_differ && !surely_not_less(b, a);
+  return {truth.lo, truth.hi, may_differ ? 1.0 : 0.0, 0, 0};
 }
 
-Outcome other(ir::Opcode op, const Bound& a, const Bound& b) {
-  using enum ir::Opcode;
+}  // namespace
+
+Outcome bound_of(ir::Opcode op, const Bound& a, const Bound& b, bool same) {
+  const RangeRule rule = ir::info(op).range;
+  const auto ends = [&] { return ends_of(rule, a.ends(), b.ends(), same); };
   const double differs = std::max(a.absolute, b.absolute);
-  switch (op) {
-    case band: return {{std::min(a.lo, b.lo), std::min(a.hi, b.hi), differs}};
-    case bor: return {{std::max(a.lo, b.lo), std::max(a.hi, b.hi), differs}};
-    case bnot: return {{1 - a.hi, 1 - a.lo, a.absolute}};
-    case bxor:
-      // Known in floats; in exact arithmetic either may be the other.
-      if (a.is_point() && b.is_point()) return {{double(a.lo != b.lo), double(a.lo != b.lo), differs}};
-      return {{0, 1, differs}};
-    case iadd: return integer(a.lo + b.lo, a.hi + b.hi, a.absolute + b.absolute);
-    case isub: return integer(a.lo - b.hi, a.hi - b.lo, a.absolute + b.absolute);
-    case itof: {
-      Bound r{rounded(a.lo), rounded(a.hi)};
+  switch (rule) {
+    using enum RangeRule;
+    case less:
+    case equal:
+    case less_or_equal:
+    case greater:
+    case not_equal:
+    case greater_or_equal: return {compared(rule, a, b)};
+    case sum: return same ? multiply(exactly(2), a) : add(a, b);
+    case difference: return same ? Outcome{exactly(0)} : subtract(a, b);
+    case product: return same ? square(a) : multiply(a, b);
+    case quotient: return divide(a, b);
+    case root: return square_root(a);
+    case floor: return {floor_of(a)};
+    case negative: return {negate(a)};
+    case magnitude: return {prove::magnitude(a)};
+    case choice: break;
+    case truncated: {
+      const std::optional<Ends> whole = ends();
+      if (!whole) return {any_integer(), Breach::conversion};
+      const bool alike = a.absolute == 0 || std::trunc(a.lo - a.absolute) == std::trunc(a.hi + a.absolute);
+      return {integer(*whole, alike ? 0 : a.absolute + 1)};
+    }
+    case rounded: {
+      Bound r{prove::rounded(a.lo), prove::rounded(a.hi)};
       r.absolute = a.absolute + (a.magnitude() > 0x1p24 ? half_ulp * r.magnitude() : 0);
       r.relative = r.slack = r.absolute == 0 ? 0 : infinity;
       return settled(r);
     }
-    case ftoi: {
-      if (a.lo < least_integer || a.hi >= 0x1p31) return {any_integer().bound, Breach::conversion};
-      const bool same = a.absolute == 0 || std::trunc(a.lo - a.absolute) == std::trunc(a.hi + a.absolute);
-      return integer(std::trunc(a.lo), std::trunc(a.hi), same ? 0 : a.absolute + 1);
+    case integer_sum:
+    case integer_difference: {
+      const std::optional<Ends> whole = ends();
+      return {whole ? integer(*whole, a.absolute + b.absolute) : any_integer()};
     }
-    case bitsf:
-    case bitsf_normal: return {anything(), Breach::unknown};
-    case ult: return {{0, 1, differs}};
-    case fbits:
-    case fbits_nonnan:
-    case imul:
-    case imulhi:
-    case umulhi:
-    case iand:
-    case ior:
-    case ixor:
-    case ishl:
-    case ishr:
-    case isar: return any_integer();
-    default: support::bug("a bound of an op that has another rule");
+    // Known in floats; in exact arithmetic either operand may be the other.
+    case both:
+    case either:
+    case different: {
+      const Ends truth = ends().value_or(Ends{0, 1});
+      return {{truth.lo, truth.hi, differs}};
+    }
+    case inverse: return {{1 - a.hi, 1 - a.lo, a.absolute}};
+    case any: return any_of(ir::info(op).rule, differs);
   }
+  return {anything(), Breach::unknown};
 }
 
 }  // namespace isoshade::prove

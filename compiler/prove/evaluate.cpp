@@ -211,14 +211,13 @@ bool Evaluator::narrow(const Operation& operation, uint32_t index) {
     return static_cast<double>(std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::max()));
   };
   const auto above = [&](double x) { return -below(-x); };
-  switch (operation.op) {
-    case Opcode::flt: return restrict(index, -largest, below(by.hi));
-    case Opcode::fle: return restrict(index, -largest, by.hi);
-    case Opcode::fgt: return restrict(index, above(by.lo), largest);
-    case Opcode::fge: return restrict(index, by.lo, largest);
-    case Opcode::feq: return restrict(index, by.lo, by.hi);
-    case Opcode::fne: break;
-    default: support::bug("a value is narrowed by what does not compare");
+  using enum ir::RangeRule;
+  const ir::RangeRule orders = ir::info(operation.op).range;
+  if (orders != not_equal) {
+    const bool or_equal = ir::accepts(orders, equal);
+    const double least = or_equal ? by.lo : above(by.lo), most = or_equal ? by.hi : below(by.hi);
+    return restrict(index, ir::accepts(orders, less) ? -largest : least,
+                    ir::accepts(orders, greater) ? largest : most);
   }
   const Bound& all = bounds_[index];
   if (!by.is_point()) return true;
@@ -247,7 +246,9 @@ Outcome Evaluator::outcome_of(const Operation& operation, uint32_t index) {
     case Kind::narrow:
     case Kind::enter: return {bounds_[index]};
   }
-  if (operation.op != Opcode::select) return op_of(operation, in);
+  if (operation.op != Opcode::select)
+    return bound_of(operation.op, bounds_[in[0]], bounds_[in[in.size() > 1 ? 1 : 0]],
+                    in.size() > 1 && in[0] == in[1]);
   Outcome chosen = select_of(in, index);
   const bool no_then = states_[in[1]] == State::dead, no_other = states_[in[2]] == State::dead;
   if (no_then && no_other) states_[index] = State::dead;
@@ -268,69 +269,6 @@ Outcome Evaluator::select_of(std::span<const uint32_t> in, uint32_t index) {
     taken = {taken.lo, taken.hi, unknown.absolute, unknown.relative, unknown.slack};
   }
   return {taken};
-}
-
-Outcome Evaluator::op_of(const Operation& operation, std::span<const uint32_t> in) {
-  const Bound& a = bounds_[in[0]];
-  const Bound& b = bounds_[in[in.size() > 1 ? 1 : 0]];
-  const bool same = in.size() > 1 && in[0] == in[1];
-  switch (operation.op) {
-    using enum Opcode;
-    case fadd: return same ? multiply(exactly(2), a) : add(a, b);
-    case fsub: return same ? Outcome{exactly(0)} : subtract(a, b);
-    case fmul: return same ? square(a) : multiply(a, b);
-    case fdiv: return divide(a, b);
-    case fsqrt: return square_root(a);
-    case fneg: return {negate(a)};
-    case fabs: return {magnitude(a)};
-    case floor: return {floor_of(a)};
-    case flt:
-    case fle:
-    case fgt:
-    case fge:
-    case feq:
-    case fne:
-    case ilt:
-    case ile:
-    case igt:
-    case ige:
-    case ieq:
-    case ine: return {compare(operation.op, a, b)};
-    case ult:
-    case ftoi:
-    case itof:
-    case fbits:
-    case fbits_nonnan:
-    case bitsf:
-    case bitsf_normal:
-    case iadd:
-    case isub:
-    case imul:
-    case imulhi:
-    case umulhi:
-    case iand:
-    case ior:
-    case ixor:
-    case ishl:
-    case ishr:
-    case isar:
-    case band:
-    case bor:
-    case bxor:
-    case bnot: return other(operation.op, a, b);
-    case select:
-    case constant:
-    case construct:
-    case extract:
-    case hidden_zero:
-    case load:
-    case call:
-    case branch:
-    case loop:
-    case ddx:
-    case ddy: break;
-  }
-  return {anything(), Breach::unknown};
 }
 
 Outcome Evaluator::least_of(std::span<const uint32_t> in) const {
@@ -379,8 +317,17 @@ double Evaluator::severity_of(const Operation& operation, Breach breach) const {
         sum += 256 - exponent(in[1], true) - std::max(0.0, exponent(in[1], false));
       return sum;
     case Breach::division_by_zero: return 1 + bounds_[in.back()].hi - bounds_[in.back()].lo;
-    default: return 1 - bounds_[in.empty() ? 0 : in[0]].lo + bounds_[in.empty() ? 0 : in[0]].hi;
+    case Breach::none:
+    case Breach::root_of_negative:
+    case Breach::logarithm:
+    case Breach::power:
+    case Breach::arc:
+    case Breach::conversion:
+    case Breach::domain:
+    case Breach::unknown: break;
   }
+  const Bound& first = bounds_[in.empty() ? 0 : in[0]];
+  return 1 - first.lo + first.hi;
 }
 
 }  // namespace isoshade::prove

@@ -66,7 +66,6 @@ class Evaluator {
   enum class State : uint8_t { good, doubtful, dead };
 
   Outcome outcome_of(const Operation& operation, uint32_t index);
-  Outcome op_of(const Operation& operation, std::span<const uint32_t> in);
   Outcome least_of(std::span<const uint32_t> in) const;
   Outcome answer_of(Answer answer, std::span<const uint32_t> in) const;
   Outcome dot_of(std::span<const uint32_t> in) const;

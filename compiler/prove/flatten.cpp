@@ -270,7 +270,7 @@ void Flattener::instruction(CallFrame& frame, const ir::Instruction& i) {
     case Opcode::load: out = {unknown(type.scalar, place)}; return;
     case Opcode::ddx:
     case Opcode::ddy: out = derivative(i.op, type, in[0], place); return;
-#define OP(name, arity, rule, glsl, cpp, precondition) case Opcode::name:
+#define OP(name, ...) case Opcode::name:
 #include "compiler/ir/ops.def"
       out = primitive(i, type, in, place);
       return;

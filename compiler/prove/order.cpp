@@ -2,44 +2,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/ir/laws.h"
 #include "compiler/prove/flatten.h"
-#include "compiler/support/assert.h"
 
 namespace isoshade::prove {
 namespace {
 
 using ir::Opcode;
 
-/// What `op` says when it does not hold.
-Opcode inverse(Opcode op) {
-  using enum Opcode;
-  switch (op) {
-    case flt: return fge;
-    case fle: return fgt;
-    case fgt: return fle;
-    case fge: return flt;
-    case feq: return fne;
-    case fne: return feq;
-    default: support::bug("only comparisons have an inverse");
-  }
+/// Whether a comparison says that its first operand is below the second, or may be equal.
+bool says_below(Opcode op) {
+  const ir::RangeRule orders = ir::info(op).range;
+  return ir::accepts(orders, ir::RangeRule::less) && !ir::accepts(orders, ir::RangeRule::greater);
 }
-
-/// What `op` says of its operands the other way round.
-Opcode mirrored(Opcode op) {
-  using enum Opcode;
-  switch (op) {
-    case flt: return fgt;
-    case fle: return fge;
-    case fgt: return flt;
-    case fge: return fle;
-    case feq:
-    case fne: return op;
-    default: support::bug("only comparisons can be mirrored");
-  }
-}
-
-bool says_below(Opcode op) { return op == Opcode::flt || op == Opcode::fle; }
-bool says_above(Opcode op) { return op == Opcode::fgt || op == Opcode::fge; }
+bool says_above(Opcode op) { return says_below(ir::swapped(op)); }
 
 class Ordering {
  public:
@@ -178,25 +154,41 @@ void Ordering::narrow_by(uint32_t condition, bool truth, uint32_t guard) {
   const Operation& c = pool_[condition];
   if (c.kind != Kind::op) return;
   const auto operands = pool_.operands(condition);
-  using enum Opcode;
-  switch (c.op) {
-    case bnot: return narrow_by(operands[0], !truth, guard);
-    case band:
-    case bor:
-      if (truth != (c.op == band)) return;
+  switch (ir::info(c.op).range) {
+    using enum ir::RangeRule;
+    case inverse: return narrow_by(operands[0], !truth, guard);
+    case both:
+    case either:
+      if (truth != (c.op == Opcode::band)) return;
       narrow_by(operands[0], truth, guard);
       return narrow_by(operands[1], truth, guard);
-    case flt:
-    case fle:
-    case fgt:
-    case fge:
-    case feq:
-    case fne: {
-      const Opcode op = truth ? c.op : inverse(c.op);
+    case less:
+    case less_or_equal:
+    case greater:
+    case greater_or_equal:
+    case equal:
+    case not_equal: {
+      if (ir::info(c.op).rule != ir::Rule::compare) return;  // ints are not narrowed
+      const Opcode op = truth ? c.op : ir::opposite(c.op);
       narrow(operands[0], op, operands[1], guard);
-      return narrow(operands[1], mirrored(op), operands[0], guard);
+      return narrow(operands[1], ir::swapped(op), operands[0], guard);
     }
-    default: return;
+    // Not of truth values; or nothing follows of the operands.
+    case different:
+    case choice:
+    case any:
+    case sum:
+    case difference:
+    case product:
+    case quotient:
+    case root:
+    case floor:
+    case negative:
+    case magnitude:
+    case truncated:
+    case rounded:
+    case integer_sum:
+    case integer_difference: return;
   }
 }
 

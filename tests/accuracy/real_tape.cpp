@@ -7,7 +7,6 @@
 #include "backends/reference/functions.h"
 #include "compiler/functions/library.h"
 #include "compiler/ir/evaluate.h"
-#include "compiler/support/assert.h"
 
 namespace isoshade::accuracy {
 
@@ -48,67 +47,12 @@ RealTape::Cell RealTape::value_of(const Operation& operation, uint32_t index,
 
 RealTape::Cell RealTape::op(const Operation& operation, bool follow) {
   const auto in = tape_.operands_of(operation);
-  const auto number = [&](size_t i) -> const Real& { return cells_[in[i]].number; };
-  const auto word = [&](size_t i) { return i < in.size() ? cells_[in[i]].word : 0; };
-  switch (operation.op) {
-    case Opcode::fadd: return {number(0) + number(1)};
-    case Opcode::fsub: return {number(0) - number(1)};
-    case Opcode::fmul: return {number(0) * number(1)};
-    case Opcode::fdiv: return {number(0) / number(1)};
-    case Opcode::fsqrt: return {sqrt(number(0))};
-    case Opcode::floor: return {floor(number(0))};
-    case Opcode::fneg: return {-number(0)};
-    case Opcode::fabs: return {abs(number(0))};
-    case Opcode::flt: return {{}, number(0) < number(1)};
-    case Opcode::fle: return {{}, number(0) <= number(1)};
-    case Opcode::fgt: return {{}, number(0) > number(1)};
-    case Opcode::fge: return {{}, number(0) >= number(1)};
-    case Opcode::feq: return {{}, number(0) == number(1)};
-    case Opcode::fne: return {{}, number(0) != number(1)};
-    case Opcode::select: return cells_[in[(follow ? floats_.word(in[0]) : word(0)) != 0 ? 1 : 2]];
-    case Opcode::itof: return {static_cast<int32_t>(word(0))};
-    case Opcode::ftoi: {
-      const auto cut = std::clamp<int64_t>(static_cast<int64_t>(number(0)), INT32_MIN, INT32_MAX);
-      return {{}, static_cast<uint32_t>(static_cast<int32_t>(cut))};
-    }
-    case Opcode::fbits:
-    case Opcode::fbits_nonnan: return {{}, std::bit_cast<uint32_t>(reference::stored(number(0)))};
-    case Opcode::bitsf:
-    case Opcode::bitsf_normal: return {std::bit_cast<float>(ir::flush_denormal(word(0)))};
-    case Opcode::iadd:
-    case Opcode::isub:
-    case Opcode::imul:
-    case Opcode::imulhi:
-    case Opcode::umulhi:
-    case Opcode::iand:
-    case Opcode::ior:
-    case Opcode::ixor:
-    case Opcode::ishl:
-    case Opcode::ishr:
-    case Opcode::isar:
-    case Opcode::ilt:
-    case Opcode::ile:
-    case Opcode::igt:
-    case Opcode::ige:
-    case Opcode::ieq:
-    case Opcode::ine:
-    case Opcode::ult:
-    case Opcode::band:
-    case Opcode::bor:
-    case Opcode::bxor:
-    case Opcode::bnot: return {{}, ir::evaluate(operation.op, word(0), word(1), word(2))};
-    case Opcode::constant:
-    case Opcode::construct:
-    case Opcode::extract:
-    case Opcode::hidden_zero:
-    case Opcode::load:
-    case Opcode::call:
-    case Opcode::branch:
-    case Opcode::loop:
-    case Opcode::ddx:
-    case Opcode::ddy: break;
-  }
-  support::bug("exact arithmetic has no such op");
+  if (operation.op == Opcode::select && follow) return cells_[in[floats_.word(in[0]) != 0 ? 1 : 2]];
+  static const Cell absent;
+  const auto operand = [&](size_t i) -> const Cell& { return i < in.size() ? cells_[in[i]] : absent; };
+  Cell result;
+  reference::compute(operation.op, operand(0), operand(1), operand(2), result);
+  return result;
 }
 
 Real RealTape::dot(std::span<const uint32_t> in) const {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "backends/reference/real.h"
+#include "backends/reference/evaluator.h"
 #include "compiler/prove/sample.h"
 
 namespace isoshade::accuracy {
@@ -21,10 +21,7 @@ class RealTape {
   const reference::Real& number(uint32_t operation) const { return cells_[operation].number; }
 
  private:
-  struct Cell {
-    reference::Real number;  ///< of a float
-    uint32_t word = 0;       ///< of an integer or a boolean
-  };
+  using Cell = reference::Cell;
   Cell value_of(const prove::Operation& operation, uint32_t index, std::span<const uint32_t> inputs,
                 bool follow);
   Cell op(const prove::Operation& operation, bool follow);

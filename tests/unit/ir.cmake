@@ -3,6 +3,7 @@ isoshade_test(ir_test
   SOURCES
     unit/ir_expansion_test.cpp
     unit/ir_interpreter_test.cpp
+    unit/ir_laws_test.cpp
     unit/ir_text_test.cpp
     unit/ir_uniformity_test.cpp
     unit/ir_validator_test.cpp

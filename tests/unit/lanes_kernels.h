@@ -21,8 +21,7 @@ struct Inputs {
 /// One function. run() writes count results as bits (NaN canonical unless the text says bits_nonnan; bool as
 /// 0, 1).
 struct Kernel {
-  const char* op;    ///< row of ops.def, or "" for what is not an op
-  const char* text;  ///< the C++ that it runs
+  const char* text;  ///< an op of ops.def, or else the C++ that it runs
   void (*run)(const Inputs& inputs, int* results);
 };
 
