@@ -76,6 +76,38 @@ std::span<const Law> laws_of(Opcode op) {
 
 bool commutes(Opcode op) { return is_primitive(op) && commuting[static_cast<size_t>(op)]; }
 
+bool is_exact(Opcode op) {
+  if (!is_primitive(op)) return false;
+  switch (info(op).range) {
+    using enum RangeRule;
+    case choice:
+    case floor:
+    case negative:
+    case magnitude: return true;
+    case less:
+    case equal:
+    case less_or_equal:
+    case greater:
+    case not_equal:
+    case greater_or_equal:
+    case sum:
+    case difference:
+    case product:
+    case quotient:
+    case root:
+    case truncated:
+    case rounded:
+    case integer_sum:
+    case integer_difference:
+    case both:
+    case either:
+    case different:
+    case inverse:
+    case any: return false;
+  }
+  return false;
+}
+
 Opcode swapped(Opcode comparison) {
   const OpInfo& row = info(comparison);
   const auto order = [&](RangeRule is, RangeRule becomes) {

@@ -32,6 +32,8 @@ struct Law {
 std::span<const Law> laws_of(Opcode op);
 /// Whether op(x, y) is op(y, x).
 bool commutes(Opcode op);
+/// Whether an op on floats never rounds: it picks, negates or cuts an operand, and makes whole numbers of whole ones.
+bool is_exact(Opcode op);
 /// The comparison of floats, or of ints, that says of (y, x) what `comparison` says of (x, y).
 Opcode swapped(Opcode comparison);
 /// The comparison that holds where `comparison` does not, unless an operand is NaN.

@@ -7,9 +7,10 @@
 
 namespace isoshade::passes {
 
-/// Drops functions that the entries do not reach through calls. The others are put callees before callers, in
-/// the order in which they are called; `entries` are changed to where they are then. Buffers stay. Needs: a
-/// valid module without dead calls (renumber). Leaves: every function reached.
+/// Dead code elimination: drops the functions that the entries do not reach through calls. The others are sorted,
+/// callees before callers, in the order in which they are called; `entries` is updated to the new indices. Buffers
+/// stay.
+/// Needs: a valid module without dead calls (renumber). Leaves: only functions that are reached.
 void dce(ir::Module& module, std::vector<uint32_t>& entries);
 
 }  // namespace isoshade::passes

@@ -6,10 +6,10 @@
 
 namespace isoshade::passes {
 
-/// Replaces what the ranges of parameters decide, in functions that documents have: comparisons whose outcome is known
-/// by it, min, max, clamp and saturate of what lies within, and magnitudes of what is positive, by what they choose.
-/// Never a bit changes: parameters are of their ranges (a scene with others is refused), NaN and the signs of zeros are
-/// minded, and ranges hold every float that the ops give.
+/// Replaces what the ranges of parameters decide, in functions of documents: comparisons with a known outcome by
+/// constants; min, max, clamp and saturate of values within the limits, and magnitudes of positive values, by the
+/// operand that they return. Bit-exact. Relies on parameters being in range (scenes are checked when loaded); takes
+/// NaN and the signs of zeros into account; ranges contain every float that the ops can give.
 /// Needs: bodies for all calls. Leaves: comparisons that are constants, for fold.
 void decide(ir::Module& module, functions::Tier tier);
 

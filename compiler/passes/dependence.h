@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which values of a function change with which: what derivatives are to follow.
+// Which values of a function depend on which: where derivatives are needed.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,11 @@ using Marks = std::vector<bool>;
 /// Which results of a call change, given which of its arguments do.
 using CallChanges = std::function<Marks(const ir::Instruction&, const Marks& arguments)>;
 
-/// The values that change if these parameters do. Only floats can; what goes through ints, truths, floor and
-/// loads changes nowhere but where it jumps.
+/// The values whose derivative may be other than 0 if these parameters change: floats that depend on them other than
+/// through ints, truth values, floor and loads, which are constant but for jumps.
 Marks changing(const ir::Function& function, const Marks& parameters, const CallChanges& calls);
 
-/// Of the values that are `changing`, those on which `wanted` ones depend, and these.
+/// Those of the `changing` values that are wanted, or on which wanted ones depend.
 Marks needed(const ir::Function& function, const Marks& changing, const Marks& wanted);
 
 }  // namespace isoshade::passes

@@ -7,17 +7,16 @@
 
 namespace isoshade::passes {
 
-/// Replaces ddx and ddy by arithmetic: forward-mode automatic differentiation of what they are asked of, and of
-/// nothing else.
+/// Replaces ddx and ddy by arithmetic: forward-mode automatic differentiation of their operands, and of nothing else.
 ///
-/// The source of all change is a function (of a stage) beside which the module has two others with its parameters,
-/// called as it is and then ddx_suffix or ddy_suffix: they give what its results change by from a pixel to the next.
-/// From there changes go on by the rules of ops (tangents.h) and of library functions (functions/functions.def).
-/// A function that asks for changes of its parameters gets them as more parameters, in the group "gradients", from
-/// its callers. What called functions change by is computed in functions of their own, `..._change`.
+/// Derivatives start at a function of a stage for which the module has two more, with the same parameters and with
+/// ddx_suffix or ddy_suffix appended to the name: these return the derivatives of its results along x and y. From there
+/// they propagate by the change rules of ops (tangents.h) and of library functions (functions/functions.def). A
+/// function that needs the derivatives of its parameters gets them from its callers as further parameters, in the
+/// group "gradients". The derivatives of called functions are computed in functions of their own, `..._change`.
 ///
-/// Needs: a valid module in which no derivative is taken of a derivative, and calls not yet expanded (their rules
-/// are those of functions, not of their bits). Leaves: no ddx and no ddy; without any before, the module as it is.
+/// Needs: a valid module without derivatives of derivatives, in which calls are not yet expanded (the rules are those
+/// of the functions, not of their bit operations). Leaves: no ddx and no ddy; a module without any is left as it is.
 void derivatives(ir::Module& module);
 
 inline constexpr std::string_view ddx_suffix = "_ddx";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rewriting a function in place, in the order in which it runs. What fold and hide_foldables share.
+// Rewrites a function in place, in execution order; fold, decide and hide_foldables are built on it.
 #pragma once
 
 #include <functional>

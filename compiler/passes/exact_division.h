@@ -5,9 +5,9 @@
 
 namespace isoshade::passes {
 
-/// Replaces `/` and `sqrt` by the library's div_exact and sqrt_exact, for devices that round them otherwise:
-/// the same bits from + - * and integer ops. Needs: nothing. Leaves: no fdiv and no fsqrt; declarations where
-/// the module had not the two functions.
+/// Replaces `/` and `sqrt` by the library's div_exact and sqrt_exact, for devices that do not round them correctly:
+/// these compute the same bits by + - * and integer ops.
+/// Leaves: no fdiv and no fsqrt; declarations of the two functions if the module did not have them.
 void exact_division(ir::Module& module);
 
 }  // namespace isoshade::passes

@@ -124,42 +124,16 @@ class Hider {
       case Opcode::ddy: break;
 #define OP(name, ...) case Opcode::name:
 #include "compiler/ir/ops.def"
-        is_open = primitive_is_open(info(made.op), operands);
+        is_open = primitive_is_open(made.op, operands);
     }
     for (uint32_t k = 0; k < made.result_count; ++k) open_[made.first_result + k] = is_open;
   }
 
-  bool primitive_is_open(const OpInfo& row, std::span<const ValueId> operands) const {
+  bool primitive_is_open(Opcode op, std::span<const ValueId> operands) const {
     const auto open = [&](ValueId value) { return is_open(value); };
-    if (row.rule == Rule::integer) return std::ranges::all_of(operands, open);
-    switch (row.range) {
-      case RangeRule::rounded: return true;
-      // An int's float stays one.
-      case RangeRule::choice:
-      case RangeRule::floor:
-      case RangeRule::negative:
-      case RangeRule::magnitude: return std::ranges::any_of(operands, open);
-      case RangeRule::less:
-      case RangeRule::equal:
-      case RangeRule::less_or_equal:
-      case RangeRule::greater:
-      case RangeRule::not_equal:
-      case RangeRule::greater_or_equal:
-      case RangeRule::sum:
-      case RangeRule::difference:
-      case RangeRule::product:
-      case RangeRule::quotient:
-      case RangeRule::root:
-      case RangeRule::truncated:
-      case RangeRule::integer_sum:
-      case RangeRule::integer_difference:
-      case RangeRule::both:
-      case RangeRule::either:
-      case RangeRule::different:
-      case RangeRule::inverse:
-      case RangeRule::any: return false;
-    }
-    return false;
+    if (op == Opcode::itof) return true;
+    if (info(op).rule == Rule::integer) return std::ranges::all_of(operands, open);
+    return is_exact(op) && std::ranges::any_of(operands, open);  // an int's float stays one
   }
 
   void arithmetic(InstructionId id, const Instruction& made) {

@@ -7,9 +7,9 @@
 
 namespace isoshade::passes {
 
-/// A value that a primitive op's result equals on all values of its operands, given that no float is denormal
-/// and NaN is one value; nothing if none is known. The op stays as it is; what is made comes before it. x +
-/// (+0) is not x, because (-0) + (+0) is +0; neither is x - x zero, nor x * 0.
+/// A value that equals a primitive op's result for all values of its operands, given that no float is denormal and
+/// NaN is one value (ir/laws.def); nothing if none is known. The op is left as it is; new instructions come before it.
+/// Note that x + (+0) is not x, because (-0) + (+0) is +0; nor are x - x and x * 0 zero, because x may be NaN.
 std::optional<ir::ValueId> identity(Editor& editor, const ir::Instruction& instruction);
 
 }  // namespace isoshade::passes

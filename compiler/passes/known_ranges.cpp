@@ -32,7 +32,7 @@ KnownRange constant(Scalar scalar, uint32_t bits) {
   return std::isfinite(value) ? KnownRange{value, value} : KnownRange{};
 }
 
-/// What is known of a result by its op's range rule, where its operands are known.
+/// The range of an op's result, by its range rule, where those of its operands are known.
 KnownRange by_range_rule(ir::RangeRule rule, const KnownRange& a, const KnownRange& b, bool same,
                          Scalar scalar) {
   const std::optional<prove::Ends> ends = prove::ends_of(rule, {a.lo, a.hi}, {b.lo, b.hi}, same);
@@ -180,7 +180,7 @@ KnownRanges RangeWalker::primitive(const RangeFrame& frame, const ir::Instructio
   return out;
 }
 
-/// What the rows give that choose among their arguments, where not all of these are known.
+/// The range of min, max, clamp and saturate, which may be known where not all arguments are.
 KnownRanges RangeWalker::chosen(const RangeFrame& frame, const ir::Instruction& made,
                                 std::string_view row) const {
   const ir::Function& f = *frame.function;

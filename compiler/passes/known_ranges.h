@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which numbers the values of a function may be, by what is declared of parameters.
+// The ranges of a function's values, derived from the declared ranges of its parameters.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace isoshade::passes {
 
-/// What a component is known to lie in; nothing by default: then it may be NaN or infinite, too.
+/// The range of a component. By default it is unknown: then the component may be NaN or infinite, too.
 struct KnownRange {
   double lo = 1, hi = 0;
   explicit operator bool() const { return lo <= hi; }
   bool is_point() const { return lo == hi; }
 };
-/// Of the components of a value.
+/// By component of a value.
 using KnownRanges = std::array<KnownRange, 4>;
 
 /// One walk through a function.
@@ -28,27 +28,27 @@ struct RangeFrame {
   std::vector<KnownRanges> values;
 };
 
-/// Walks functions by ranges. Needs lanes::FpGuard, and bodies for all calls.
+/// Interval analysis of a module. Needs lanes::FpGuard, and bodies for all calls.
 class RangeWalker {
  public:
   RangeWalker(const ir::Module& module, functions::Tier tier);
 
-  /// The ranges of the results, for these of the arguments. What calls of functions that documents have were given is
-  /// kept.
+  /// The ranges of the results for these ranges of the arguments. Records the arguments of calls to functions of
+  /// documents.
   std::vector<KnownRanges> walk(uint32_t function, const std::vector<KnownRanges>& arguments);
-  /// Of the parameters of a function, over all its calls; nothing: it was not called.
+  /// The ranges of a function's parameters over all its calls; empty if it was not called.
   const std::vector<KnownRanges>& arguments_of(uint32_t function) const { return arguments_[function]; }
-  /// Whether a walk through the function met anything that ranges decide: a comparison, or a choice of known numbers.
+  /// Whether a walk met something in the function that ranges decide: a comparison, or a min or max of known numbers.
   bool met_decisions(uint32_t function) const { return met_decisions_[function]; }
-  /// False if walking took too long to be finished; then nothing is known.
+  /// False if the walk exceeded its budget; then nothing is known.
   bool finished() const { return budget_ > 0; }
 
   /// Sets the ranges of an instruction's results. `walk_block`: walks a block of it, whose parameters are set.
   void instruction(RangeFrame& frame, const ir::Instruction& made,
                    const std::function<void(ir::BlockId)>& walk_block);
-  /// What is known of nothing but its type.
+  /// The ranges of a value of which only the type is known.
   static KnownRanges any(ir::Type type);
-  /// As a function of functions.def is called in its table, or "".
+  /// The row of functions.def that a function is a variant of, or "".
   std::string_view row_of(uint32_t function) { return library_of(function).row; }
 
  private:

@@ -12,7 +12,7 @@
 
 namespace isoshade::passes {
 
-/// The functions that are run from outside; dce changes the indices.
+/// The functions that are called from outside the module; dce updates the indices.
 using Entries = std::vector<uint32_t>;
 
 /// One line of a pipeline.
@@ -22,8 +22,7 @@ struct ModulePass {
   std::string_view reason;  ///< why it stands where it stands
 };
 
-/// From what lowering made to what is printed: no declaration, nothing dead, nothing that a driver would
-/// fold.
+/// From the lowered module to what is printed: no declarations, no dead code, nothing that a driver would fold.
 std::span<const ModulePass> optimisations();
 /// After `optimisations`, for devices whose `/` and `sqrt` are not correctly rounded.
 std::span<const ModulePass> division_lowering();
@@ -31,8 +30,8 @@ std::span<const ModulePass> division_lowering();
 /// Called after each pass with its name.
 using Dump = std::function<void(std::string_view pass, const ir::Module&)>;
 
-/// Runs the passes in order; library functions get their bodies of the tier. With `check` (always in debug builds) a pass that leaves an invalid module is a
-/// bug.
+/// Runs the passes in order; library functions get the bodies of the tier. With `check` (always in debug builds), a
+/// pass that leaves an invalid module is a bug.
 void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, functions::Tier tier,
          const Dump& dump = {}, bool check = false);
 

@@ -5,12 +5,12 @@
 
 namespace isoshade::passes {
 
-/// Rewrites every function in canonical order and drops what nothing needs: instructions, blocks, results of
+/// Rewrites every function in canonical order and drops what nothing uses: instructions, blocks, results of
 /// branches, values that loops carry, and origins.
-/// The order of a block is depth-first from its yields: a value's operands come before it, in their order.
-/// What blocks inside use from outside counts as operands of the instruction that has them. So it depends
-/// only on what computes what, not on the order in which a builder (and a C++ compiler, which picks the order
-/// of arguments) made it. Values, instructions, blocks and origins are numbered as text IR counts them.
+/// The order of a block is depth-first from its yields: a value's operands come before it, in their order. What
+/// inner blocks use from outside counts as operands of the instruction that contains them. So the order depends
+/// only on the data flow, and not on the order in which a builder made the instructions (where C++ leaves the
+/// evaluation order of arguments open). Values, instructions, blocks and origins get the numbers of text IR.
 /// Needs: a valid module. Leaves: nothing dead inside functions; print and parse give back the same module.
 void renumber(ir::Module& module);
 

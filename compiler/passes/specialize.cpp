@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/ir/laws.h"
 #include "compiler/passes/fold.h"
 #include "compiler/support/assert.h"
 
@@ -16,10 +17,10 @@ namespace isoshade::passes {
 namespace {
 
 /// Clones multiply with the depth of calls: two calls with constants in each of 30 nested functions would make 2^30.
-/// Far more than a device compiles in a shader.
+/// The limit is far more than any device compiles in a shader.
 constexpr size_t max_cloned_instructions = 200'000;
 
-/// The words of a constant argument; nothing: it is no constant.
+/// The words of a constant argument; nothing if it is not constant.
 using Words = std::optional<std::vector<uint32_t>>;
 
 class Specializer {
@@ -39,8 +40,7 @@ class Specializer {
 
  private:
   static bool is_arithmetic(ir::Opcode op) {
-    return ir::is_primitive(op) && ir::info(op).rule == ir::Rule::same && op != ir::Opcode::fneg &&
-           op != ir::Opcode::fabs && op != ir::Opcode::floor;
+    return ir::is_primitive(op) && ir::info(op).rule == ir::Rule::same && !ir::is_exact(op);
   }
 
   bool has_arithmetic(size_t f) {
@@ -48,11 +48,11 @@ class Specializer {
     return *arithmetic_[f];
   }
 
-  /// Or may do anything else that would show a constant to a driver: of those that have none, only functions
-  /// of the library are known to choose.
+  /// Whether a callee computes with its arguments, or may otherwise show a constant to a driver. Of functions
+  /// without arithmetic, only those of the library are known to do no more than choose.
   bool finds_arithmetic(const ir::Function& function) {
     if (function.library.empty()) return true;
-    // Only what is in a block: the rest has been replaced.
+    // Only instructions in a block count: the others have been replaced.
     for (const ir::Block& block : function.blocks)
       for (ir::InstructionId id : block.instructions) {
         const ir::Instruction& instruction = function.instructions[id];

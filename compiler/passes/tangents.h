@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function's body once more, with what its values change by beside them.
+// Copies a function's body and adds the derivatives of its values.
 #pragma once
 
 #include <functional>
@@ -11,17 +11,17 @@
 
 namespace isoshade::passes {
 
-/// One way in which what a function depends on changes.
+/// One direction of differentiation.
 struct Way {
-  std::string suffix;  ///< of names of changes: "_ddx"
-  ir::Opcode op{};     ///< what asks for changes of this way; ddx or ddy
-  Marks needed;        ///< the values whose change is
-  std::vector<ir::ValueId> change =
-      {};  ///< by value: in the new body; none where it is not needed, or is zero
+  std::string suffix;  ///< of the names of derivatives: "_ddx"
+  ir::Opcode op{};     ///< which op asks for derivatives in this direction: ddx or ddy
+  Marks needed;        ///< the values whose derivative is needed
+  /// By value of the old body: its derivative in the new body; none where it is not needed, or is zero.
+  std::vector<ir::ValueId> change = {};
 };
 
-/// Copies a body and differentiates it. The rules: floor and all that is no float change nowhere; a select, a
-/// branch follow the side taken; |x| at 0 and sqrt(x) at 0 change by 0; other ops as calculus has it.
+/// Copies a body and differentiates it, by the column `change` of ops.def: the derivative of floor, and of whatever is
+/// no float, is 0; that of a select or branch is that of the side taken; |x| and sqrt(x) have derivative 0 at 0.
 class Tangents {
  public:
   using ValueId = ir::ValueId;
@@ -29,18 +29,18 @@ class Tangents {
 
   /// Makes the call of `made`; `arguments` are those of the new body.
   using Call = std::function<Values(const ir::Instruction& made, const Values& arguments)>;
-  /// What the call's results change by; none where it is not needed.
+  /// The derivatives of the call's results; none where they are not needed.
   using CallChange =
       std::function<Values(const ir::Instruction& made, const Values& arguments, const Way& way)>;
 
-  /// `from` is what the builder's function was, whose first parameters are the same.
+  /// `from` is the old function; the builder's function begins with the same parameters.
   Tangents(ir::Builder& builder, const ir::Function& from, std::vector<Way>& ways, Call call,
            CallChange call_change);
 
   /// Makes the body. The builder is then at its end.
   void run() { block(0); }
   ValueId value(ValueId old) const { return values_[old]; }
-  /// A zero where it is none.
+  /// The derivative of a value of the old body; a zero where there is none.
   ValueId change(const Way& way, ValueId old);
 
  private:
@@ -52,7 +52,7 @@ class Tangents {
   void loop(const ir::Instruction& made);
   void take_results(const ir::Instruction& made, const Values& results);
   ValueId change_of(const ir::Instruction& made, const Way& way);
-  /// The sum, where either may be none.
+  /// The sum of two derivatives, either of which may be none, which is zero.
   ValueId sum(ValueId a, ValueId b);
   ValueId componentwise(ir::Type type, const std::function<ValueId(uint32_t)>& component);
   void name(ValueId made, ValueId old, const std::string& suffix, size_t first_new);

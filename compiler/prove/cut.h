@@ -14,15 +14,15 @@ class Cutter {
   /// Both must outlive it.
   Cutter(const Tape& tape, Evaluator& evaluator) : tape_(tape), evaluator_(evaluator) {}
 
-  /// What to make less, as a walk up to an operation left it; 0: nothing is left to do.
+  /// What to minimise, as measured after a walk up to an operation; 0 is the optimum.
   struct Aim {
     uint32_t operation = none;
-    double before = 0;                ///< of the whole box
-    std::function<double()> measure;  ///< of the last walk
+    double before = 0;                ///< the measure of the whole box
+    std::function<double()> measure;  ///< that of the last walk
   };
-  /// The two halves of the box along the side that makes the worse of them least bad. None if no side can be cut.
+  /// The two halves of the box along the side for which the worse half is best. None if no side can be cut.
   std::vector<Box> cut(const Box& box, const Aim& aim);
-  /// What the sides of a box were in the last walk.
+  /// The sides of a box as reached in the last walk.
   Box sides_of(const Box& box) const;
 
  private:
@@ -30,7 +30,7 @@ class Cutter {
     return side < tape_.inputs.size() && tape_.inputs[side].scalar != ir::Scalar::floating;
   }
   bool can_be_cut(size_t side, const Side& reached) const;
-  /// The sides to try, the first ones first.
+  /// The sides to try, most promising first.
   struct Candidate {
     size_t side;
     bool is_direct;

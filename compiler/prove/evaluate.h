@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tape walked by bounds: what every operation may give for inputs in a box, and what is not proved of it.
+// Evaluates a tape on bounds: what each operation can give for inputs in a box, and what could not be proved of it.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 
 namespace isoshade::prove {
 
-/// Where the inputs lie, and the operations that boxes are cut along too.
+/// The ranges of the inputs, and of the operations along which boxes are also cut.
 using Box = std::vector<Side>;
 
 struct Finding {
   uint32_t operation = none;
   Breach breach = Breach::none;
-  double severity = 0;  ///< how far from being proved; comparable between boxes
+  double severity = 0;  ///< how far it is from a proof; comparable between boxes
 };
 
 class Evaluator {
@@ -23,38 +23,37 @@ class Evaluator {
   /// The tape must outlive it.
   explicit Evaluator(const Tape& tape);
 
-  /// All inputs in their ranges.
+  /// The box of all inputs.
   Box whole() const;
-  /// Inputs, then scalar products and what is clamped: a box has a side for each.
+  /// A box has a side for each input, then for each scalar product and clamped number.
   size_t side_count() const { return tape_.inputs.size() + cuts_.size(); }
-  /// What a side was in the last walk: its range cut by what the operation gave there.
+  /// A side in the last walk: its range, intersected with what the operation gave.
   Side reached(const Box& box, size_t side) const;
   std::string side_name(size_t side) const;
-  /// The operation that a side beyond the inputs is of.
+  /// The operation of a side beyond the inputs.
   uint32_t operation_of(size_t side) const { return cuts_[side - tape_.inputs.size()]; }
-  /// How an operation depends on a side: directly, or only through other sides.
+  /// How an operation depends on a side; indirect: only through other sides.
   enum class Dependence : uint8_t { none, indirect, direct };
   /// By side.
   std::vector<Dependence> dependence(uint32_t operation) const;
 
-  /// From here on what reads the operation is judged as if it always gave a finite number.
+  /// From now on, operations that read this one are judged as if it always gave a finite number.
   void accept(uint32_t operation) { accepted_[operation] = true; }
   bool is_accepted(uint32_t operation) const { return accepted_[operation]; }
 
-  /// Walks operations up to `last`. False if the box holds no input at all. Needs lanes::FpGuard.
+  /// Evaluates the operations up to `last`. False if the box contains no input at all. Needs lanes::FpGuard.
   bool walk(const Box& box, uint32_t last);
   bool walk(const Box& box) { return walk(box, static_cast<uint32_t>(tape_.operations.size() - 1)); }
-  /// What the last walk did not prove; of operations that read each other's results only the first, and those that
-  /// read what accepted ones give.
+  /// What the last walk did not prove: the first of each chain of operations, and those that read accepted ones.
   const std::vector<Finding>& findings() const { return findings_; }
   const Bound& bound(uint32_t operation) const { return bounds_[operation]; }
   bool is_reached(uint32_t operation) const { return states_[operation] != State::dead; }
-  /// The selects of the last walk whose condition exact arithmetic may decide otherwise.
+  /// The selects of the last walk whose condition may be different in exact arithmetic.
   const std::vector<uint32_t>& undecided() const { return undecided_; }
-  /// Whether errors are those against exact arithmetic that takes the sides of selects that floats take. Else it takes
-  /// its own.
+  /// Whether errors are relative to exact arithmetic that takes the same sides of selects as floats do, or to exact
+  /// arithmetic that decides for itself.
   void follow_branches(bool follow) { follows_branches_ = follow; }
-  uint64_t steps() const { return steps_; }  ///< operations walked so far
+  uint64_t steps() const { return steps_; }  ///< operations evaluated so far
 
  private:
   /// value >= factor * base - slack, where base >= 0

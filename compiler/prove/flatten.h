@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function as scalar operations, each made once, in the order of the module. What follows puts them in the order
-// of a tape.
+// A function as scalar operations, each made once, in the order of the module; put_in_order sorts them for the tape.
 #pragma once
 
 #include <array>
@@ -13,17 +12,17 @@ namespace isoshade::prove {
 
 using Words = std::vector<uint32_t>;  ///< of a value: one operation a component
 
-/// Operations by what they compute, and what is known of vectors.
+/// Operations, found by what they compute, and facts about vectors.
 class Pool {
  public:
   explicit Pool(Tape& tape) : tape_(tape) {}
 
-  /// The operation, made if there is none like it.
+  /// An equal operation if there is one, or else a new one.
   uint32_t make(Operation operation, std::span<const uint32_t> operands);
   uint32_t make_op(ir::Opcode op, std::initializer_list<uint32_t> operands, ir::Scalar scalar,
                    uint32_t place);
   uint32_t constant(ir::Scalar scalar, uint32_t bits);
-  /// The operation if it was made, or none.
+  /// An equal operation, or none.
   uint32_t find(const Operation& operation, std::span<const uint32_t> operands) const;
   bool too_long() const { return tape_.operations.size() > most_operations; }
 
@@ -39,7 +38,7 @@ class Pool {
   };
   std::set<Words> units;             ///< of length 1
   std::set<Words> at_most_units;     ///< of length 1, or zeros
-  std::map<Words, Product> crosses;  ///< which vectors a cross product is of
+  std::map<Words, Product> crosses;  ///< cross products and their factors
 
  private:
   static std::vector<uint32_t> key(const Operation& operation, std::span<const uint32_t> operands);
@@ -48,12 +47,12 @@ class Pool {
   std::map<std::vector<uint32_t>, uint32_t> made_;
 };
 
-/// Inlines the function into the pool's tape; its outputs are set. False if it became too long.
+/// Inlines the function into the pool's tape and sets the outputs. False if the tape became too long.
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
              const std::function<std::vector<Given>(uint32_t)>& outside);
 
-/// Reorders the operations so that what decides a select stands before what only one of its sides needs; adds
-/// guards, what they say of values, and facts.
+/// Reorders the operations so that a select's condition comes before what only one of its sides needs; adds guards, the
+/// narrower ranges that they imply, and facts.
 void put_in_order(Pool& pool);
 
 }  // namespace isoshade::prove

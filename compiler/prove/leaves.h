@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boxes of inputs that a proof ends with, and what they say of results: ranges and errors.
+// The boxes of inputs with which a proof ends, and the ranges and errors of results over them.
 #pragma once
 
 #include <vector>
@@ -14,20 +14,20 @@ class Leaves {
   Leaves(const Tape& tape, Evaluator& evaluator, Cutter& cutter)
       : tape_(tape), evaluator_(evaluator), cutter_(cutter) {}
 
-  /// Adds a box, as the last walk, of this box, left it.
+  /// Adds a box, which must be the one of the last walk.
   void add(const Box& box) { leaves_.push_back(leaf(box)); }
   void clear() { leaves_.clear(); }
   bool empty() const { return leaves_.empty(); }
 
-  /// Cuts the boxes with the largest errors until so many operations have been walked.
+  /// Cuts the boxes with the largest errors until `work` operations have been evaluated.
   void refine(uint64_t work);
-  /// Walks all boxes again.
+  /// Evaluates all boxes again.
   void walk();
 
   std::vector<Bound> bounds() const;     ///< of the outputs, over all boxes
   std::vector<uint32_t> tipped() const;  ///< selects whose condition rounding may tip
-  /// The first operation that the output depends on and whose error is unknown, though those of its operands are known;
-  /// or none.
+  /// The first operation on which the output depends whose error is unknown although its operands' errors are known; or
+  /// none.
   uint32_t place_of_loss(size_t output);
 
  private:

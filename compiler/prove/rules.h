@@ -10,10 +10,10 @@
 
 namespace isoshade::prove {
 
-/// What a row errs by.
+/// The error of a row.
 struct Accuracy {
   double error;   ///< relative to its result
-  bool promised;  ///< the arguments lie within the domain that its table states
+  bool promised;  ///< the arguments lie within the domain that functions.def states
 };
 
 struct Rule {
@@ -23,14 +23,14 @@ struct Rule {
   Outcome (*bound)(std::span<const Bound> arguments, uint32_t component, const Accuracy& accuracy);
 };
 
-/// The same, with what the tables say of the row's body in a tier. Where a fast body promises nothing, it is a breach.
+/// The same, with the error of the row's body in a tier. Arguments for which a fast body promises nothing are a breach.
 Outcome bound_of(const Rule& rule, std::span<const Bound> arguments, uint32_t component,
                  functions::Tier tier);
 
-/// Null where the body tells all that there is to know.
+/// Null if the function's body is followed instead.
 const Rule* find_rule(std::string_view row);
 
-/// Whether a row's vectors are worked on component by component.
+/// Whether a row works on vectors component by component.
 bool is_componentwise(std::string_view row);
 
 }  // namespace isoshade::prove

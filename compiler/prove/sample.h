@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tape run on floats, and the search for inputs on which it breaks.
+// Runs a tape on floats, and searches for inputs for which it does not give finite numbers.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace isoshade::prove {
 
-/// Runs a tape as the interpreter runs its function: the same floats.
+/// Runs a tape, with the same floats as the interpreter running its function.
 class TapeRunner {
  public:
   /// The tape must outlive it.
@@ -20,15 +20,15 @@ class TapeRunner {
     uint32_t operation = none;
     Breach breach = Breach::none;
   };
-  /// Runs on the words of the inputs; returns the operations that are looked at and give no finite number, without
-  /// those that read what another of them gave. Needs lanes::FpGuard. Sums over lights are of one light.
+  /// Runs on the words of the inputs; returns the operations that are evaluated and give no finite number, without
+  /// those that read another of them. Sums over lights have one light. Needs lanes::FpGuard.
   const std::vector<Broken>& run(std::span<const uint32_t> inputs);
   uint32_t word(uint32_t operation) const { return words_[operation]; }
 
  private:
   void compute(const Operation& operation, uint32_t index, std::span<const uint32_t> inputs);
   Breach breach_of(const Operation& operation, uint32_t index) const;
-  /// Whether what the operation gives comes from an operation that broke.
+  /// Whether the operation reads, directly or through others, one that broke.
   bool follows_breach(const Operation& operation) const;
   uint32_t row(const Operation& operation);
   uint32_t dot(const Operation& operation) const;
@@ -47,12 +47,12 @@ struct Counterexample {
   TapeRunner::Broken broken;
 };
 
-/// Inputs of a box, as words: ends, middles, equal ones, vectors along each other. The same on every run. Unit vectors
-/// are of any direction.
+/// Inputs of a box, as words: ends, middles, equal numbers, parallel vectors; unit vectors of any direction. The same
+/// on every run.
 std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int count);
 
-/// Tries so many of them; one counterexample for each operation that breaks, of at most so many. `allowed`: of the inputs
-/// that were run last, whether they count.
+/// Tries `tries` of them; gives one counterexample for each operation that breaks, at most `most`. `allowed`: whether
+/// the inputs that were run last count.
 std::vector<Counterexample> search(TapeRunner& runner, const Tape& tape, const Box& box, int tries, size_t most,
                                    const std::function<bool(const std::vector<uint32_t>&)>& allowed);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function of a module as one list of scalar operations, calls inlined, in an order in which it can be walked
-// over and over with other inputs: by floats, or by bounds.
+// A function of a module as one list of scalar operations with all calls inlined, in an order in which it can be
+// evaluated again and again for other inputs: on floats, or on bounds.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace isoshade::prove {
 
 inline constexpr uint32_t none = ir::none;
-/// Functions that would become more operations than this have no tape.
+/// A function that needs more operations than this has no tape.
 inline constexpr size_t most_operations = 200'000;
 
 enum class Kind : uint8_t {
@@ -28,11 +28,11 @@ enum class Kind : uint8_t {
   greatest,  ///< and max
   dot,       ///< of the first half of its operands with the second
   row,       ///< one component of another function of functions.def
-  sum,       ///< of its operand over at most `index` turns; bits: 1 where their number is not free
-  asked,  ///< its first operand, an input: what is there where a host was asked with the others; index: an Answer
-  unknown,  ///< anything
-  narrow,   ///< its first operand, of which `op` with the second holds here
-  enter,    ///< index: in Tape::guards; from here on it is known whether it holds
+  sum,       ///< of its operand over at most `index` turns; bits: 1 where the number of turns is fixed
+  asked,     ///< its first operand, an input: a host's answer to a question, the other operands; index: an Answer
+  unknown,   ///< anything
+  narrow,    ///< its first operand, for which the comparison `op` with the second holds here
+  enter,     ///< index: in Tape::guards; from here on it is known whether that guard holds
 };
 
 struct Operation {
@@ -44,15 +44,15 @@ struct Operation {
   uint32_t bits = 0;              ///< of a constant
   uint32_t first = 0, count = 0;  ///< in Tape::operands
   uint32_t place = 0;             ///< in Tape::places
-  uint32_t guard = 0;             ///< in Tape::guards: it is only looked at where this holds
+  uint32_t guard = 0;             ///< in Tape::guards: the operation is only evaluated where this holds
 };
 
-/// How far what a host answers may lie from what it would have answered to the exact question.
+/// How far a host's answer may lie from its answer to the exact question.
 enum class Answer : uint8_t {
-  same,      ///< asked exactly, it is exact; else it may be any other
-  other,     ///< it may be any other, however it is asked: the nearest texel, that rounding moves to the next
-  filtered,  ///< in proportion between texels; asked with a texture and its two coordinates
-  quotient,  ///< asked exactly, it errs by a few roundings; else it may be any other
+  same,      ///< exact if the question is exact; otherwise any other answer is possible
+  other,     ///< any other answer is possible: rounding may move the nearest texel to the next one
+  filtered,  ///< interpolated between texels; the question is a texture and its two coordinates
+  quotient,  ///< off by a few roundings if the question is exact; otherwise any other answer is possible
   unknown,   ///< nothing is known of its error
 };
 
@@ -68,27 +68,27 @@ struct Side {
   double lo = 0, hi = 0;
 };
 
-/// A number from outside.
+/// A scalar input.
 struct Input {
   std::string name;  ///< "f0.x", "surface.normal.x", "m.0"
   ir::Scalar scalar = ir::Scalar::floating;
   double lo = 0, hi = 0;
-  uint32_t vector = none;  ///< the number of the unit vector that it is a component of
-  double quotient = 0;     ///< as of Given
+  uint32_t vector = none;  ///< the unit vector that it is a component of: the index of its first input
+  double quotient = 0;     ///< see Given
 };
 
-/// What is known of a value from outside, in each component.
+/// What is assumed of an input, in each component.
 struct Given {
   std::string name;
   double lo = 0, hi = 0;
   bool unit = false;  ///< a vector of length 1
-  int element = -1;   ///< of a matrix's column: the number of its first element in the matrix
-  double quotient =
-      0;  ///< not 0: what is divided by a sum that begins with it is from outside too, and from 0 to this
-  Answer answer = Answer::same;  ///< of what a host is asked for
+  int element = -1;   ///< of a column of a matrix: the index of its first element in the matrix
+  /// Not 0: a quotient by a sum that begins with this input is an input, too, between 0 and this.
+  double quotient = 0;
+  Answer answer = Answer::same;  ///< of a result that a host is asked for
 };
 
-/// A truth under which operations are looked at. 0 always holds.
+/// A condition under which operations are evaluated. Guard 0 always holds.
 struct Guard {
   uint32_t parent = 0;
   uint32_t condition = none;  ///< an operation
@@ -102,7 +102,7 @@ struct Row {
   uint32_t words = 1;  ///< of its result
 };
 
-/// What is known of an operation beside what its operands say. Other operations stand before it.
+/// What is known of an operation beyond its operands. The operations that it names come before it.
 struct Fact {
   enum class Kind : uint8_t {
     dot,         ///< |a . b| <= |a| |b|: first, second are a . a and b . b, or none
@@ -116,23 +116,23 @@ struct Fact {
   uint32_t left = none, right = none;  ///< of a dot: a and b in Tape::vectors
 };
 
-/// A vector that a scalar product is of, and how it was made: its length says more of its error than its components.
+/// A factor of a scalar product and how it was made: its length tells more of the product's error than its components.
 struct VectorShape {
   enum class Kind : uint8_t {
-    given,  ///< in some other way
+    given,  ///< by anything else
     sum,    ///< left + right or left - right
     cross,  ///< left x right
   };
   Kind kind{};
   uint32_t left = none, right = none;  ///< in Tape::vectors
   std::vector<uint32_t> components;    ///< operations
-  uint32_t square = none;              ///< its scalar product with itself, if that stands before
-  double length = HUGE_VAL;            ///< what its length is at most
+  uint32_t square = none;              ///< its scalar product with itself, if that comes before
+  double length = HUGE_VAL;            ///< an upper bound of its length
 };
 
 struct Tape {
-  ir::Module module;                                 ///< with bodies for all calls to functions.def
-  functions::Tier tier = functions::Tier::standard;  ///< whose bodies they are
+  ir::Module module;                                 ///< with bodies for all calls of library functions
+  functions::Tier tier = functions::Tier::standard;  ///< of these bodies
   std::vector<Operation> operations;
   std::vector<uint32_t> operands;  ///< operations
   std::vector<Input> inputs;
@@ -140,7 +140,7 @@ struct Tape {
   std::vector<Row> rows;
   std::vector<IrPlace> places{{}};
   std::unordered_map<uint32_t, std::vector<Fact>> facts;  ///< of operations
-  std::vector<VectorShape> vectors;                       ///< of facts; what one is made of stands before it
+  std::vector<VectorShape> vectors;                       ///< of facts; the vectors that one is made of come before it
   struct Output {
     std::string name;  ///< "out.x"
     uint32_t operation = none;
@@ -152,12 +152,12 @@ struct Tape {
   }
 };
 
-/// How far the length of a unit vector is from 1 at most.
+/// The length of a unit vector differs from 1 by at most this.
 inline constexpr double unit_tolerance = 0x1p-21;
 
-/// The tape of a function. `given`: of its parameters, one each. `outside`: what a function of the module returns that the host
-/// answers, one a result; nothing of one whose body tells. Of results and words that nothing is given of nothing is assumed. Nothing if it
-/// would be too long.
+/// The tape of a function; nothing if it would be too long. `given`: what is assumed of each of its parameters.
+/// `outside`: what is assumed of each result of a function of the module that the host answers; nothing for one whose
+/// body is to be followed. Nothing is assumed of other results.
 std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
                               const std::function<std::vector<Given>(uint32_t)>& outside,
                               functions::Tier tier = functions::Tier::standard);
