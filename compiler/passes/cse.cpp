@@ -27,7 +27,7 @@ class Merger {
     std::erase_if(f_.blocks[id].instructions,
                   [this](InstructionId instruction) { return replaced(instruction); });
     for (ValueId& yield : f_.blocks[id].yields) yield = same_as_[yield];
-    // What this block computes is not there outside it. Chains lose their newest element first.
+    // Values of this block are not visible outside it. Chains lose their newest element first.
     for (; scope_.size() > outer; scope_.pop_back()) heads_[bucket(scope_.back())] = next_[scope_.back()];
   }
 

@@ -16,10 +16,10 @@ namespace {
 
 using namespace ir;
 
-/// What has no cost in emitted text and is made again wherever it is read.
+/// Whether an instruction costs nothing in emitted text, so that each part may have its own copy.
 bool is_constant(Opcode op) { return op == Opcode::constant || op == Opcode::hidden_zero; }
 
-/// Copies instructions of one function into another, which reads what it lacks by parameters.
+/// Copies instructions of one function into another, which gets the values that it lacks as parameters.
 class Part {
  public:
   Part(const Function& from, const std::vector<InstructionId>& made_by, const std::vector<bool>& uniform)
@@ -160,20 +160,20 @@ class Cutter {
     if (is_constant(made.op)) return Kind::constant;
     uint32_t uniform = 0;
     for (uint32_t i = 0; i < made.result_count; ++i) uniform += uniform_[made.first_result + i] ? 1 : 0;
-    // What is uniform must read nothing that varies: it goes before. Its blocks may, in what is of no use.
+    // Uniform values read no varying ones, so they come first. Their blocks may read some, in unused results.
     const bool mixed = uniform != 0 && (uniform != made.result_count || made.blocks[0] != none);
     if (mixed || made.operand_count > 2 * longest_ || weight(id) > longest_) return Kind::fixed;
     return uniform != 0 ? Kind::uniform : Kind::varying;
   }
 
   void cut(BlockId block) {
-    // Cutting adds instructions: nothing of the function is held by reference.
+    // Cutting adds instructions, so hold no reference into the function.
     for (const InstructionId id : std::vector(f().blocks[block].instructions)) {
       const auto inner_blocks = f().instructions[id].blocks;
       for (const BlockId inner : inner_blocks)
         if (inner != none) cut(inner);
     }
-    // Calls of parts are instructions too; where they pass less than they compute, they are fewer each time.
+    // Calls of parts are instructions, too; each round leaves fewer, if parts pass less than they compute.
     for (size_t before = weight_of_block(block); before > longest_;) {
       cut_once(block);
       const size_t after = weight_of_block(block);
@@ -223,7 +223,7 @@ class Cutter {
       run.instructions.push_back(id);
       run.weight += weight(id);
       if (run.weight < longest_) continue;
-      close(0);  // what varies may read what is uniform, never the other way round
+      close(0);  // varying values may read uniform ones, never the reverse
       if (which == 1) close(1);
     }
     close(0);

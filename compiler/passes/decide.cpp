@@ -47,7 +47,7 @@ class Decider {
     edit_.replace(made.first_result, *with);
   }
 
-  /// Whether something holds of every component of the result, and of those of the operands that it has.
+  /// Whether something holds for every component.
   template <class Holds>
   bool each(const Instruction& made, Holds holds) const {
     for (uint32_t c = 0; c < f_.type(made.first_result).width; ++c)
@@ -112,13 +112,13 @@ class Decider {
     if (above && beneath && may_replace(made, x)) return x;
     if (!is_scalar(made)) return std::nullopt;
     if (above) return edit_.make(Opcode::select, {edit_.make(Opcode::flt, {high, x}), high, x});
-    // What low is raised to is not more than high either.
+    // max(x, low) is at most high.
     if (beneath && at_most(made, low, high))
       return edit_.make(Opcode::select, {edit_.make(Opcode::flt, {x, low}), low, x});
     return std::nullopt;
   }
 
-  // x > 0 ? (x < 1 ? x : 1) : 0, of which a zero of either sign is +0.
+  // saturate(x) is x > 0 ? (x < 1 ? x : 1) : 0; it makes either zero +0.
   Result saturated(const Instruction& made, ValueId x) {
     const auto all = [&](auto holds) {
       return each(made, [&](uint32_t c) { return of(x, c) && holds(of(x, c)); });
@@ -138,7 +138,7 @@ class Decider {
   RangeFrame frame_;
 };
 
-/// Whether its parameters are known to be of their ranges, whoever calls.
+/// Whether a function declares ranges, which its parameters have whoever calls it.
 bool declares_ranges(const Function& f) {
   return std::ranges::any_of(f.parameters, [](const Parameter& p) { return p.least && p.most; });
 }
@@ -157,7 +157,7 @@ void decide(Module& module, functions::Tier tier) {
   for (uint32_t f = 0; f < module.functions.size(); ++f)
     if (declares_ranges(module.functions[f])) walker.walk(f, any_arguments(module.functions[f]));
   if (!walker.finished()) return;
-  // Who else calls could give anything; lowering makes no such calls.
+  // Other callers could pass anything; lowering makes no such calls.
   for (uint32_t f = 0; f < module.functions.size(); ++f) {
     if (!walker.arguments_of(f).empty()) continue;
     for (const Instruction& made : module.functions[f].instructions)

@@ -28,7 +28,7 @@ class Differentiation {
  public:
   explicit Differentiation(Module& module) : module_(module) {}
 
-  /// Callees first: what a function asks of its parameters is settled before its callers are rewritten.
+  /// Callees first: the derivatives that a function needs are settled before its callers are rewritten.
   void run() {
     std::vector<uint32_t> all(module_.functions.size());
     std::iota(all.begin(), all.end(), 0);
@@ -39,7 +39,7 @@ class Differentiation {
   }
 
  private:
-  /// A parameter that tells what another changes by.
+  /// A parameter that holds another parameter's derivative.
   struct Gradient {
     uint32_t of;  ///< a parameter
     size_t way;
@@ -54,7 +54,7 @@ class Differentiation {
     });
   }
 
-  /// The function that tells what another's results change by of themselves, or none.
+  /// The function that gives the derivatives of another's results where these start, or none.
   uint32_t source_of(uint32_t function, const std::string& suffix) const {
     const Function& f = module_.functions[function];
     return f.document.empty() && f.library.empty() ? module_.find(f.name + suffix) : none;
@@ -71,7 +71,7 @@ class Differentiation {
 
   void rewrite(uint32_t function);
   std::vector<Way> ways_of(const Function& function);
-  /// Appends the parameters for what a function asks of its own.
+  /// Appends parameters for the derivatives that a function needs.
   std::vector<Gradient> add_gradients(Function& declared, const Function& from, const std::vector<Way>& ways);
   Values call_with_gradients(Tangents& tangents, Builder& b, const Function& from,
                              const std::vector<Way>& ways, const Instruction& made, Values arguments);
@@ -96,8 +96,8 @@ std::string Differentiation::free_name(const std::string& wanted) const {
   return name;
 }
 
-/// "max_change", or "max_change_of_a" where only that argument changes, "light_at_change_to_color" where only that
-/// result is asked for. Not numbers: they would tell of the order in which lowering made calls.
+/// "max_change", or "max_change_of_a" if only that argument changes, "light_at_change_to_color" if only that result is
+/// needed. No numbers, which would depend on the order in which lowering made calls.
 std::string change_name(const Function& f, const Marks& parameters, const Marks& results) {
   std::string of, to;
   bool all = true;
@@ -111,8 +111,9 @@ std::string change_name(const Function& f, const Marks& parameters, const Marks&
   return f.name + "_change" + (all ? "" : "_of" + of) + (all_results ? "" : "_to" + to);
 }
 
-/// The body of a library function is made for this alone: its declaration stays one. It is the default body in every
-/// tier, since steps that a cheaper one leaves out may be what carries the slope; what it calls follows the tier.
+/// The body of a library function is built only for this, and its declaration stays one. It is the default body in
+/// every tier, because steps that a cheaper body leaves out may carry the slope; the functions that it calls follow
+/// the tier.
 Function Differentiation::with_body(uint32_t function) {
   const Function declaration = module_.functions[function];
   if (!declaration.is_declaration()) return declaration;

@@ -21,12 +21,12 @@ namespace {
 
 using namespace ir;
 
-// What a fold of a whole module may spend on calls, so that no document makes it hang.
+// The budget for evaluating calls while a whole module is folded, so that no document makes it hang.
 constexpr uint64_t step_budget = 20'000'000;
 constexpr uint64_t steps_per_call = 1'000'000;
 
-// Evaluates calls on constants: in the module itself, since no callee calls the function that is being folded, or,
-// where bodies must be made first, in a copy that has them all.
+// Evaluates calls on constants: in the module itself, because no callee calls the function that is being folded, or, if
+// bodies must be built first, in a copy that has all of them.
 class CallEvaluator {
  public:
   CallEvaluator(const Module& module, std::optional<functions::Tier> tier) : module_(module), tier_(tier) {}
@@ -119,7 +119,7 @@ class Folder {
       edit_.keep(id);
   }
 
-  // How operand `i` is chosen among two constants, null if it is not.
+  // The select that chooses operand `i` among two constants; null if there is none.
   const Instruction* choice(const Instruction& made, uint32_t i) const {
     const Instruction* select = edit_.definition(edit_.operand(made, i), Opcode::select);
     return select != nullptr && known_vector(edit_.operand(*select, 1)) &&
@@ -134,7 +134,7 @@ class Folder {
     return true;
   }
 
-  // The result if every operand is what `operand(i)` says, all components known.
+  // The result if the operands are `operand(i)` and all of their components are known.
   template <class Operand>
   std::optional<std::array<uint32_t, 4>> result_of(const Instruction& made, Operand operand) const {
     const OpInfo& row = info(made.op);
@@ -163,7 +163,8 @@ class Folder {
     return words ? std::optional(constant(made, *words)) : std::nullopt;
   }
 
-  // An op on constants chosen by one condition: the results, chosen. Drivers do so too, but do not flush.
+  // An op on constants that one condition chooses becomes a choice of results. Drivers do the same, but without
+  // flushing.
   std::optional<ValueId> chosen(const Instruction& made) {
     if (made.op == Opcode::select) return std::nullopt;
     ValueId condition = none;
@@ -192,7 +193,7 @@ class Folder {
     return identity(edit_, made).value_or(value);
   }
 
-  // The vector all of whose components, in order, this constructs.
+  // The vector that this construct rebuilds from all of its components, in order.
   std::optional<ValueId> whole_vector(const Instruction& made) {
     std::optional<ValueId> vector;
     for (uint32_t c = 0; c < made.operand_count; ++c) {
@@ -248,7 +249,7 @@ class Folder {
     }
   }
 
-  // A known value of a block inside, made again here.
+  // A copy, in this block, of a known value of an inner block.
   ValueId copy(ValueId value) {
     std::array<uint32_t, 4> words{};
     const Type type = f_.type(value);

@@ -25,7 +25,7 @@ constexpr uint32_t large_bits = 0x5e800000;  // 2^62
 
 bool is_zero(Bits bits) { return bits && (*bits & ~sign_bit) == 0; }
 
-/// Whether a product with it may have to be flushed; also infinities and NaN.
+/// Whether a product with this may have to be flushed; true for infinities and NaN, too.
 bool is_extreme(Bits bits) {
   return bits && !is_zero(bits) && ((*bits & ~sign_bit) < small_bits || (*bits & ~sign_bit) > large_bits);
 }
@@ -47,7 +47,7 @@ class Hider {
   }
 
  private:
-  /// What a driver makes of the values that a block yields.
+  /// What a driver can do with the values that a block yields.
   enum class Yields : uint8_t { only_returned, chosen, known };
 
   void visit(InstructionId id) {
@@ -104,7 +104,7 @@ class Hider {
     }
   }
 
-  /// Whether a driver that inlines calls may know the int, or take the float for an int's.
+  /// Whether a driver that inlines calls may know the int, or see that the float was an int.
   bool is_open(ValueId value) const { return value < open_.size() && open_[value]; }
 
   void mark_open(const Instruction& made) {
@@ -133,7 +133,7 @@ class Hider {
     const auto open = [&](ValueId value) { return is_open(value); };
     if (op == Opcode::itof) return true;
     if (info(op).rule == Rule::integer) return std::ranges::all_of(operands, open);
-    return is_exact(op) && std::ranges::any_of(operands, open);  // an int's float stays one
+    return is_exact(op) && std::ranges::any_of(operands, open);  // a float that was an int still is one
   }
 
   void arithmetic(InstructionId id, const Instruction& made) {
@@ -180,7 +180,7 @@ class Hider {
     return width == 1 ? components[0] : edit_.make(Opcode::construct, std::span(components).first(width));
   }
 
-  // No float is denormal: what is above 0 is at least the smallest normal number.
+  // No float is denormal, so numbers above 0 are at least the smallest normal one.
   std::optional<ValueId> compare_with_zero(const Instruction& made) {
     if (!is_primitive(made.op) || info(made.op).rule != Rule::compare) return std::nullopt;
     const bool zero_first = is_zero(edit_.known(edit_.operand(made, 0), 0));
@@ -200,7 +200,7 @@ class Hider {
   }
 
   void arguments(const Instruction& made) {
-    // Without arithmetic, functions of the library choose among their arguments.
+    // Library functions without arithmetic choose among their arguments.
     const bool chooses = !module_.functions[made.imm].library.empty();
     for_operands(made, 0, [&](ValueId v) {
       if (!f_.type(v).is_float()) return v;
@@ -239,8 +239,8 @@ class Hider {
     }
   }
 
-  /// A value that is chosen at run time: only its zeros and extremes matter. Ints: drivers take a choice among
-  /// the bits of 1 and -0 for a bool made float, and lose the zero's sign.
+  /// A value that is chosen at run time. Of floats only zeros and extremes must be hidden; of ints the bits of 1 and
+  /// -1: drivers take a choice among the bits of 1 and -0 for a bool converted to float, and lose the zero's sign.
   ValueId chosen(ValueId value) {
     if (f_.type(value).width != 1 || f_.type(value) == bool_type) return value;
     const Bits word = edit_.known(value, 0);
@@ -315,7 +315,7 @@ class Hider {
   Yields yields_;
 };
 
-// By function: whether a caller may compute with what it returns.
+// By function: whether a caller may compute with its results.
 std::vector<bool> find_computed(const Module& module, std::span<const uint32_t> entries) {
   std::vector<bool> computed(module.functions.size(), true);
   const auto order = callees_first(module, entries);

@@ -87,7 +87,7 @@ class Liveness {
   std::vector<ValueId> work_;
 };
 
-// What it needs while it works on a function is kept for the next one: most functions are small.
+// Its buffers are reused for the next function: most functions are small.
 class Renumberer {
  public:
   void run(Function& f) {

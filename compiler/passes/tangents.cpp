@@ -124,7 +124,7 @@ void Tangents::branch(const Instruction& made) {
   }
 }
 
-// A change is carried where that of the carried value is needed in the body or after the loop.
+// A derivative is carried if that of the carried value is needed in the body or after the loop.
 void Tangents::loop(const Instruction& made) {
   const auto operands = from_.operands_of(made);
   const Block& body = from_.blocks[made.blocks[0]];

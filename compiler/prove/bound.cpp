@@ -12,28 +12,28 @@ using ir::RangeRule;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// More than the exact value of a few sums and products of positive doubles that gave `x`.
+/// An upper bound of the exact value, where `x` was computed by a few sums and products of positive doubles.
 double up(double x) { return x * (1 + 0x1p-44); }
-/// 0 * infinity is 0 here: an error that is unknown does no harm where it is multiplied by nothing.
+/// A product of errors, in which 0 * infinity is 0: an unknown error does no harm if its factor is 0.
 double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-/// Of what ops compute whose rule always tells.
+/// The range of the result, for rules that give one for all operands.
 Bound computed(ir::RangeRule rule, const Bound& a, const Bound& b, bool same = false) {
   const Ends ends = *ends_of(rule, a.ends(), b.ends(), same);
   return {ends.lo, ends.hi};
 }
 
-/// What is no more, and no less, than the exact value of a few operations on doubles that gave `x`.
+/// Lower and upper bounds of the exact value, where `x` was computed by a few operations on doubles.
 double outward_down(double x) { return x - std::abs(x) * 0x1p-44 - 1e-300; }
 double outward_up(double x) { return -outward_down(-x); }
 
-/// The same of what is monotone in both operands.
+/// place_exact for an operation that is monotone in both operands.
 template <class Operation>
 void place_exact_corners(Bound& r, const Bound& a, const Bound& b, Operation operation) {
   const double al = a.exact_lo(), ah = a.exact_hi(), bl = b.exact_lo(), bh = b.exact_hi();
   const std::initializer_list<double> ends = {operation(al, bl), operation(al, bh), operation(ah, bl),
                                               operation(ah, bh)};
-  // Where an end is unknown, infinity by infinity may be anything.
+  // If an end is unknown, infinity / infinity may be anything.
   if (std::ranges::any_of(ends, [](double end) { return std::isnan(end); })) return;
   const auto [lo, hi] = std::minmax(ends);
   place_exact(r, lo, hi);
@@ -50,10 +50,10 @@ bool difference_is_exact(const Bound& a, const Bound& b) {
   return a.magnitude() <= 2 * b_least && b.magnitude() <= 2 * a_least;
 }
 
-/// What flushing takes at most from results between these: nothing where none is 0.
+/// The largest error by flushing of results in this range: 0 if it does not contain 0.
 double flushed_from(const Bound& r) { return r.lo > 0 || r.hi < 0 ? 0 : smallest; }
 
-/// How much an exact value of the same sign as computed can have been moved to the other one's side.
+/// How far beyond 0 the exact value may lie, on the other side than the computed one.
 double beyond_zero(const Bound& a) {
   if (a.slack == 0 && a.relative < 1) return 0;
   return a.relative < 1 ? a.slack / (1 - a.relative) : infinity;
@@ -64,7 +64,7 @@ bool is_power_of_two(const Bound& a) {
   return a.is_point() && a.absolute == 0 && a.lo != 0 && std::abs(std::frexp(a.lo, &exponent)) == 0.5;
 }
 
-/// The product's error; `r`: where the computed product lies.
+/// Completes the bound of a product; `r` has the range of the computed product.
 Outcome product(const Bound& a, const Bound& b, Bound r, bool rounds) {
   place_exact_corners(r, a, b, times);
   const double u = rounds ? half_ulp : 0;
@@ -142,13 +142,13 @@ std::string_view words(Breach breach) {
 
 void place_exact(Bound& r, double least, double most) {
   if (std::isnan(least) || std::isnan(most)) return;
-  constexpr double far = 1e200;  // ends that lie beyond the doubles are not needed
+  constexpr double far = 1e200;  // keeps ends within the doubles
   r.exact_least = outward_down(std::min(least, far));
   r.exact_most = outward_up(std::max(most, -far));
 }
 
 Outcome settled(Bound r) {
-  // 0 times an unknown error.
+  // NaN comes from 0 times an unknown error.
   for (double* const error : {&r.absolute, &r.relative, &r.slack})
     if (std::isnan(*error)) *error = infinity;
   r.absolute = up(r.absolute);
@@ -186,7 +186,7 @@ Outcome approximate(double lo, double hi, double relative_error, double carried)
   hi = std::clamp(hi, -4 * largest, 4 * largest);
   const double margin = std::max(std::abs(lo), std::abs(hi)) * relative_error + smallest;
   Bound r{lo - std::abs(lo) * relative_error - smallest, hi + std::abs(hi) * relative_error + smallest};
-  if (lo >= 0) r.lo = std::max(r.lo, 0.0);  // no result here has another sign than the exact one
+  if (lo >= 0) r.lo = std::max(r.lo, 0.0);  // results have the sign of the exact ones
   if (hi <= 0) r.hi = std::min(r.hi, 0.0);
   r.absolute = margin + carried * (1 + relative_error);
   r.relative = carried == 0 ? relative_error : infinity;
@@ -200,14 +200,14 @@ Outcome add(const Bound& a, const Bound& b) {
       (a.magnitude() == 0 && a.absolute == 0) || (b.magnitude() == 0 && b.absolute == 0);
   const bool exact = nothing_added || difference_is_exact(a, negate(b));
   const double u = exact ? 0 : half_ulp;
-  // Sums are multiples of what the last bit of the lesser summand is worth.
+  // A sum is a multiple of the last bit of its smaller operand.
   const bool coarse = std::min(a.least_magnitude(), b.least_magnitude()) >= 0x1p-102;
   const double flush = nothing_added || coarse ? 0 : flushed_from(r);
   r.absolute = a.absolute + b.absolute + times(u, r.magnitude()) + flush;
   place_exact(r, a.exact_lo() + b.exact_lo(), a.exact_hi() + b.exact_hi());
   r.relative = r.slack = infinity;
   if (a.absolute == 0 && b.absolute == 0) {
-    r.relative = u;  // one rounding, of whatever sign
+    r.relative = u;  // one rounding, of either sign
     r.slack = flush;
   } else if (same_sign(a, b)) {
     const double e = std::max(a.relative, b.relative);
@@ -296,7 +296,7 @@ Bound floor_of(const Bound& a) {
 }
 
 Outcome sum_of(const Bound& a, double count) {
-  // Each of the additions rounds a sum of at most `count` times the largest.
+  // Each addition rounds a sum of at most `count` times the largest term.
   const double growth = 1 + 2 * count * half_ulp;
   Bound r{std::min(0.0, a.lo * count * growth), std::max(0.0, a.hi * count * growth)};
   r.absolute = count * (a.absolute + half_ulp * r.magnitude() + smallest);

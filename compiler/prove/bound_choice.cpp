@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of what is one value or another, and of what decides it: comparisons, booleans and integers.
+// Bounds of choices, comparisons, booleans and integers; the dispatch by range rule.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ Bound integer(const Ends& ends, double absolute) {
   return {ends.lo, ends.hi, absolute, absolute == 0 ? 0 : infinity, absolute};
 }
 
-/// What is known of a result by its type alone.
+/// The bound of a result of which only the type is known.
 Outcome any_of(ir::Rule rule, double differs) {
   switch (rule) {
     case ir::Rule::same:
@@ -33,7 +33,7 @@ Outcome any_of(ir::Rule rule, double differs) {
   return {anything(), Breach::unknown};
 }
 
-/// The bound of the result that is one or the other, both computed and exactly.
+/// The bound of a result that is one of two values, computed and exactly.
 Bound either(const Bound& a, const Bound& b, double lo, double hi) {
   Bound r{lo, hi, std::max(a.absolute, b.absolute), std::max(a.relative, b.relative),
           std::max(a.slack, b.slack)};
@@ -66,7 +66,7 @@ Bound select(const Bound& condition, const Bound& then, const Bound& other) {
     r.hi = condition.lo != 0 ? then.hi : other.hi;
   }
   if (condition.absolute == 0) return r;
-  // Exact arithmetic may have taken the other side.
+  // Exact arithmetic may take the other side.
   r.absolute += std::max(then.hi - other.lo, other.hi - then.lo);
   r.relative = r.slack = infinity;
   return settled(r).bound;
@@ -79,7 +79,7 @@ Bound compared(RangeRule comparison, const Bound& a, const Bound& b) {
   const bool exact = a.absolute == 0 && b.absolute == 0;
   const bool apart = surely_less(a, b) || surely_less(b, a);
   bool may_differ = !exact && !apart;
-  // Where it takes equal operands like greater ones, it differs only where exact arithmetic may find a < b.
+  // If it does not tell equal from greater, it differs only if exact arithmetic may find a < b; and the reverse.
   const auto alike = [&](RangeRule order) {
     return ir::accepts(comparison, RangeRule::equal) == ir::accepts(comparison, order);
   };
@@ -128,7 +128,7 @@ Outcome bound_of(ir::Opcode op, const Bound& a, const Bound& b, bool same) {
       const std::optional<Ends> whole = ends();
       return {whole ? integer(*whole, a.absolute + b.absolute) : any_integer()};
     }
-    // Known in floats; in exact arithmetic either operand may be the other.
+    // Known for floats; in exact arithmetic either operand may be different.
     case both:
     case either:
     case different: {

@@ -8,12 +8,12 @@
 namespace isoshade::prove {
 namespace {
 
-/// As many sides as this are tried for a cut.
+/// The number of sides that are tried for a cut.
 constexpr size_t most_trials = 12;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Where to cut: numbers matter by their magnitude, and near an end by their distance from it.
+/// Where to cut: on a logarithmic scale of the magnitude, or of the distance from a near end.
 double middle(double l, double h) {
   if (l < 0 && h > 0) return 0;
   if (l == 0) return h > 0x1p-100 ? h / 256 : h / 2;
@@ -42,8 +42,8 @@ bool Cutter::can_be_cut(size_t side, const Side& reached) const {
   return reached.hi - reached.lo > size * 0x1p-20 && size > smallest;
 }
 
-/// The sides that the operation depends on: first those that it depends on directly, as on a scalar product more than on
-/// the components; of these the widest first.
+/// The sides that the operation depends on: first those that it depends on directly, as on a scalar product more than
+/// on the components; of these the widest first.
 std::vector<Cutter::Candidate> Cutter::candidates(const Box& sides, uint32_t operation) {
   if (last_operation_ != operation) dependence_of_last_ = evaluator_.dependence(operation);
   last_operation_ = operation;

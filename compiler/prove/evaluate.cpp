@@ -19,11 +19,11 @@ Outcome constant_outcome(const Operation& operation) {
     return {exactly(static_cast<double>(static_cast<int32_t>(operation.bits)))};
   const auto value = static_cast<double>(std::bit_cast<float>(operation.bits));
   if (std::isnan(value)) return {anything(), Breach::unknown};
-  // Library functions compare with infinity: a number beyond the floats stands for it.
+  // Library functions compare with infinity; a number beyond the floats stands for it.
   return {exactly(std::clamp(value, -4 * largest, 4 * largest))};
 }
 
-/// The lesser of a constant and something that is at least another constant; or what smoothstep holds so.
+/// Whether it is min(constant, max(constant, x)), in any order of operands, or smoothstep, which clamps.
 bool is_clamp(const Tape& tape, const Operation& operation) {
   if (operation.kind == Kind::row) return tape.rows[operation.index].rule->row == "smoothstep";
   if (operation.kind != Kind::least) return false;
@@ -102,7 +102,7 @@ std::vector<Evaluator::Dependence> Evaluator::dependence(uint32_t operation) con
   return sides;
 }
 
-/// Whether vectors of length 1 exist in the box, where components are of unit vectors.
+/// Whether the box contains vectors of length 1, for the inputs that are components of unit vectors.
 bool Evaluator::units_possible(const Box& box) const {
   for (size_t i = 0; i < tape_.inputs.size();) {
     const uint32_t vector = tape_.inputs[i].vector;
@@ -178,14 +178,14 @@ bool Evaluator::walk(const Box& box, uint32_t last) {
   return true;
 }
 
-/// False if nothing is left.
+/// Intersects a bound with a range; false if that is empty.
 bool Evaluator::restrict(uint32_t index, double lo, double hi) {
   Bound& b = bounds_[index];
   if (lo > b.hi || hi < b.lo) return false;
   if (lo <= b.lo && hi >= b.hi) return true;
   b.lo = std::max(b.lo, lo);
   b.hi = std::min(b.hi, hi);
-  b = settled(b).bound;  // a relative error says more of smaller values
+  b = settled(b).bound;  // a relative error is a smaller absolute error of smaller values
   return true;
 }
 
@@ -199,13 +199,13 @@ void Evaluator::enter(const Operation& operation) {
   guard_dead_[operation.index] = condition.is_point() && (condition.lo != 0) != guard.truth;
 }
 
-/// False if the condition cannot hold.
+/// Intersects the operand with what the comparison implies; false if it cannot hold.
 bool Evaluator::narrow(const Operation& operation, uint32_t index) {
   const auto in = tape_.operands_of(operation);
   bounds_[index] = bounds_[in[0]];
   proportions_[index] = proportions_[in[0]];
   const Bound& by = bounds_[in[1]];
-  // Floats step by their last bit, and zero stands between the normal ones.
+  // The next float below; zero is next to the smallest normal floats.
   const auto below = [](double x) {
     if (x > -smallest && x <= smallest) return x > 0 ? 0.0 : -smallest;
     return static_cast<double>(std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::max()));
@@ -263,7 +263,7 @@ Outcome Evaluator::select_of(std::span<const uint32_t> in, uint32_t index) {
   const bool no_then = states_[in[1]] == State::dead, no_other = states_[in[2]] == State::dead;
   if (!no_then && !no_other) return {select(condition, then, other)};
   Bound taken = no_then ? other : then;
-  // Nobody computed what exact arithmetic may have taken instead.
+  // The bound of the side that exact arithmetic may take instead was not computed.
   if (condition.absolute != 0) {
     const Bound unknown = anything();
     taken = {taken.lo, taken.hi, unknown.absolute, unknown.relative, unknown.slack};
@@ -277,7 +277,7 @@ Outcome Evaluator::least_of(std::span<const uint32_t> in) const {
     const Operation& o = tape_.operations[operand];
     return o.kind == Kind::constant ? std::optional(bounds_[operand].lo) : std::nullopt;
   };
-  // Both results, the exact one too, lie between the two constants of a clamp.
+  // Both the computed and the exact result lie between the two constants of a clamp.
   for (const int i : {0, 1}) {
     const Operation& inner = tape_.operations[in[i]];
     const auto high = end(in[1 - i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of operations beside what their operands say: of scalar products, of what grows with something.
+// Facts about operations beyond the bounds of their operands: about scalar products, and proportions.
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +11,14 @@ namespace {
 
 using ir::Opcode;
 
-// Wide margins around a few roundings (2^-24 each) and what unit vectors are off.
+// Wide margins for a few roundings (2^-24 each) and the lengths of unit vectors.
 constexpr double rounded_up = 1 + 0x1p-19, rounded_down = 1 - 0x1p-18;
-/// More than what flushing takes from a sum of products.
+/// More than the error by flushing of a sum of products.
 constexpr double flushed = 0x1p-120;
 
 }  // namespace
 
-/// False if the facts contradict what the operands say: then no input leads here.
+/// False if the facts contradict the operands: then no input leads here.
 bool Evaluator::apply_facts(const Operation& operation, uint32_t index) {
   if (facts_of_[index] == nullptr) return true;
   bool possible = true;
@@ -42,7 +42,7 @@ bool Evaluator::apply_facts(const Operation& operation, uint32_t index) {
         break;
       }
       case Fact::Kind::rotation: {
-        // Rounding moves u x w by some 2^-22 |w|: where that matters, w is along u, and (u . w)^2 is |w|^2.
+        // Rounding moves u x w by about 2^-22 |w|: if that matters, w is parallel to u and (u . w)^2 is |w|^2.
         if (!usable(fact.first)) break;
         if (fact.third != none && bounds_[fact.third].least_magnitude() == 0) break;
         const double r = std::min(1.0, bounds_[fact.second].least_magnitude());
@@ -75,7 +75,7 @@ Evaluator::Lengths Evaluator::lengths_of(uint32_t index) const {
     lengths.error = std::min(lengths.error, a.error + b.error + half_ulp * lengths.vector + flushed);
     return lengths;
   }
-  // Each component rounds two products and their difference; what these are off by is at most 2 sqrt(2) |a| |b| / 2^24.
+  // Each component rounds two products and their difference: an error of at most 2 sqrt(2) |a| |b| / 2^24.
   const double carried = a.vector * b.error + a.error * b.vector + a.error * b.error;
   const double error = carried + 3 * half_ulp * a.vector * b.vector + flushed;
   if (std::isnan(error)) return lengths;
@@ -85,7 +85,7 @@ Evaluator::Lengths Evaluator::lengths_of(uint32_t index) const {
   return lengths;
 }
 
-/// |computed - exact| of a scalar product by what its vectors are off: Cauchy and Schwarz.
+/// The error of a scalar product by those of its vectors, by the inequality of Cauchy and Schwarz.
 void Evaluator::limit_error(uint32_t index, size_t terms, const Lengths& a, const Lengths& b) {
   if (!std::isfinite(a.error) || !std::isfinite(b.error)) return;
   const double carried = a.vector * b.error + a.error * b.vector + a.error * b.error;
@@ -97,10 +97,10 @@ void Evaluator::limit_error(uint32_t index, size_t terms, const Lengths& a, cons
   bound = settled(bound).bound;
 }
 
-/// Of a number from outside, where rounding may have moved what was asked for.
+/// The bound of a host's answer, where rounding may have moved the question.
 Outcome Evaluator::answer_of(Answer answer, std::span<const uint32_t> in) const {
   Bound r = bounds_[in[0]];
-  // The box may hold a part of the answers, but the exact one may be any of them.
+  // The box may contain only some of the answers, but the exact one may be any of them.
   const Input& all = tape_.inputs[tape_.operations[in[0]].index];
   const double range = std::max(r.hi - all.lo, all.hi - r.lo);
   double error = 0;
@@ -109,8 +109,8 @@ Outcome Evaluator::answer_of(Answer answer, std::span<const uint32_t> in) const 
     case Answer::same: r.absolute = error == 0 ? 0 : range; break;
     case Answer::other: r.absolute = range; break;
     case Answer::filtered: {
-      // A coordinate is brought into [0, 1], multiplied by the size, and half a texel is taken away: some roundings of at
-      // most the size. In proportion between texels nothing is steeper than their range.
+      // A coordinate is wrapped into [0, 1], multiplied by the size, and half a texel is subtracted: a few roundings of
+      // numbers up to the size. Between texels the slope is at most their range.
       const double texels =
           interface::max_size * (bounds_[in[2]].absolute + bounds_[in[3]].absolute + 4 * 4 * half_ulp);
       r.absolute = std::min(range, (all.hi - all.lo) * texels) + 8 * half_ulp * r.magnitude() + 4 * smallest;
@@ -152,7 +152,7 @@ void Evaluator::limit_square(uint32_t index) {
   }
 }
 
-/// x - x * y, where x >= 0 and y is in [0, 1]: neither rounded nor exactly is it negative or more than x.
+/// x - x * y, where x >= 0 and y is in [0, 1], lies in [0, x], both computed and exactly.
 void Evaluator::limit_remainder(uint32_t index) {
   const auto in = tape_.operands_of(tape_.operations[index]);
   const Operation& product = tape_.operations[in[1]];
@@ -172,7 +172,7 @@ void Evaluator::limit_remainder(uint32_t index) {
   }
 }
 
-/// (k - x) - c, where x = k - c: what rounding took from x, exactly 0.
+/// (k - x) - c, where x = k - c: the rounding error of x; exactly 0.
 void Evaluator::limit_residual(uint32_t index) {
   const auto in = tape_.operands_of(tape_.operations[index]);
   const auto difference = [&](uint32_t operation) {
@@ -183,7 +183,7 @@ void Evaluator::limit_residual(uint32_t index) {
   const auto back = difference(in[0]);
   const auto x = back.empty() ? back : difference(back[1]);
   if (x.empty() || x[0] != back[0] || x[1] != in[1]) return;
-  // Where nothing was taken from x, k - x is c, a float, and nothing is taken from that either.
+  // If x is exact, k - x is c, a float, and so exact, too.
   const double rounding = half_ulp * (bounds_[back[1]].magnitude() + bounds_[in[0]].magnitude());
   const double most = bounds_[back[1]].absolute == 0 ? 0 : rounding * rounded_up + flushed;
   restrict(index, -most, most);
@@ -232,9 +232,9 @@ void Evaluator::limit_quotient(uint32_t index, const Proportion& p) {
       if (factors[i] == p.base) multiple = bounds_[factors[1 - i]].magnitude();
   }
   if (multiple == 0) return;
-  // The float that is nearest to a quotient of at most 1 is at most 1.
+  // A quotient of at most 1 is rounded to at most 1.
   const bool exact = multiple == 1 && p.factor == 1 && p.slack == 0;
-  // base / b is largest where factor * base - slack is the least that b is anyway.
+  // base / b is largest where factor * base - slack is the lower bound of b.
   const double most =
       exact ? 1 : multiple * (least + p.slack) / (p.factor * least) * rounded_up + flushed / least;
   restrict(index, -most, most);

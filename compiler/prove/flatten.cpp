@@ -12,10 +12,10 @@ namespace {
 using ir::Opcode;
 using ir::Scalar;
 
-/// What derivatives are at most.
+/// The largest derivative that is assumed.
 constexpr double steepest = 1e6;
 
-/// Gives bodies to the declarations of functions.def, and only to those.
+/// Gives bodies to the declarations of library functions, and only to those.
 void give_bodies(ir::Module& module, functions::Tier tier) {
   for (uint32_t i = 0; i < module.functions.size(); ++i) {
     if (!module.functions[i].is_declaration() || module.functions[i].library.empty()) continue;
@@ -25,7 +25,7 @@ void give_bodies(ir::Module& module, functions::Tier tier) {
   }
 }
 
-/// As tables of `isoshade eval` name columns.
+/// The name of a component, as the tables of `isoshade eval` have it.
 std::string component_name(const Given& given, ir::Type type, uint32_t component) {
   if (given.element >= 0)
     return given.name + "." + std::to_string(given.element + static_cast<int>(component));
@@ -129,7 +129,7 @@ std::vector<Words> Flattener::call(uint32_t function, const std::vector<Words>& 
   return results;
 }
 
-/// What a host answers: a number from outside, whose error depends on that of what it is asked with.
+/// A host's answer: an input whose error depends on the error of the question.
 Words Flattener::ask(const Given& given, ir::Type type, const Words& question, uint32_t place) {
   const Words there = input(given, type);
   const bool exact = std::ranges::all_of(
@@ -152,7 +152,7 @@ Words Flattener::ask(const Given& given, ir::Type type, const Words& question, u
   return words;
 }
 
-/// Of numbers from outside they are from outside too; of others nobody computes them exactly.
+/// Derivatives of inputs are inputs, too; those of other values have an unknown error.
 Words Flattener::derivative(ir::Opcode op, ir::Type type, const Words& of, uint32_t place) {
   const bool exact = std::ranges::all_of(of, [&](uint32_t o) { return pool_[o].kind == Kind::input; });
   Given given{std::string(ir::name(op)) + " at " + pool_.tape().places[place].node, -steepest, steepest};
@@ -277,7 +277,7 @@ void Flattener::instruction(CallFrame& frame, const ir::Instruction& i) {
   }
 }
 
-/// What a quotient by this is at most, where it is known from outside; else 0.
+/// The upper bound of a quotient by this divisor, where that is an assumption; otherwise 0.
 double Flattener::quotient_by(uint32_t divisor) const {
   const Operation& sum = pool_[divisor];
   if (sum.kind != Kind::op || sum.op != Opcode::fadd) return 0;
@@ -345,7 +345,7 @@ void Flattener::loop(CallFrame& frame, const ir::Instruction& i, const std::vect
   }
 }
 
-/// How often a loop turns, if that is given.
+/// The number of turns of a loop, if it is known.
 std::optional<Side> Flattener::turns_of(uint32_t count) const {
   const Operation& o = pool_[count];
   const auto turns = static_cast<double>(static_cast<int32_t>(o.bits));
@@ -354,7 +354,7 @@ std::optional<Side> Flattener::turns_of(uint32_t count) const {
   return Side{pool_.tape().inputs[o.index].lo, pool_.tape().inputs[o.index].hi};
 }
 
-/// What a loop makes of `initial`: if each round adds to it, the sum.
+/// The result of a loop for a carried value: the sum, if each turn adds to it.
 uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, const Side& turns,
                            uint32_t place) {
   const Operation& added = pool_[next];
@@ -364,7 +364,7 @@ uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, co
   if (!adds || initial != pool_.constant(Scalar::floating, 0) || turns.hi > most)
     return unknown(pool_[carried].scalar, place);
   if (turns.hi <= 0) return initial;
-  // What is added reads nothing of former rounds: else the unknown of `carried` stays in it.
+  // If the term reads values of earlier turns, it contains the unknown of `carried`.
   const bool fixed = turns.lo == turns.hi;
   return pool_.make(
       {.kind = Kind::sum, .index = static_cast<uint32_t>(turns.hi), .bits = fixed ? 1u : 0u, .place = place},

@@ -9,9 +9,9 @@
 namespace isoshade::prove {
 namespace {
 
-/// Boxes into which inputs are cut at most to tell the error better, and how many sides they have together.
+/// The most boxes into which inputs are cut for a better bound of the error, and the most sides of all of them.
 constexpr size_t most_leaves = 20'000, most_sides = 4'000'000;
-/// Stands for an error that is not bounded, so that some are worse than others.
+/// Stands for an unbounded error, so that these can be compared.
 constexpr double unbounded = 1e30;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -101,7 +101,7 @@ void Leaves::refine(uint64_t until, double (*measure)(const Bound&)) {
     std::vector<Leaf> halves;
     for (const Box& half : cutter_.cut(box, aim))
       if (evaluator_.walk(half)) halves.push_back(leaf(half));
-    if (halves.empty()) continue;  // it cannot be cut: it stays as it is
+    if (halves.empty()) continue;  // it cannot be cut
     leaves_[worst.leaf] = std::move(halves[0]);
     queue.push(worst_of(worst.leaf));
     if (halves.size() == 1) continue;

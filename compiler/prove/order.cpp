@@ -32,7 +32,7 @@ class Ordering {
   void emit(uint32_t old);
   void enter(uint32_t guard);
   uint32_t append(Operation operation, std::span<const uint32_t> operands);
-  /// Where an operation's value is as those see it that the guard guards.
+  /// The index of an operation's value as seen under a guard: narrowed by it, or as it is.
   uint32_t seen(uint32_t old, uint32_t guard) const;
   void narrow_by(uint32_t condition, bool truth, uint32_t guard);
   void narrow(uint32_t old, Opcode op, uint32_t by, uint32_t guard);
@@ -42,14 +42,14 @@ class Ordering {
   void add_projection(uint32_t old);
   void add_rotation(uint32_t old);
   void add_half(uint32_t old);
-  /// The place of an operation that stands before `user` and is computed wherever that one is; or none.
+  /// The index of an operation if it comes before `user` and is evaluated wherever that is; or none.
   uint32_t before(uint32_t old, uint32_t user) const;
-  /// What the length of a vector is at most, by how it was made.
+  /// An upper bound of the length of a vector, by how it was made.
   double longest(const Words& vector, int depth = 4) const;
   /// Whether a vector is the sum, or the difference, of these two.
   bool terms_of(const Words& vector, Words& left, Words& right) const;
   uint32_t shape_of(const Words& vector, uint32_t user, int depth = 4);
-  /// A scalar product of the vector that a guard around this one says something about; or none.
+  /// A scalar product of the vector that an enclosing guard restricts; or none.
   uint32_t known_product(const Words& vector, uint32_t guard) const;
   uint32_t find_dot(std::span<const uint32_t> a, std::span<const uint32_t> b) const;
 
@@ -173,7 +173,7 @@ void Ordering::narrow_by(uint32_t condition, bool truth, uint32_t guard) {
       narrow(operands[0], op, operands[1], guard);
       return narrow(operands[1], ir::swapped(op), operands[0], guard);
     }
-    // Not of truth values; or nothing follows of the operands.
+    // These are no conditions, or imply nothing about the operands.
     case different:
     case choice:
     case any:
@@ -198,7 +198,7 @@ void Ordering::narrow(uint32_t old, Opcode op, uint32_t by, uint32_t guard) {
   const std::array operands{seen(old, guard), seen(by, guard)};
   const Operation operation{.kind = Kind::narrow, .op = op, .place = narrowed.place, .guard = guard};
   guards_[guard].narrowed[old] = append(operation, operands);
-  // What is less than the lesser is less than both.
+  // min(a, b) above x implies that both are above x; the same for max and below.
   const bool both =
       (narrowed.kind == Kind::least && says_above(op)) || (narrowed.kind == Kind::greatest && says_below(op));
   if (!both) return;
@@ -311,7 +311,7 @@ void Ordering::add_projection(uint32_t old) {
     sum.push_back(pool_.find(add, std::array{left[i], right[i]}));
     if (sum.back() == none) return;
   }
-  // The magnitude of n . (l + v) is at most that of l + v, if n is a unit vector: its square need not be known.
+  // |n . (l + v)| <= |l + v| if n is a unit vector.
   const uint32_t square = before(find_dot(sum, sum), old);
   const Words normal(left.begin(), left.begin() + half);
   const bool units = pool_.at_most_units.contains(normal) &&
@@ -373,7 +373,8 @@ void Ordering::run() {
   for (const Tape::Output& output : tape.outputs) visit_from(output.operation);
   find_guards();
   at_.assign(tape.operations.size(), none);
-  // Sides of selects have guards even where nothing is only needed there: what is read narrows all the same.
+  // The sides of a select have guards even if no operation is needed only there: the operands are narrowed all the
+  // same.
   tape.guards.assign(guards_.size(), {});
   for (const uint32_t old : order_) emit(old);
   for (Tape::Output& output : tape.outputs) output.operation = at_[output.operation];

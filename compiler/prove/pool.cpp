@@ -23,7 +23,7 @@ uint32_t Pool::make(Operation operation, std::span<const uint32_t> operands) {
   if (!is_new) return found->second;
   operation.first = static_cast<uint32_t>(tape_.operands.size());
   operation.count = static_cast<uint32_t>(operands.size());
-  const Words copy(operands.begin(), operands.end());  // they may lie in what grows
+  const Words copy(operands.begin(), operands.end());  // `operands` may lie in the vector that grows
   tape_.operands.insert(tape_.operands.end(), copy.begin(), copy.end());
   tape_.operations.push_back(operation);
   return next;

@@ -13,11 +13,11 @@
 namespace isoshade::prove {
 namespace {
 
-/// Boxes are cut at most so often in a row.
+/// The most cuts in a row.
 constexpr int deepest = 90;
-/// The proof of an operation with so many boxes left open is given up.
+/// With this many open boxes, the proof of an operation is given up.
 constexpr size_t most_open = 12;
-/// Operations of which it is told that they are not proved, and how many numbers are told of them together.
+/// The most operations that are reported as not proved, and the most numbers in all reports.
 constexpr size_t most_unproved = 1000, most_numbers = 4'000'000;
 
 struct Task {
@@ -64,7 +64,7 @@ class Prover {
   std::vector<bool> readers_of(const std::function<bool(uint32_t)>& is_given) const;
   Unproved& unproved_of(uint32_t operation, Breach breach);
   void give_up(const Box& box, const Finding& finding);
-  /// What reads the operation is judged as if it gave a finite number.
+  /// Operations that read this one are then judged as if it gave a finite number.
   void accept(uint32_t operation);
   void refute(const Box& box);
   bool is_allowed(const std::vector<uint32_t>& inputs) const;
@@ -97,14 +97,14 @@ void Prover::accept(uint32_t operation) {
   reads_accepted_.clear();
 }
 
-/// Whether the operation reads what an accepted one gives.
+/// Whether the operation reads an accepted one, directly or through others.
 bool Prover::is_later(uint32_t operation) {
   if (reads_accepted_.empty())
     reads_accepted_ = readers_of([&](uint32_t o) { return evaluator_.is_accepted(o); });
   return reads_accepted_[operation];
 }
 
-/// Of operations, whether they read, also through others, what one gives for which `is_given` holds.
+/// By operation: whether it reads, directly or through others, one for which `is_given` holds.
 std::vector<bool> Prover::readers_of(const std::function<bool(uint32_t)>& is_given) const {
   std::vector<bool> readers(tape_.operations.size());
   for (uint32_t i = 0; i < tape_.operations.size(); ++i)

@@ -21,7 +21,7 @@ using support::quote;
 constexpr size_t most_shown = 20;  ///< of what is not proved of a subject
 constexpr size_t most_named = 12;  ///< numbers in a note
 
-/// The documents that a subject uses, by their paths.
+/// The documents that a subject uses, by path.
 class Documents {
  public:
   Documents(const TypedGraph& graph, const Subject& subject) : graph_(graph), subject_(subject) {
@@ -72,7 +72,7 @@ std::string port_of(const Documents::Found& found, Breach breach) {
     case Breach::unknown: return "";
   }
   if (found.node == none || found.graph->nodes[found.node].row == nullptr) return "";
-  // Inside of an expression there are operands, no ports.
+  // An expression has operands and no ports.
   if (found.graph->graph.nodes[found.node].origin != graph::Node::Origin::node) return "";
   const std::vector<nodes::Port>& ports = found.graph->nodes[found.node].row->ports;
   const bool exists = std::ranges::find(ports, wanted, &nodes::Port::name) != ports.end();
@@ -99,7 +99,7 @@ std::string number(ir::Scalar scalar, uint32_t word) {
   return support::format_float(std::bit_cast<float>(word));
 }
 
-/// One operation of a node, or several that are the same to an author: components, and those of a function's calls.
+/// One operation of a node, or several that look the same to an author: components, or those of a function's calls.
 struct Entry {
   const Unproved* unproved = nullptr;  ///< the first of them that is refuted, or the first
   size_t operations = 0;
@@ -175,7 +175,7 @@ void Reporter::describe_counterexample(const Unproved& unproved, support::Diagno
   if (!items.empty()) diagnostic.note(list("it reads", items));
 }
 
-/// Tells the sides that are narrower than all inputs, for example scalar products by their nodes.
+/// Describes the sides that are narrower than the whole box; scalar products, for example, by their nodes.
 void Reporter::describe_box(const Unproved& unproved, support::Diagnostic& diagnostic) const {
   const Evaluator evaluator(subject_.tape);
   const Box whole = evaluator.whole();

@@ -15,14 +15,14 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 constexpr double ulp = 2 * half_ulp;
-/// What rows that approximate err by at most outside of the domain that functions.def states.
+/// The largest error of rows that approximate, outside of the domain that functions.def states.
 constexpr double careless = 16 * ulp;
 
 using Arguments = std::span<const Bound>;
 
 double slope_times(double slope, double error) { return error == 0 ? 0 : slope * error; }
 
-// Near the ends the slope is infinite, but what the result moves by is not: at most sqrt(5 error).
+// Near the ends the slope is infinite, but the change of the result is not: it is at most sqrt(5 error).
 double arc_slope(double a, double b) {
   const double most = std::max(std::abs(a), std::abs(b));
   return most < 1 ? 1 / std::sqrt(1 - most * most) : infinity;
@@ -70,7 +70,7 @@ Outcome bounded(double least, double most, Arguments in, double error) {
 /// Angles of at most this magnitude are reduced in double to within 1e-9.
 constexpr double near_angle = 0x1p20;
 
-/// Of sine or cosine, which is 1 at `top` and -1 half a turn from it.
+/// The bound of sine or cosine, which is 1 at `top` and -1 half a turn away.
 Outcome wave(const Bound& x, double (*value)(double), double top, double error) {
   const bool near = x.magnitude() <= near_angle;
   const auto meets = [&](double extreme) {
@@ -97,7 +97,7 @@ Outcome rule_tan(Arguments in, uint32_t, const Accuracy& accuracy) {
   const double from = std::min(x.lo, x.exact_lo()), to = std::max(x.hi, x.exact_hi());
   const double pole = pi * (std::ceil((from - 1e-9) / pi - 0.5) + 0.5);
   const bool near = std::max(-from, to) <= near_angle;
-  // No float is nearer to a pole than 1e-9.
+  // No float is closer to a pole than 1e-9.
   if (near ? pole <= to + 1e-9 : from < to) {
     Bound r{-1e9, 1e9, x.absolute > 0 ? infinity : accuracy.error * 1e9, infinity, infinity};
     return settled(r);
@@ -193,9 +193,9 @@ Bound share_of_way(const Bound& low, const Bound& high, const Bound& x) {
   const Outcome gone = subtract(x, low), way = subtract(high, low);
   if (gone.breach != Breach::none || way.breach != Breach::none) return any;
   const Outcome share = divide(gone.bound, way.bound);
-  // Edges that are equal, or nearly, make a step, and what rounding or flushing takes may move it.
+  // Equal or nearly equal edges make a step, which rounding or flushing may move.
   if (share.breach == Breach::division_by_zero) return any;
-  // A quotient that overflows is infinite, of its sign: then both ends are taken, as exactly.
+  // A quotient that overflows is infinite, with the right sign, and is then clamped to the exact end.
   Bound held = lesser(greater(share.bound, exactly(0)), exactly(1));
   held.absolute = std::min(held.absolute, 1.0);
   return settled(held).bound;
@@ -206,7 +206,7 @@ Outcome rule_smoothstep(Arguments in, uint32_t, const Accuracy&) {
   const auto curve = [](double x) { return x * x * (3 - 2 * x); };
   const Outcome rest = subtract(exactly(3), multiply(exactly(2), t).bound);
   Bound r = multiply(square(t).bound, rest.bound).bound;
-  // It rises with t, at most by 3/2, and is rounded three times.
+  // It rises with t, with a slope of at most 3/2, and is rounded three times.
   const double error = 3.1 * half_ulp, flushed = 4 * smallest;
   r.lo = std::max({r.lo, curve(t.lo) * (1 - error) - flushed, 0.0});
   r.hi = std::min({r.hi, curve(t.hi) * (1 + error) + flushed, 1.0});  // no float t gives more
@@ -260,7 +260,7 @@ Outcome rule_rotate2d(Arguments in, uint32_t, const Accuracy&) {
   return settled(r);
 }
 
-/// Op by op, but its weights are floats near those that it is defined by.
+/// Followed op by op, but its weights are floats close to the ones of its definition.
 Outcome rule_luminance(Arguments in, uint32_t, const Accuracy&) {
   constexpr double weights[] = {0.2126, 0.7152, 0.0722};
   Outcome sum;
@@ -279,7 +279,7 @@ Outcome rule_rgb_to_hsv(Arguments in, uint32_t component, const Accuracy&) {
   if (component == 2) return {greater(greater(in[0], in[1]), in[2])};
   const bool positive = in[0].lo >= 0 && in[1].lo >= 0 && in[2].lo >= 0;
   if (!positive && component == 1) return {anything(), Breach::unknown};
-  // Where the difference of two components is a denormal it counts as 0, and the hue and the saturation too.
+  // A difference of two components that is denormal is 0, and so are hue and saturation.
   const double value = greater(greater(in[0], in[1]), in[2]).lo;
   if (value < 0x1p-100) return bounded(0, 1 + 3 * ulp, in, 1);
   return bounded(0, 1 + 3 * ulp, in, 3 * ulp);
@@ -287,7 +287,7 @@ Outcome rule_rgb_to_hsv(Arguments in, uint32_t component, const Accuracy&) {
 
 Outcome fractal(Arguments in) {
   const double farthest = std::max({in[0].magnitude(), in[1].magnitude(), in[2].magnitude()});
-  // Infinities would count as 0, but what is multiplied by them may be NaN.
+  // Infinities count as 0, but products with them may be NaN.
   if (farthest * std::pow(std::max(1.0, in[4].magnitude()), 16) > largest)
     return {anything(), Breach::overflow};
   const double growth = std::max(1.0, in[5].magnitude());
@@ -339,13 +339,13 @@ constexpr Rule rules[] = {
 struct Domain {
   double lo, hi;
 };
-/// What the tables of functions say of a row in a tier.
+/// The facts of functions.def about a row in a tier.
 struct RowFacts {
   std::string_view row, signature;
   functions::Tier tier;
   double ulp;
   std::vector<Domain> domain;  ///< of each argument
-  bool of_one;                 ///< the ulps are those of 1, not of the result
+  bool of_one;                 ///< the error is in ulps of 1, not of the result
 };
 const std::vector<RowFacts>& row_facts() {
 #define D(...) \
@@ -362,7 +362,7 @@ const std::vector<RowFacts>& row_facts() {
   return all;
 }
 
-/// Of the tier's body, which may be the default one.
+/// Those of the tier's body, which may be the default one.
 const RowFacts* facts_of(std::string_view row, functions::Tier tier) {
   using ByTier = std::array<const RowFacts*, functions::tiers.size()>;
   static const std::unordered_map<std::string_view, ByTier> by_row = [] {

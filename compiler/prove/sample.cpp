@@ -104,7 +104,7 @@ uint32_t Points::vector(uint32_t first) {
     if (way != 0)
       for (uint32_t c = 0; c < width; ++c) v[c] = 2 * random_.unit() - 1;
     if (way >= 3 && !vectors_.empty()) {
-      // Along a former one, against it, across it, or near to these.
+      // Parallel, opposite or perpendicular to an earlier vector, or nearly so.
       const auto [other, other_width] = vectors_[random_.below(static_cast<uint32_t>(vectors_.size()))];
       const double near = random_.below(2) == 0 ? 0 : std::exp2(-40 * random_.unit());
       double cosine = 0;
@@ -248,7 +248,7 @@ std::vector<std::vector<uint32_t>> samples(const Tape& tape, const Box& box, int
 
 std::vector<Counterexample> search(TapeRunner& runner, const Tape& tape, const Box& box, int tries, size_t most,
                                    const std::function<bool(const std::vector<uint32_t>&)>& allowed) {
-  // A sum of a fixed number of terms is not what one of them is, and nobody knows what an unknown is.
+  // A sum of a fixed number of terms is not one of them, and the value of an unknown is not known.
   std::vector<bool> is_doubtful(tape.operations.size());
   for (uint32_t i = 0; i < tape.operations.size(); ++i) {
     const Operation& operation = tape.operations[i];
