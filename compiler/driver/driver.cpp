@@ -6,7 +6,7 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/screen.h"
-#include "compiler/passes/derivatives.h"
+#include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
 
 namespace isoshade::driver {

@@ -4,7 +4,7 @@
 #include "compiler/emit/cpp.h"
 #include "compiler/emit/stages.h"
 #include "compiler/ir/expansion.h"
-#include "compiler/passes/cut_long.h"
+#include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/visible.h"
 

@@ -18,7 +18,7 @@ namespace isoshade::emit {
 inline constexpr uint64_t large_program = 6'000;
 /// In a large program a function of more operations than this is called, not inlined,
 inline constexpr uint64_t most_inlined_in_large = 32;
-/// and a block of more is cut (passes/cut_long.h).
+/// and a block of more is cut (passes/passes.h).
 inline constexpr uint64_t longest_in_large = 50;
 
 /// How many operations a compiler sees in a program's C++: what is called stands there once.

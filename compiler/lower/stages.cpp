@@ -27,7 +27,7 @@ void add_edges(ir::Module& module) {
 }
 
 /// edges_at_ddx(x, y, triangle) and edges_at_ddy: what the edge functions change by from a pixel to the next. That is
-/// the same all over the triangle, and exact. They are the source of all derivatives (passes/derivatives.h).
+/// the same all over the triangle, and exact. They are the source of all derivatives (passes/passes.h).
 void add_edge_gradients(ir::Module& module) {
   for (const int axis : {0, 1}) {
     Kernel k(module, axis == 0 ? "edges_at_ddx" : "edges_at_ddy",

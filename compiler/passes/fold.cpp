@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/passes/fold.h"
+#include "compiler/passes/passes.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/passes/hide_foldables.h"
+#include "compiler/passes/passes.h"
 
 #include <algorithm>
 #include <array>

@@ -6,15 +6,7 @@
 #include "compiler/functions/library.h"
 #include "compiler/ir/printer.h"
 #include "compiler/ir/validator.h"
-#include "compiler/passes/cse.h"
-#include "compiler/passes/dce.h"
-#include "compiler/passes/decide.h"
-#include "compiler/passes/derivatives.h"
-#include "compiler/passes/exact_division.h"
-#include "compiler/passes/fold.h"
-#include "compiler/passes/hide_foldables.h"
-#include "compiler/passes/renumber.h"
-#include "compiler/passes/specialize.h"
+#include "compiler/passes/passes.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::passes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/passes/specialize.h"
+#include "compiler/passes/passes.h"
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "compiler/ir/laws.h"
-#include "compiler/passes/fold.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::passes {

@@ -15,7 +15,7 @@
 #include "compiler/functions/library.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/ir/validator.h"
-#include "compiler/passes/derivatives.h"
+#include "compiler/passes/passes.h"
 #include "tests/accuracy/measure.h"
 
 namespace isoshade::accuracy {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/ir/printer.h"
-#include "compiler/passes/cut_long.h"
+#include "compiler/passes/passes.h"
 #include "tests/unit/ir_text.h"
 
 namespace isoshade::passes {

@@ -9,14 +9,7 @@
 #include <sstream>
 
 #include "compiler/ir/printer.h"
-#include "compiler/passes/cse.h"
-#include "compiler/passes/dce.h"
-#include "compiler/passes/decide.h"
-#include "compiler/passes/derivatives.h"
-#include "compiler/passes/fold.h"
-#include "compiler/passes/hide_foldables.h"
-#include "compiler/passes/renumber.h"
-#include "compiler/passes/specialize.h"
+#include "compiler/passes/passes.h"
 #include "tests/unit/ir_text.h"
 
 namespace isoshade::passes {

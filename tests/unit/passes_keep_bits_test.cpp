@@ -10,14 +10,8 @@
 #include "compiler/ir/interpreter.h"
 #include "compiler/ir/printer.h"
 #include "compiler/ir/validator.h"
-#include "compiler/passes/cse.h"
-#include "compiler/passes/cut_long.h"
-#include "compiler/passes/dce.h"
-#include "compiler/passes/decide.h"
-#include "compiler/passes/fold.h"
-#include "compiler/passes/hide_foldables.h"
+#include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
-#include "compiler/passes/renumber.h"
 #include "tests/unit/random_module.h"
 
 namespace isoshade::passes {
