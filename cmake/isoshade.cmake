@@ -1,4 +1,4 @@
-# Flags and helpers that every target shares.
+# Dependencies, compiler flags and helper functions for all targets.
 
 find_package(Threads REQUIRED)
 find_package(nlohmann_json REQUIRED)
@@ -10,7 +10,7 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(OpenEXR 3.1 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
-# glslang's package file names these three without finding them.
+# glslang's package file refers to SPIRV-Tools without finding it.
 find_package(SPIRV-Tools REQUIRED)
 find_package(SPIRV-Tools-opt REQUIRED)
 find_package(glslang REQUIRED)
@@ -19,8 +19,8 @@ pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(jpeg REQUIRED IMPORTED_TARGET libjpeg)
 pkg_check_modules(mpfr REQUIRED IMPORTED_TARGET mpfr gmp)
 
-# What a float is (docs: "The contract"): no contraction, and no constant folded in another rounding or
-# denormal mode than the one at run time. Every object of ours is compiled so, generated code too.
+# Float arithmetic as README.md ("The contract") specifies it: no contraction, and no constant folding in another rounding
+# or denormal mode than at run time. All our objects are compiled with these flags, and generated code too.
 set(ISOSHADE_FLOAT_FLAGS -ffp-contract=off -frounding-math -fwrapv)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND ISOSHADE_FLOAT_FLAGS -fsignaling-nans)
@@ -29,13 +29,13 @@ endif()
 add_library(isoshade_flags INTERFACE)
 target_compile_options(isoshade_flags INTERFACE -Wall -Wextra -Werror ${ISOSHADE_FLOAT_FLAGS})
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # g++ 12 reports overlapping copies inside std::string that cannot happen (GCC bug 105329).
+  # g++ 12 warns of overlapping copies inside std::string that cannot happen (GCC bug 105329).
   target_compile_options(isoshade_flags INTERFACE -Wno-restrict)
 endif()
 target_include_directories(isoshade_flags INTERFACE ${PROJECT_SOURCE_DIR})
 
 # isoshade_library(NAME SOURCES file... [LINKS target...] [PRIVATE_LINKS target...])
-# One folder, one static library. Public links are the layering; tests/unit checks that includes obey them.
+# One static library for each folder. The public links define the layering; a test checks that includes respect it.
 function(isoshade_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   if(arg_SOURCES)

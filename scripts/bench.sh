@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures run time against error and draws the picture of README.md: docs/bench.svg, docs/bench.csv. Minutes; on a
-# machine that does nothing else. Arguments go to `isoshade bench`.
+# Measures run time and error and writes docs/bench.svg, the plot in README.md, and docs/bench.csv. Takes minutes; run it
+# on an idle machine. Arguments are passed to `isoshade bench`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds, renders the material-ball matrix on the CPU and on Vulkan into out/, and compares every bit.
+# Sets up, builds, renders the material balls to out/ on the CPU and on Vulkan, and compares every bit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
@@ -15,6 +15,6 @@ done
 verdict=0
 "$isoshade" verify "$scene" --report out/report || verdict=$?
 echo
-echo "pictures   out/material_balls.cpu.png  out/material_balls.vulkan.png"
+echo "images     out/material_balls.cpu.png  out/material_balls.vulkan.png"
 echo "programs   out/cook_torrance/cook_torrance.base.pixel.frag  .cpp"
 exit "$verdict"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders every picture that the project keeps and isoshade makes: the patterns of graphs/textures, then README's.
+# Renders all images in the repository that isoshade makes: the patterns in graphs/textures, then the images of README.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/build.sh release isoshade

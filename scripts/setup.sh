@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what isoshade needs to build, run and test, from Debian 12's (or Ubuntu's) own packages. Does nothing
-# where all is there. Asks for sudo only where it is needed.
+# Installs the packages of Debian 12 (or Ubuntu) that isoshade needs to build, run and test. Does nothing if all are
+# installed. Uses sudo only if it is needed.
 set -euo pipefail
 
 packages=(
@@ -9,7 +9,7 @@ packages=(
   nlohmann-json3-dev libfmt-dev libglm-dev libcli11-dev libspng-dev libjpeg-dev libopenexr-dev zlib1g-dev libtinygltf-dev
   libtbb-dev libssl-dev libmpfr-dev
   glslang-dev spirv-tools spirv-headers libvulkan-dev
-  # running: Vulkan on the CPU, and the loader of whatever other devices there are
+  # running: Vulkan on the CPU, and the loader for other devices
   mesa-vulkan-drivers libvulkan1
   # drawing graphs and plots
   graphviz gnuplot-nox
@@ -25,7 +25,7 @@ done
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || { echo "setup: these packages are missing, and there is no sudo: ${missing[*]}" >&2; exit 2; }
+  command -v sudo >/dev/null || { echo "setup: these packages are missing, and sudo is not installed: ${missing[*]}" >&2; exit 2; }
   as_root=(sudo)
 fi
 echo "setup: installing ${missing[*]}"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs the tests. --full adds what takes long: the clang build, the sanitizer build, exhaustive
-# sweeps, valgrind over damaged files.
+# Sets up, builds and runs the tests. --full adds the slow ones: the clang build, the sanitizer build, exhaustive sweeps,
+# valgrind on damaged files.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 full=0
@@ -19,8 +19,8 @@ if [ "$full" -eq 1 ]; then
   done
   export ISOSHADE_FULL=1
   ctest --preset asan --tests-regex '^Documents|DamagedFiles'
-  # Memory that nobody wrote, also by libraries that no sanitizer sees into. Without libjpeg's vector instructions: they
-  # compute on what lies behind a row, too, and valgrind does not see that no pixel is made of it (scene_jpeg_test does).
+  # Finds reads of uninitialised memory, also in libraries built without a sanitizer. Libjpeg's SIMD code is disabled,
+  # because it also reads past the end of a row; valgrind cannot tell that no pixel depends on it (scene_jpeg_test can).
   JSIMD_FORCENONE=1 ISOSHADE_DAMAGED=500 valgrind --quiet --error-exitcode=1 build/release/tests/images_fuzz_test
 fi
 ctest --preset release --parallel "$(nproc)"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the pictures of graphs/textures again. Needs nothing but Python.
+"""Writes the images in graphs/textures that are not rendered from graphs. Needs only Python.
 
     scripts/textures.py graphs/textures
 """
@@ -11,7 +11,7 @@ import zlib
 
 
 def png(path, width, height, pixel, channels):
-    """pixel(x, y) gives as many bytes as there are channels: 1 grey, 3 RGB, 4 RGBA."""
+    """pixel(x, y) returns one byte for each channel: 1 grey, 3 RGB, 4 RGBA."""
     rows = b"".join(b"\0" + bytes(v for x in range(width) for v in pixel(x, y)) for y in range(height))
     kind = {1: 0, 3: 2, 4: 6}[channels]
 
@@ -36,7 +36,7 @@ def toon_ramp(x, y):
 
 
 def uv_grid(x, y):
-    """8 x 8 fields; u is red, v is green, and the upper left is framed."""
+    """8 x 8 squares; red grows with u, green with v; the upper left square has a frame."""
     light = (x // 16 + y // 16) % 2 == 0
     line = x % 16 == 0 or y % 16 == 0
     if x < 16 and y < 16 and (x < 3 or y < 3 or x > 12 or y > 12):

@@ -28,7 +28,7 @@ Comparison missed_ends() {
     for (size_t i = 0; i < results.size(); ++i) count += results[i] != inputs[3 * i + 1] ? 1 : 0;
     return std::to_string(count);
   };
-  return {"mix: of 100,000 random ends, those missed at t = 1", misses(Subject::row("mix", 3)),
+  return {"mix: of 100,000 random end values, those not reached at t = 1", misses(Subject::row("mix", 3)),
           misses(Subject::document("source_forms/mix"))};
 }
 
@@ -109,8 +109,8 @@ Comparison vectors_not_unit() {
     return std::to_string(count);
   };
   return {
-      "normalize: of 25,000 vectors of lengths from 2^-124 to 2^125, those that come out of another length "
-      "than 1",
+      "normalize: of 25,000 vectors of lengths from 2^-124 to 2^125, those whose result does not have "
+      "length 1",
       failing(Subject::expression({"v:vector3"}, "normalize(v)")),
       failing(Subject::expression({"v:vector3"}, "v / vector3(sqrt(dot(v, v)))"))};
 }
@@ -133,8 +133,8 @@ Comparison distances_far_away() {
     return text(error);
   };
   return {
-      "distances from 0.1 to 1000, to a stored depth and back: largest relative error (depth reversed; from "
-      "0 to 1)",
+      "distances from 0.1 to 1000, converted to a depth and back: largest relative error (library: reversed "
+      "depth; source: depth from 0 to 1)",
       worst(Subject::expression({"z", "near"}, "near / z"),
             Subject::document("library/depth/from_infinite_reversed")),
       worst(Subject::expression({"z", "near"}, "(1 / z - 1 / near) / (0.001 - 1 / near)"),

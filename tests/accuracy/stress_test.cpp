@@ -102,17 +102,15 @@ const Outcome* worst_of(const std::vector<Outcome>& all, bool failed) {
 std::string page_text() {
   std::string text =
       "<!-- Made by `stress_test --update` from tests/accuracy/data/stress_cases.jsonl. -->\n"
-      "# Where formulas break\n\n"
-      "Cases at which textbook formulas lose their digits or divide by zero: highlights of smooth surfaces, "
-      "grazing\n"
-      "light, fog far from the origin, distances near the far plane. Each was computed in 70 digits\n"
-      "([tests/accuracy/data](../tests/accuracy/data/README.md)). Errors are the same on every backend, bit "
-      "for bit.\n\n"
-      "## What the library computes\n\n"
-      "The error where it is the largest share of what is accepted, in each tier. `default` and `precise` "
-      "are within it\n"
-      "at every case.\n\n"
-      "| cases | form | default | precise | fast | accepted |\n|---|---|---|---|---|---|\n";
+      "# Where textbook formulas fail\n\n"
+      "Inputs at which textbook formulas lose digits or divide by zero: highlights of smooth surfaces, grazing\n"
+      "light, fog far from the origin, distances near the far plane. The exact results were computed in 70 digits\n"
+      "([tests/accuracy/data](../tests/accuracy/data/README.md)). Errors are the same on every backend, bit for "
+      "bit.\n\n"
+      "## Formulas of the library\n\n"
+      "For each tier, the error that is the largest share of the accepted error. `default` and `precise` are within\n"
+      "the accepted error in every case.\n\n"
+      "| cases | formula | default | precise | fast | accepted error |\n|---|---|---|---|---|---|\n";
   for (const Form& form : library_forms()) {
     const std::string count = std::to_string(outcomes(form).size());
     text += "| " + count + " of `" + form.group + "` | `" + form.subject.name() + "` |";
@@ -131,8 +129,8 @@ std::string page_text() {
     text += " " + accepted + " |\n";
   }
   text +=
-      "\n## What the forms of the sources compute\n\n"
-      "| form | fails | worst at | gives | exactly | error | accepted |\n|---|---|---|---|---|---|---|\n";
+      "\n## Formulas of the sources\n\n"
+      "| formula | failing cases | worst case | result | exact result | error | accepted error |\n|---|---|---|---|---|---|---|\n";
   for (const Form& form : source_forms()) {
     const std::vector<Outcome> all = outcomes(form);
     size_t failed = 0;
