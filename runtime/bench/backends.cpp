@@ -14,9 +14,9 @@ namespace {
 
 using support::Diagnostics;
 
-/// A function of a program that is called once for each.
+/// Wraps `make` so that it is called once for each program and its result is reused.
 template <class Make>
-auto remembered(Make make) {
+auto cached(Make make) {
   auto known = std::make_shared<std::map<const driver::Program*, std::string>>();
   return [known, make](const driver::Program& program, auto... rest) {
     const auto [found, is_new] = known->try_emplace(&program);
@@ -36,7 +36,7 @@ bool add_cpu(const BenchOptions& options, std::vector<Contestant>& all, Diagnost
     cpu.threads = options.threads;
     cpu.compiler = options.compiler;
     cpu.build_timeout = options.build_timeout;
-    cpu.cpp = remembered([](const driver::Program& program) { return driver::cpp(program); });
+    cpu.cpp = cached([](const driver::Program& program) { return driver::cpp(program); });
     auto device = cpu::create(cpu, diagnostics);
     if (device == nullptr) return false;
     all.push_back({"cpu", count, false, std::move(device)});
@@ -49,10 +49,10 @@ bool add_vulkan(const BenchOptions& options, const BuiltIns* built_ins, std::vec
                 Diagnostics& diagnostics) {
   vulkan::VulkanOptions vulkan;
   vulkan.device = options.device;
-  vulkan.glsl = remembered([built_ins](const driver::Program& program, driver::Division division) {
+  vulkan.glsl = cached([built_ins](const driver::Program& program, driver::Division division) {
     if (built_ins == nullptr) return driver::glsl(program, division);
     const auto found = built_ins->find(&program);
-    // As a device divides by itself.
+    // The built-ins are compared with native division.
     std::string text = driver::glsl(program, driver::Division::native);
     return found != built_ins->end() ? with_built_ins(std::move(text), found->second) : text;
   });
@@ -63,7 +63,7 @@ bool add_vulkan(const BenchOptions& options, const BuiltIns* built_ins, std::vec
 }
 #endif
 
-/// "float f(float a) {" tells f; nothing where a line begins no definition.
+/// The name "f" for the line "float f(float a) {"; empty if the line does not begin a definition.
 std::string_view defined_name(std::string_view line) {
   const size_t open = line.find('('), space = line.find(' ');
   if (line.empty() || line[0] == ' ' || !line.ends_with(" {") || open == line.npos || space > open) return {};
@@ -81,7 +81,7 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
   constexpr std::string_view close = "\n}\n";
   for (size_t at = 0; at < definitions.size();) {
     const size_t end = definitions.find(close, at) + close.size();
-    support::assert_that(end >= close.size(), "a definition without its end");
+    support::assert_that(end >= close.size(), "a definition does not end");
     std::string definition = definitions.substr(at, end - at);
     at = end;
     const size_t line = definition.rfind('\n', definition.find(" {\n"));
@@ -90,9 +90,9 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
         std::string_view(definition).substr(start, definition.find(" {\n", start) + 2 - start);
     const std::string_view name = defined_name(head);
     support::assert_that(!name.empty(), definition);
-    // The generated definition's line: type, name, parenthesis.
+    // The first occurrence of " NAME(" is the definition, because functions are defined before they are called.
     const size_t call = glsl.find(" " + std::string(name) + "(");
-    if (call == std::string::npos) continue;  // this tier has no call of it
+    if (call == std::string::npos) continue;  // this tier does not call it
     const size_t begin = glsl.rfind('\n', call) + 1;
     glsl.replace(begin, glsl.find(close, begin) + close.size() - begin, definition);
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The backends that are measured against each other.
+// The backends that are measured, and the measurement of whole scenes on them.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -9,25 +10,33 @@
 
 #include "backends/backend.h"
 #include "runtime/bench/measure.h"
+#include "runtime/render/plan.h"
 
 namespace isoshade::bench {
 
-/// GLSL definitions by program, in place of the generated ones of the same names.
+/// For each program, GLSL definitions that replace the generated ones of the same names.
 using BuiltIns = std::map<const driver::Program*, std::string>;
 
 struct Contestant {
   std::string backend;  ///< "cpu", "vulkan"
   std::string lanes;
-  bool built_ins = false;  ///< runs GLSL's own functions, where a subject has such a text
+  bool built_ins = false;  ///< uses GLSL's own functions in the programs that have BuiltIns
   std::unique_ptr<backends::Backend> device;
 };
 
-/// The cpu at each lane count, vulkan, and vulkan with built-ins. They keep the texts of programs, which must outlive
-/// them, so that a second run of a program makes none. Empty, with diagnostics, where one cannot be had.
+/// The cpu at each lane count, vulkan, and vulkan with built-ins. They cache the text of each program by its address, so
+/// programs must outlive them. Empty, with diagnostics, if one of them cannot be created.
 std::vector<Contestant> contestants(const BenchOptions& options, const BuiltIns& built_ins,
                                     support::Diagnostics& diagnostics);
 
-/// A GLSL text with these definitions instead of its own of the same names, and free to be optimised.
+/// The GLSL text with `definitions` in place of its own definitions of the same names, and without `precise`, so that
+/// drivers may optimise it.
 std::string with_built_ins(std::string glsl, const std::string& definitions);
+
+/// Adds a point for each scene, tier and contestant: the time per pixel of the image, including visibility and background,
+/// and the error of its colours at a smaller size. `plans` keeps the plans alive, because contestants cache the texts of
+/// their programs by address.
+bool measure_scenes(const BenchOptions& options, const std::vector<Contestant>& devices,
+                    std::deque<render::Plan>& plans, Report& report, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::bench

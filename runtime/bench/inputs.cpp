@@ -12,11 +12,11 @@ namespace isoshade::bench {
 
 namespace {
 
-/// Where inputs lie that declare no range, or whose range says too little of what scenes have.
+/// Ranges of inputs that declare none, or whose declared range is much wider than what scenes use.
 struct Range {
   std::string_view effect, input;
   float low, high;
-  bool towards_high = false;  ///< denser there, where cosines of small angles are
+  bool towards_high = false;  ///< more samples there: cosines of small angles
 };
 constexpr Range ranges[] = {
     {"ggx_d", "alpha", 1e-3f, 1},
@@ -58,12 +58,13 @@ Vector combined(float s, const Vector& a, float t, const Vector& b) {
 }
 Vector normalized(const Vector& v) { return combined(1 / std::sqrt(dot(v, v)), v, 0, v); }
 
-/// Positions of equal chance on every machine; std::uniform_real_distribution promises none.
+/// The same random numbers on every machine; std::uniform_real_distribution does not guarantee that.
 class Random {
  public:
   float fraction() { return static_cast<float>(engine_() >> 8) * 0x1p-24f; }
 
-  /// Evenly spread, or every other time in magnitude over four decades, or in the distance from the high end over six.
+  /// Uniform in half of the draws; in the others logarithmic over four decades, or logarithmic in the distance from the
+  /// high end over six decades.
   float within(const Range& range) {
     const bool spread = engine_() % 2 == 0 || range.low < 0;
     if (spread) return range.low + (range.high - range.low) * fraction();
@@ -98,7 +99,7 @@ std::vector<int32_t> inputs_of(const Subject& subject, const driver::Program& pr
       }
       Vector v = random.direction();
       if (!before.empty() && dot(v, before[0]) < 0) v = combined(-1, v, 0, v);
-      // Every other time near the mirrored direction, where highlights are.
+      // In half of the rows, near the mirror direction, where highlights are.
       if (before.size() == 2 && row % 2 == 0) {
         const Vector mirrored = combined(2 * dot(before[0], before[1]), before[0], -1, before[1]);
         v = normalized(combined(1, mirrored, std::pow(10.0f, -4 * random.fraction()), v));

@@ -12,8 +12,6 @@
 #include "backends/interpreter/backend.h"
 #include "compiler/ir/printer.h"
 #include "runtime/bench/backends.h"
-#include "runtime/bench/errors.h"
-#include "runtime/bench/scenes.h"
 #include "runtime/bench/subject.h"
 #include "runtime/render/clock.h"
 
@@ -24,7 +22,7 @@ namespace {
 using functions::Tier;
 using support::Diagnostics;
 
-/// A subject with all that is known of it before it is timed.
+/// A subject with its programs, inputs and expected results.
 struct Prepared {
   Subject subject;
   std::vector<driver::Program> programs;  ///< by tier
@@ -32,7 +30,7 @@ struct Prepared {
   std::vector<int32_t> inputs;
   size_t input_words = 0;
   std::vector<reference::Real> exact;
-  std::vector<std::vector<int32_t>> expected;  ///< by tier: the interpreter's bits
+  std::vector<std::vector<int32_t>> expected;  ///< by tier: the results of the interpreter
 
   std::span<const int32_t> first_inputs(size_t rows) const {
     return std::span(inputs).first(rows * input_words);
@@ -67,22 +65,22 @@ std::optional<Prepared> prepare(const Subject& subject, const BenchOptions& opti
   return made;
 }
 
-/// What is timed: a program on a device, and the same device idle with the same inputs.
+/// What is timed: a program on a device, or that device running the idle program on the same inputs.
 struct Race {
   const Prepared* prepared;
   const driver::Program* program;
   const Contestant* contestant;
-  std::vector<size_t> points = {};  ///< of all tiers whose program is the same; none: idle
+  std::vector<size_t> points = {};  ///< of all tiers with this program; empty: the idle program
   std::vector<double> samples = {};
 };
 
-/// Nanoseconds that one more row takes: from a call with all rows and one with an eighth of them.
+/// Measures the time of one more row: the difference between a call with all rows and one with an eighth of them.
 class Stopwatch {
  public:
   explicit Stopwatch(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
   std::optional<double> per_row(const Race& race, size_t rows) {
-    if (!seconds(race, rows, all_)) return std::nullopt;  // so that no one finds caches cold
+    if (!seconds(race, rows, all_)) return std::nullopt;  // warms the caches
     const auto few = seconds(race, rows / 8, few_);
     const auto all = seconds(race, rows, all_);
     if (!few || !all) return std::nullopt;
@@ -99,7 +97,7 @@ class Stopwatch {
   }
 
   Diagnostics& diagnostics_;
-  std::vector<int32_t> few_, all_;  ///< kept, so that no call allocates
+  std::vector<int32_t> few_, all_;  ///< members, so that calls do not allocate
 };
 
 double quantile(const std::vector<double>& sorted, double q) {
@@ -169,7 +167,7 @@ class Bench {
     return true;
   }
 
-  /// Tiers that compile to the same program are timed as one.
+  /// Tiers that compile to the same program are timed together.
   Race& race_of(const Prepared& prepared, Tier tier, const Contestant& contestant) {
     const driver::Program& program = prepared.programs[static_cast<size_t>(tier)];
     for (Race& race : races_)
@@ -183,7 +181,7 @@ class Bench {
     return contestant.backend == "vulkan" ? options_.vulkan_rows : options_.rows;
   }
 
-  /// All rows that both have, against those of the first device that ran this program.
+  /// Compares the rows that both have with the results of the first device that ran this program.
   bool same_as_first(const Prepared& prepared, size_t tier, const std::vector<int32_t>& results) {
     const auto [found, is_first] = first_results_.try_emplace({&prepared, tier}, results);
     if (is_first) return true;
@@ -193,7 +191,7 @@ class Bench {
 
   bool time() {
     Stopwatch stopwatch(diagnostics_);
-    std::mt19937 random;  // no one always follows the same other
+    std::mt19937 random;  // shuffles the order, so that no race always follows the same other one
     std::vector<size_t> order(races_.size());
     std::iota(order.begin(), order.end(), size_t{0});
     for (int i = 0; i < options_.repetitions; ++i) {

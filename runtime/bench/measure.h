@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run time and error of the bench's subjects, in each tier, on each backend.
+// The bench: run time and error of functions and scenes, in each tier, on each backend; tables and a plot of them.
 #pragma once
 
 #include <functional>
@@ -15,21 +15,21 @@ namespace isoshade::bench {
 struct BenchOptions {
   std::string graphs;            ///< the folder with library/ and source_forms/
   std::string library;           ///< the folder of library documents
-  std::string filter;            ///< a part of the effects' names; empty: all
-  size_t rows = 1 << 15;         ///< timed at once on the cpu; an eighth of them too
-  size_t vulkan_rows = 1 << 17;  ///< the same on vulkan, where a call takes longer
-  size_t exact_rows = 2048;      ///< compared with the reference
+  std::string filter;            ///< part of the names of effects; empty: all
+  size_t rows = 1 << 15;         ///< rows of a timed call on the cpu; a second call has an eighth of them
+  size_t vulkan_rows = 1 << 17;  ///< the same on vulkan, where calls have more overhead
+  size_t exact_rows = 2048;      ///< rows compared with the reference
   int repetitions = 31;
   std::vector<std::string> lanes;  ///< of the cpu backend; empty: all that the machine has
   int threads = 1;                 ///< of the cpu backend
-  std::string compiler;            ///< of generated C++
+  std::string compiler;            ///< for generated C++
   support::Seconds build_timeout = support::default_time_limit;
-  bool vulkan = true;  ///< with GLSL's own built-ins beside it
+  bool vulkan = true;  ///< measure vulkan, also with GLSL's own built-ins
   std::string device;
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 
-/// An error of this size, or of more, leaves no digit right; NaN and infinities in place of numbers count as it.
+/// The error in ULP from which no digit is correct; a NaN or infinity in place of a number counts as this error.
 inline constexpr double no_digit = 0x1p24;
 
 /// One computation in one form and precision on one backend.
@@ -38,26 +38,41 @@ struct Point {
   std::string form;       ///< "source", "library", "function", "scene"
   std::string precision;  ///< "fast", "default", "precise"; "built-ins" are GLSL's own
   std::string backend;    ///< "cpu", "vulkan"
-  std::string lanes;      ///< of the cpu: "16x2"
-  /// Of one more row of a table, or of a pixel of a scene, in nanoseconds: the median and the distance of the
-  /// quartiles. What a call takes however small it is, is not in it. `transfer` is what a program takes that only reads
-  /// the same inputs and writes as many results; of it a computation hides a part.
+  std::string lanes;      ///< of the cpu backend: "16x2"
+  /// Nanoseconds for one more row of a table or one pixel of a scene, without the fixed cost of a call: the median, and
+  /// the interquartile range. `transfer` is the time of a program that only reads the same inputs and writes as many
+  /// results; computation may overlap with it.
   double nanoseconds = 0, spread = 0, transfer = 0;
-  /// Against the reference, over all components, in units in the last place of the exact result, at most no_digit.
+  /// Against the reference, over all components, in ULP of the exact result, at most no_digit.
   double max_ulp = 0, mean_ulp = 0;
-  double max_absolute = 0;  ///< of results that are numbers
-  bool identical = false;   ///< whether every bit is that of the other backends
+  double max_absolute = 0;  ///< over results that are finite
+  bool identical = false;   ///< whether all bits equal those of the other backends
 };
 
 struct Report {
-  std::vector<std::string> machines;  ///< what each backend says of itself
+  std::vector<std::string> machines;  ///< the description of each backend
   std::vector<Point> points;
 };
 
-/// Times are interleaved: each repetition visits every point. Nothing, with diagnostics, where something cannot run.
+/// Measurements are interleaved: each repetition runs every point once. Returns nothing, with diagnostics, if something
+/// cannot run.
 std::optional<Report> measure(const BenchOptions& options, support::Diagnostics& diagnostics);
 
-/// Whether every point but the built-ins computed the same bits as the others of its effect, form and precision.
+/// Whether all points of the same effect, form and precision computed the same bits; built-ins are exempt.
 bool all_identical(const Report& report);
+
+/// One line for each point, with a heading.
+std::string csv_text(const Report& report);
+std::string json_text(const Report& report);
+/// The table that the command prints.
+std::string summary(const Report& report);
+
+/// The points that no other point beats in both time and error, fastest first.
+std::vector<const Point*> pareto_front(const std::vector<const Point*>& points);
+
+/// A gnuplot script that draws an SVG to the file `output`: for each effect a panel with time against largest error, for
+/// the fastest lanes of the cpu and for vulkan. The shape of a mark shows the precision, filled or hollow the backend, a
+/// letter "s" the source's formula; the line is the Pareto front.
+std::string gnuplot_text(const Report& report, const std::string& output);
 
 }  // namespace isoshade::bench

@@ -3,7 +3,7 @@
 #include <array>
 #include <fmt/format.h>
 
-#include "runtime/bench/report.h"
+#include "runtime/bench/measure.h"
 
 namespace isoshade::bench {
 
@@ -11,14 +11,14 @@ namespace {
 
 constexpr int columns = 4;
 
-/// Marks by precision: gnuplot's hollow one, the filled one of the same shape follows it.
+/// The hollow gnuplot mark of a precision; the next number is the filled mark of the same shape.
 struct Mark {
   const char* precision;
   int shape;
 };
 constexpr Mark marks[] = {{"fast", 8}, {"default", 6}, {"precise", 4}, {"built-ins", 2}};
 
-/// The lanes that are drawn: the last, which are the fastest.
+/// The lanes to plot: the last of the cpu, which are the fastest.
 std::string drawn_lanes(const Report& report) {
   std::string lanes;
   for (const Point& point : report.points)
@@ -26,7 +26,7 @@ std::string drawn_lanes(const Report& report) {
   return lanes;
 }
 
-/// Where a point is drawn: an exact result has no place on a logarithmic axis.
+/// Coordinates of a point. A logarithmic axis cannot show an error of 0.
 double time_of(const Point& point) { return point.nanoseconds; }
 double error_of(const Point& point) { return std::max(point.max_ulp, 0.1); }
 
@@ -47,7 +47,7 @@ class Plot {
   }
 
   std::string text(const std::string& output) {
-    const int rows = static_cast<int>(effects_.size() + columns) / columns;  // one panel more: the key
+    const int rows = static_cast<int>(effects_.size() + columns) / columns;  // one more panel for the key
     text_ = fmt::format(
         "set terminal svg size {},{} font \"sans-serif,12\" background \"white\"\nset output {}\n"
         "set multiplot layout {},{} title \"Time against error; below and to the left is better\"\n"
@@ -60,7 +60,7 @@ class Plot {
   }
 
  private:
-  /// Without those whose time is lost in what reading and writing take.
+  /// Omits points whose time is too short to measure.
   std::vector<const Point*> points_of(const std::string& effect, bool vulkan) const {
     std::vector<const Point*> points;
     for (const Point& point : report_.points)

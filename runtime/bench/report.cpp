@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/bench/report.h"
-
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "runtime/bench/measure.h"
 
 namespace isoshade::bench {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/bench/scenes.h"
-
+// Whole scenes: time per pixel, and error against the reference at a smaller size.
 #include <algorithm>
 #include <bit>
 #include <filesystem>
 
 #include "backends/reference/backend.h"
-#include "runtime/bench/errors.h"
+#include "runtime/bench/backends.h"
+#include "runtime/bench/subject.h"
 #include "runtime/render/render.h"
 #include "runtime/scene/load.h"
 
@@ -17,7 +17,7 @@ namespace {
 using functions::Tier;
 using support::Diagnostics;
 
-/// A material, a cartoon with textures and outlines, and fog over both colour and depth.
+/// A physically based material, a cartoon with textures and outlines, and fog computed from colour and depth.
 constexpr const char* scenes[] = {"material_balls", "cartoon_tub", "fog_balls"};
 
 struct Size {
@@ -103,7 +103,7 @@ class SceneBench {
     return made ? &plans_.emplace_back(*std::move(made)) : nullptr;
   }
 
-  /// What the backend took to draw, posts included, in seconds.
+  /// Returns the time that the backend took to draw, including posts, in seconds.
   std::optional<double> draw(const render::Plan& plan, const Contestant& contestant, backends::Image& image) {
     render::DrawStats stats;
     if (!render::render(plan, *contestant.device, image, stats, diagnostics_)) return std::nullopt;

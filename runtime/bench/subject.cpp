@@ -2,6 +2,8 @@
 #include "runtime/bench/subject.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 
@@ -10,6 +12,7 @@
 #include "compiler/graph/document.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
+#include "runtime/bench/measure.h"
 
 namespace isoshade::bench {
 
@@ -31,8 +34,8 @@ constexpr Effect effects[] = {
     {"fog", "fog/height_density", "fog_density"},
 };
 
-/// What GLSL has of its own, under the names of generated functions: of rows of functions.def, of a power with a
-/// constant exponent, and of a whole effect.
+/// GLSL's built-in functions under the names of generated functions: of rows of functions.def, of a power with a constant
+/// exponent, and of a whole effect.
 constexpr const char* built_ins = R"(float iso_rsqrt(float a) {
   return inversesqrt(a);
 }
@@ -86,7 +89,7 @@ float toon_highlight(float spec, float scale, float width, float least_scale) {
 }
 )";
 
-/// Functions of three components where there are several widths.
+/// Whether some tier has its own implementation; of several widths, 1 and 3 are measured.
 bool is_measured(const functions::Variant& variant) {
   if (!variant.has_own_body(functions::Tier::fast) && !variant.has_own_body(functions::Tier::precise))
     return false;
@@ -97,7 +100,7 @@ bool is_measured(const functions::Variant& variant) {
 ir::Module row_module(const functions::Variant& variant) {
   ir::Module module = lower::frame_module();
   ir::Function function;
-  function.name = "row_" + variant.name;  // GLSL knows the name itself
+  function.name = "row_" + variant.name;  // the bare name may be a built-in of GLSL
   for (size_t i = 0; i < variant.parameters.size(); ++i)
     function.parameters.push_back({std::string(1, "xyzuv"[i]), variant.parameters[i], "", false});
   for (size_t i = 0; i < variant.results.size(); ++i)
@@ -108,6 +111,23 @@ ir::Module row_module(const functions::Variant& variant) {
   for (size_t i = 0; i < variant.parameters.size(); ++i) arguments.push_back(b.parameter(i));
   b.finish(functions::call_library(b, variant.row, arguments));
   return module;
+}
+
+struct Error {
+  double ulp, absolute;
+};
+
+Error error_of(float result, const reference::Real& exact) {
+  constexpr Error none{0, 0}, all{no_digit, 0};
+  if (exact.is_nan()) return std::isnan(result) ? none : all;
+  const auto near = static_cast<double>(exact);
+  if (std::abs(near) > 0x1.fffffefp127)  // rounds to an infinity
+    return std::isinf(result) && std::signbit(result) == (near < 0) ? none : all;
+  if (!std::isfinite(result)) return all;
+  if (std::abs(near) < 0x1p-126)
+    return result == 0 ? none : Error{no_digit, std::abs(static_cast<double>(result) - near)};
+  const double difference = std::abs(static_cast<double>(reference::Real(result) - exact));
+  return {std::min(no_digit, difference / std::ldexp(1.0, std::ilogb(near) - 23)), difference};
 }
 
 }  // namespace
@@ -147,7 +167,7 @@ driver::Program idle_program(const driver::Program& program) {
   ir::Function function;
   function.name = "idle";
   const auto type_of = [](const driver::Field& field) {
-    support::assert_that(field.words <= 4, "an eval column of a matrix");
+    support::assert_that(field.words <= 4, "an eval column is a matrix");
     return ir::vector_type(field.words);
   };
   for (const driver::Field& field : program.inputs)
@@ -195,6 +215,17 @@ std::optional<std::vector<reference::Real>> exact_results(const Subject& subject
     reference::evaluate(*subject.variant, arguments, std::span(exact).subspan(row * results, results));
   }
   return exact;
+}
+
+Errors errors_of(std::span<const int32_t> results, std::span<const reference::Real> exact) {
+  Errors errors;
+  for (size_t i = 0; i < results.size(); ++i) {
+    const Error error = error_of(std::bit_cast<float>(results[i]), exact[i]);
+    errors.max_ulp = std::max(errors.max_ulp, error.ulp);
+    errors.mean_ulp += error.ulp / static_cast<double>(results.size());
+    errors.max_absolute = std::max(errors.max_absolute, error.absolute);
+  }
+  return errors;
 }
 
 }  // namespace isoshade::bench

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the bench measures: effects of the library and the forms of their sources, and rows of functions.def.
+// What the bench measures: effects in the library's and the source's formula, and rows of functions.def; their inputs,
+// exact results and errors.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,35 +16,42 @@
 
 namespace isoshade::bench {
 
-/// One computation in one form: a function document, or a row of functions.def.
+/// One computation in one form: a function document or a row of functions.def.
 struct Subject {
   std::string effect;  ///< "cook_torrance", "pow"
   std::string form;    ///< "library", "source" or "function"
   std::string document;
   const functions::Variant* variant = nullptr;
-  std::string
-      builtins;  ///< GLSL definitions that stand for the generated ones of the same names; may be empty
+  std::string builtins;  ///< GLSL definitions that replace the generated ones of the same names; may be empty
 };
 
-/// Effects that have both forms below `graphs` (library/*/NAME.json, source_forms/NAME.json), and every row that has a body of its own in some tier. Only those whose name contains
-/// `filter`.
+/// The effects that have both forms below `graphs` (library/*/NAME.json, source_forms/NAME.json), and each row with its own
+/// implementation in some tier; only those whose names contain `filter`.
 std::vector<Subject> subjects(const std::string& graphs, const std::string& filter);
 
-/// The eval program of a tier.
+/// Compiles the eval program of a tier.
 std::optional<driver::Program> compile(const Subject& subject, functions::Tier tier, check::Library& library,
                                        support::Diagnostics& diagnostics);
 
-/// A program with the same inputs and results that computes nothing but the sum of its inputs: what reading and writing
-/// take.
+/// A program with the same inputs and results that only sums its inputs; its time is that of reading and writing.
 driver::Program idle_program(const driver::Program& program);
 
-/// `rows` records for a program's inputs, the same in every run: floats in the declared ranges, or those of the row,
-/// spread over numbers and over magnitudes; vectors of unit length, in the half space of the first.
+/// `rows` rows of inputs for a program, the same in every run: floats in the range of the input, half of them uniform and
+/// half logarithmic; unit vectors in the hemisphere around the first one.
 std::vector<int32_t> inputs_of(const Subject& subject, const driver::Program& program, size_t rows);
 
-/// What the results are in exact arithmetic of the subject's own formula, row by row.
+/// The results of the subject's own formula in exact arithmetic, row by row.
 std::optional<std::vector<reference::Real>> exact_results(const Subject& subject, check::Library& library,
                                                           const std::vector<int32_t>& inputs, size_t rows,
                                                           support::Diagnostics& diagnostics);
+
+struct Errors {
+  double max_ulp = 0, mean_ulp = 0;
+  double max_absolute = 0;
+};
+
+/// Errors in ULP of the exact result, at most no_digit. If the exact result is NaN or rounds to an infinity, the computed
+/// one must be the same; if it is below the normal floats, 0 is correct. Any other result there counts as no_digit.
+Errors errors_of(std::span<const int32_t> results, std::span<const reference::Real> exact);
 
 }  // namespace isoshade::bench

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* footer =
     "Exit codes: 0 success (verify: identical), 1 different (verify, fmt --check), not proved (check) or not\n"
     "finite (--fail-on-nan), 2 error.\n"
-    "The options of `isoshade --help` stand before or after the subcommand.\n"
+    "The options of `isoshade --help` may come before or after the subcommand.\n"
     "\"-\" is standard input or output. Errors go to standard error.";
 
 bool parse_size(const std::string& text, Size& size) {
@@ -34,7 +34,7 @@ const CLI::Validator size_text(
     [](std::string& text) {
       Size size;
       return parse_size(text, size) ? std::string()
-                                    : "\"" + text + "\" is no size: write WxH, 1x1 to 8192x8192";
+                                    : "\"" + text + "\" is not a size: write WxH, from 1x1 to 8192x8192";
     },
     "WxH");
 
@@ -51,16 +51,16 @@ std::optional<NamedRange> parse_range(const std::string& text) {
 const CLI::Validator range_text(
     [](std::string& text) {
       return parse_range(text) ? std::string()
-                               : "\"" + text + "\" is no range: write NAME=LEAST:MOST, as roughness=0.1:1";
+                               : "\"" + text + "\" is not a range: write NAME=MIN:MAX, for example roughness=0.1:1";
     },
-    "NAME=LEAST:MOST");
+    "NAME=MIN:MAX");
 
-/// CLI::Range takes what is no number.
+/// CLI::Range also accepts text that is not a number.
 const CLI::Validator time_text(
     [](std::string& text) {
       const auto time = support::parse_float_in_range(text);
       return time && *time >= -1e9f && *time <= 1e9f ? std::string()
-                                                     : "\"" + text + "\" is no number from -1e9 to 1e9";
+                                                     : "\"" + text + "\" is not a number from -1e9 to 1e9";
     },
     "SECONDS");
 
@@ -69,11 +69,11 @@ const CLI::Validator limit_text(
       const auto limit = support::parse_float_in_range(text);
       return limit && *limit >= 0.001f && *limit <= 86400
                  ? std::string()
-                 : "\"" + text + "\" is no number of seconds from 0.001 to 86400";
+                 : "\"" + text + "\" is not a number of seconds from 0.001 to 86400";
     },
     "SECONDS");
 
-/// "error" or "no-" and the id of a warning.
+/// "error", or "no-" followed by the id of a warning.
 const CLI::Validator warning_text(
     [](std::string& text) -> std::string {
       if (text == "error") return "";
@@ -88,11 +88,11 @@ const CLI::Validator warning_text(
     "error|no-ID");
 
 const CLI::IsMember backend_names({"cpu", "vulkan", "interpreter", "reference"});
-/// Of backends that must agree in every bit.
+/// The backends that must agree in every bit.
 const CLI::Validator compared_names(
     [](std::string& name) -> std::string {
       if (name != "reference") return backend_names(name);
-      return "the reference does not round, and so is identical to nothing; it is for `render` and `eval`";
+      return "the reference does not round, so its bits differ from every other backend; use it with `render` or `eval`";
     },
     "cpu,vulkan,interpreter");
 const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
@@ -106,23 +106,23 @@ void add_precision(CLI::App& app, functions::Tier& precision) {
   const auto choose = [&precision](const std::string& name) { precision = *functions::find_tier(name); };
   app.add_option_function<std::string>(
          "--precision", choose,
-         "How exact functions are: fast, default or precise; in each all backends give the same bits")
+         "Precision of functions: fast, default or precise; all backends compute the same bits in each")
       ->check(CLI::IsMember({"fast", "default", "precise"}))
       ->default_str("default");
 }
 
 void add_choice(CLI::App& app, BackendChoice& choice, bool lanes = true) {
   if (lanes)
-    app.add_option("--lanes", choice.lanes, "Lanes of the cpu backend (default: the machine's widest)")
+    app.add_option("--lanes", choice.lanes, "Lanes of the cpu backend (default: the widest that the machine has)")
         ->check(lane_names);
-  app.add_option("--threads", choice.threads, "Threads of the cpu backend (default: every core)")
+  app.add_option("--threads", choice.threads, "Threads of the cpu backend (default: one for each core)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--device", choice.device,
                  "Vulkan device: part of its name, or its number in `isoshade devices`");
-  app.add_option("--division", choice.division, "Force how vulkan divides (default: what the probe finds)")
+  app.add_option("--division", choice.division, "Division on vulkan: native or exact (default: as the probe decides)")
       ->check(division_names);
   app.add_option("--cxx", choice.compiler,
-                 "Compiler of generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
+                 "Compiler for generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
 }
 
 void add_changes(CLI::App& app, SceneChanges& changes) {
@@ -130,11 +130,11 @@ void add_changes(CLI::App& app, SceneChanges& changes) {
                  "Override a parameter: NAME.PARAMETER=VALUE, or PARAMETER=VALUE if only one has it")
       ->take_all();
   app.add_option("--mesh", changes.mesh,
-                 "A glTF file (.gltf, .glb) in place of the scene's one, or of its only object's mesh");
-  app.add_option("--time", changes.time, "Seconds for the node `time` instead of the scene's")
+                 "glTF file (.gltf, .glb) to show instead of the scene's own, or of the mesh of its only object");
+  app.add_option("--time", changes.time, "Value of the node `time` in seconds, instead of the scene's")
       ->check(time_text);
   app.add_option("--samples", changes.samples,
-                 "Samples of each pixel, averaged, instead of the scene's: 1, 4 or 16")
+                 "Samples per pixel: 1, 4 or 16, instead of the scene's")
       ->check(CLI::IsMember({"1", "4", "16"}));
 }
 
@@ -145,7 +145,7 @@ std::string subcommand_names(const CLI::App& app) {
   return names;
 }
 
-/// A line for a subcommand that is misspelt; empty if none is near.
+/// "Did you mean ...?" for a misspelt subcommand; empty if no name is close.
 std::string near_subcommand(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string_view> names;
   for (const CLI::App* subcommand : app.get_subcommands(nullptr)) names.push_back(subcommand->get_name());
@@ -165,28 +165,28 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       "isoshade");
   app.footer(footer);
   app.set_version_flag("--version", std::string(version));
-  app.require_subcommand(0, 1);  // so that a wrong word is named; none at all is refused below
+  app.require_subcommand(0, 1);  // so that CLI11 names an unknown word; the case of no subcommand is handled below
   app.fallthrough();
 
   Arguments parsed;
-  app.add_flag("-q,--quiet", parsed.common.quiet, "Print results, warnings and errors only");
+  app.add_flag("-q,--quiet", parsed.common.quiet, "Print only results, warnings and errors");
   std::string diagnostics = "text";
-  app.add_option("--diagnostics", diagnostics, "How errors and warnings are told: text, or json for tools")
+  app.add_option("--diagnostics", diagnostics, "Format of errors and warnings: text or json")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   std::vector<std::string> warnings;
-  app.add_option("-W", warnings, "-Werror: warnings are errors; -Wno-ID: without the warnings of this id")
+  app.add_option("-W", warnings, "-Werror: treat warnings as errors; -Wno-ID: disable the warning with this id")
       ->check(warning_text)
       ->expected(1)
       ->take_all();
   app.add_flag("--allow-outside", parsed.common.allow_outside,
-               "Let documents name files outside of their folder tree and the library");
+               "Let documents name files outside of their folder and the library");
   app.add_option_function<std::string>(
          "--build-timeout",
          [&parsed](const std::string& text) {
            parsed.common.build_timeout = support::Seconds(*support::parse_float_in_range(text));
          },
-         "Seconds after which a C++ compiler, Graphviz or gnuplot that has not ended is ended")
+         "Time limit for each run of a C++ compiler, Graphviz or gnuplot")
       ->check(limit_text)
       ->default_str("120");
   app.add_option("--library", parsed.common.library, "Folder of the library's function documents")
@@ -195,21 +195,21 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   CompileArguments compile;
   CLI::App* compile_app =
-      app.add_subcommand("compile", "Write the programs of a graph as GLSL, C++ and SPIR-V");
+      app.add_subcommand("compile", "Write the programs of a graph as GLSL, C++ or SPIR-V, with reflection");
   compile_app->add_option("GRAPH", compile.graph, "A function, effect or post document")->required();
   compile_app->add_option("-o,--output", compile.output,
-                          "The folder to write to; with --dump-after it may be left out");
-  compile_app->add_option("--target", compile.targets, "What to write: glsl, cpp, spirv")
+                          "Folder to write to; optional with --dump-after");
+  compile_app->add_option("--target", compile.targets, "Languages to write: glsl, cpp, spirv, separated by commas")
       ->delimiter(',')
       ->check(CLI::IsMember({"glsl", "cpp", "spirv"}))
       ->capture_default_str();
-  compile_app->add_option("--division", compile.division, "How the GLSL divides: native or exact")
+  compile_app->add_option("--division", compile.division, "Division in the GLSL: native or exact")
       ->check(division_names)
       ->capture_default_str();
   add_precision(*compile_app, compile.precision);
   compile_app->add_option(
       "--dump-after", compile.dump_after,
-      "Print what a stage made: document, graph, typed, lower, a pass, or `help` for the list");
+      "Print the result of a stage: document, graph, typed, lower or a pass; `help` lists them");
 
   RenderArguments render;
   std::string render_size;
@@ -217,17 +217,17 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   render_app->add_option("SCENE", render.scene, "A scene document")->required();
   render_app
       ->add_option("-o,--output", render.output,
-                   "FILE.png (encoded, 8 bits) or FILE.exr (linear, with depth)")
+                   "FILE.png (encoded, 8 bits) or FILE.exr (linear floats, with depth)")
       ->required();
   render_app
       ->add_option(
           "--backend", render.backend,
-          "cpu, vulkan, interpreter or reference (the graph as authored, in high precision, up to 256x256)")
+          "cpu, vulkan, interpreter or reference (the graph as authored in 57 digits, up to 256x256 pixels)")
       ->check(backend_names)
       ->capture_default_str();
-  render_app->add_option("--size", render_size, "Size in pixels instead of the scene's")->check(size_text);
+  render_app->add_option("--size", render_size, "Size in pixels, instead of the scene's")->check(size_text);
   render_app->add_flag("--stats", render.stats,
-                       "Say what was drawn, what was skipped and why, and what each step took");
+                       "Report what was drawn, what was skipped and why, and the time of each step");
   add_fail_on_nan(*render_app, render.fail_on_nan);
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
@@ -239,40 +239,40 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       app.add_subcommand("verify", "Render scenes on several backends and compare every bit");
   verify_app->add_option("SCENE", verify.scenes, "Scene documents")->required();
   verify_app
-      ->add_option("--backends", verify.backends, "Backends to compare with the first, separated by commas")
+      ->add_option("--backends", verify.backends, "Backends, separated by commas; each is compared with the first")
       ->delimiter(',')
       ->check(compared_names)
       ->capture_default_str();
-  verify_app->add_option("--size", verify_sizes, "Sizes instead of the scene's, separated by commas")
+  verify_app->add_option("--size", verify_sizes, "Sizes, separated by commas, instead of the scene's")
       ->delimiter(',')
       ->check(size_text);
   verify_app
       ->add_option("--lanes", verify.lanes,
-                   "Lane counts of the cpu backend, each compared, separated by commas")
+                   "Lane counts, separated by commas; the cpu backend is compared at each")
       ->delimiter(',')
       ->check(lane_names);
   verify_app->add_option("--report", verify.report,
-                         "Where images differ, write both and a heat map to this folder");
+                         "Folder for both images and a heat map where they differ");
   CLI::Option* golden = verify_app->add_option("--golden", verify.golden,
-                                               "A file of recorded hashes, of each scene at its own size");
+                                               "File of recorded hashes, one for each scene at its own size");
   golden->excludes(verify_app->get_option("--size"));
-  verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead");
+  verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead of comparing");
   add_fail_on_nan(*verify_app, verify.fail_on_nan);
   add_precision(*verify_app, verify.precision);
   add_changes(*verify_app, verify.changes);
   add_choice(*verify_app, verify.choice, false);
 
   EvalArguments eval;
-  CLI::App* eval_app = app.add_subcommand("eval", "Evaluate a function document over a table");
+  CLI::App* eval_app = app.add_subcommand("eval", "Evaluate a function document for each row of a table");
   eval_app->add_option("FUNCTION", eval.function, "A function document")->required();
   eval_app
       ->add_option("--inputs", eval.inputs,
-                   "A CSV file: a column an input; of vectors l.x l.y l.z, of colours c.r c.g c.b too")
+                   "CSV file with a column for each input; for vectors l.x l.y l.z, for colours also c.r c.g c.b")
       ->required();
-  eval_app->add_option("-o,--output", eval.output, "The CSV file to write")->capture_default_str();
+  eval_app->add_option("-o,--output", eval.output, "CSV file to write")->capture_default_str();
   eval_app
       ->add_option("--backend", eval.backend,
-                   "cpu, vulkan, interpreter (hex floats) or reference (the graph as authored: 40 digits)")
+                   "cpu, vulkan, interpreter (hexadecimal floats) or reference (the graph as authored; 40 digits)")
       ->check(backend_names)
       ->capture_default_str();
   add_precision(*eval_app, eval.precision);
@@ -280,61 +280,64 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   CheckArguments check;
   CLI::App* check_app = app.add_subcommand(
-      "check", "Prove that documents give finite numbers for all inputs they allow, and bound their error");
+      "check", "Prove that results are finite for all inputs a document allows, and bound their errors");
   check_app->add_option("DOCUMENT", check.documents, "Function, effect and post documents")->required();
   check_app->add_option("-o,--output", check.output,
-                        "Write the counterexamples of a function to this CSV file, as a table for `eval`");
+                        "CSV file for the counterexamples of a function, as a table for `eval`");
   std::vector<std::string> ranges;
   check_app
       ->add_option("--where", ranges,
-                   "Only inputs that lie so; also of the scalar product or clamp that a node gives")
+                   "Restrict an input, or the scalar product or clamp that a node computes; may be repeated")
       ->check(range_text);
   add_precision(*check_app, check.precision);
 
   FormatArguments format;
-  CLI::App* format_app = app.add_subcommand("fmt", "Bring documents into canonical layout, in place");
+  CLI::App* format_app = app.add_subcommand("fmt", "Format documents, in place");
   format_app->add_option("DOCUMENT", format.documents, "Documents; - reads stdin and writes stdout")
       ->required();
-  format_app->add_flag("--check", format.check, "Change nothing; list what is not canonical and end with 1");
+  format_app->add_flag("--check", format.check, "Change nothing; list files that are not formatted and exit with 1 if there are any");
 
   DrawArguments draw;
-  CLI::App* draw_app = app.add_subcommand("draw", "Draw a graph as a picture, by Graphviz");
+  CLI::App* draw_app = app.add_subcommand("draw", "Draw a graph as a diagram, using Graphviz");
   draw_app->add_option("GRAPH", draw.graph, "A function, effect or post document")->required();
   draw_app->add_option("-o,--output", draw.output, "FILE.svg, FILE.png or FILE.dot")->required();
-  draw_app->add_option("--depth", draw.depth, "How deep called functions are drawn inside each other")
+  draw_app->add_option("--depth", draw.depth, "Levels of called functions to draw")
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
 
   BenchArguments bench;
   CLI::App* bench_app = app.add_subcommand(
-      "bench", "Measure run time against error: forms, precisions, lane counts, vulkan and GLSL's built-ins");
+      "bench", "Measure run time and error: formulas, precisions, lane counts, Vulkan and GLSL's built-ins");
   bench_app->add_option("-o,--output", bench.output,
-                        "A folder for bench.csv, bench.json, bench.gp and bench.svg (by gnuplot)");
-  bench_app->add_option("--only", bench.only, "Only effects, functions and scenes with this in their names");
-  bench_app->add_flag("--quick", bench.quick, "Few rows and repetitions: a look, not a measurement");
-  bench_app->add_flag("--no-picture", bench.without_picture, "The tables alone: gnuplot is not needed");
-  bench_app->add_flag("--no-vulkan", bench.without_vulkan, "The cpu alone");
+                        "Folder for bench.csv, bench.json, bench.gp and bench.svg (drawn by gnuplot)");
+  bench_app->add_option("--only", bench.only, "Only effects, functions and scenes whose names contain this");
+  bench_app->add_flag("--quick", bench.quick, "Few rows and repetitions: a rough look, not a measurement");
+  bench_app->add_flag("--no-picture", bench.without_picture, "Write only the tables; gnuplot is not needed");
+  bench_app->add_flag("--no-vulkan", bench.without_vulkan, "Measure only the cpu backend");
   bench_app
-      ->add_option("--lanes", bench.lanes, "Lane counts of the cpu backend (default: all of the machine)")
+      ->add_option("--lanes", bench.lanes, "Lane counts of the cpu backend, separated by commas (default: all that the machine has)")
       ->delimiter(',')
       ->check(lane_names);
   add_choice(*bench_app, bench.choice, false);
 
   CacheArguments cache;
   CLI::App* cache_app =
-      app.add_subcommand("cache", "Tell where compiled C++ is kept, and how much of it there is");
+      app.add_subcommand("cache", "Print the folder of the cache of compiled C++ and its size");
   cache_app->add_flag("--clear", cache.clear,
-                      "Delete all that is kept; it is compiled again when it is needed");
+                      "Delete all entries; they are compiled again when needed");
 
   DevicesArguments devices;
   CLI::App* devices_app =
-      app.add_subcommand("devices", "List Vulkan devices and what the probe finds on each");
+      app.add_subcommand("devices", "List the Vulkan devices and the result of each probe check");
   devices_app->add_option("--device", devices.choice.device, "Only this device");
 
   NodesArguments nodes;
-  CLI::App* nodes_app = app.add_subcommand("nodes", "List the nodes of the language and the functions of the library, or tell all of one");
-  CLI::Option* node = nodes_app->add_option("NAME", nodes.name, "A node: its ports, domain, cost and error; a function by its library name: its ports and ranges; a function of expressions: its arguments");
-  nodes_app->add_flag("--markdown", nodes.markdown, "All nodes as the tables of graphs/README.md")
+  CLI::App* nodes_app = app.add_subcommand(
+      "nodes", "List the nodes of the language and the functions of the library, or describe one");
+  CLI::Option* node = nodes_app->add_option("NAME", nodes.name,
+                                               "A node (prints ports, domain, cost and error), a library function "
+                                               "(ports and ranges) or a function of expressions (arguments)");
+  nodes_app->add_flag("--markdown", nodes.markdown, "List all as the tables of graphs/README.md")
       ->excludes(node);
 
   CLI::App* schema_app =
@@ -345,7 +348,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
       throw CLI::RequiredError("--output");
   } catch (const CLI::ParseError& error) {
-    // CLI11's own codes are for its own kinds of error; ours are documented.
+    // CLI11 has an exit code for each kind of error; isoshade documents a single one.
     exit = app.exit(error) == 0 ? Exit::success : Exit::failure;
     if (exit == Exit::failure && app.get_subcommands().empty())
       std::cerr << "The subcommands are: " << subcommand_names(app) << "\n"
@@ -353,7 +356,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     return std::nullopt;
   }
   if (app.get_subcommands().empty()) {
-    std::cerr << "one of the subcommands is needed: " << subcommand_names(app) << "\n"
+    std::cerr << "a subcommand is required: " << subcommand_names(app) << "\n"
               << "Run with --help for more information.\n";
     exit = Exit::failure;
     return std::nullopt;

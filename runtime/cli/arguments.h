@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line as values. Only arguments.cpp knows CLI11, which takes longer to compile than all the rest.
+// The parsed command line. Only arguments.cpp includes CLI11, which takes longer to compile than the rest together.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,9 @@ namespace isoshade::cli {
 
 /// Exit codes of every subcommand.
 enum Exit : int {
-  success = 0,    ///< done; for verify: identical
-  different = 1,  ///< verify: some bit differs, or a hash is not the recorded one; --fail-on-nan
-  failure = 2,    ///< an error, told on stderr
+  success = 0,    ///< verify: identical
+  different = 1,  ///< verify: a bit differs, or a hash is not the recorded one; --fail-on-nan
+  failure = 2,    ///< an error, reported on stderr
 };
 
 struct Size {
@@ -24,21 +24,21 @@ struct Size {
   int height = 0;
 };
 
-/// What every subcommand that runs programs understands.
+/// Options of every subcommand that runs programs.
 struct BackendChoice {
-  std::string lanes;   ///< "1" "4" "8" "16" "8x2" "16x2"; empty: the widest of the machine
-  int threads = 0;     ///< 0: every core
-  std::string device;  ///< part of a Vulkan device's name, or its number; empty: a CPU device if there is one
-  std::string compiler;  ///< of generated C++; empty: $ISOSHADE_CXX, c++, g++, clang++
-  std::string division;  ///< "", "native" or "exact": overrides what the probe chose
+  std::string lanes;   ///< "1" "4" "8" "16" "8x2" "16x2"; empty: the widest that the machine has
+  int threads = 0;     ///< 0: one for each core
+  std::string device;  ///< part of the name of a Vulkan device, or its number; empty: a CPU device if there is one
+  std::string compiler;  ///< for generated C++; empty: $ISOSHADE_CXX, c++, g++, clang++
+  std::string division;  ///< "native" or "exact"; empty: as the probe decides
 };
 
-/// What a command shows otherwise than a scene's document says.
+/// Options that override values of a scene document.
 struct SceneChanges {
   std::vector<std::string> settings;  ///< name.parameter=value
-  std::string mesh;                   ///< a glTF file in place of the scene's; empty: none
+  std::string mesh;                   ///< a glTF file to show instead of the scene's mesh; empty: none
   std::optional<float> time;          ///< in seconds
-  std::optional<int> samples;         ///< of each pixel
+  std::optional<int> samples;         ///< per pixel
 };
 
 struct CompileArguments {
@@ -67,7 +67,7 @@ struct VerifyArguments {
   std::vector<std::string> backends{"cpu", "vulkan"};
   std::vector<Size> sizes;
   SceneChanges changes;
-  std::vector<std::string> lanes;  ///< each makes a cpu backend
+  std::vector<std::string> lanes;  ///< one cpu backend for each
   std::string report;
   std::string golden;
   bool update = false;
@@ -85,7 +85,7 @@ struct EvalArguments {
   BackendChoice choice;
 };
 
-/// Where an input, or the scalar product that a node gives, shall lie.
+/// A range to which `check` restricts an input, or the scalar product or clamp computed by a node.
 struct NamedRange {
   std::string name;
   float lo = 0, hi = 0;
@@ -95,7 +95,7 @@ struct CheckArguments {
   std::vector<std::string> documents;
   std::vector<NamedRange> where;
   functions::Tier precision = functions::Tier::standard;
-  std::string output;  ///< a table of counterexamples; empty: none is written
+  std::string output;  ///< file for the table of counterexamples; empty: none is written
 };
 
 struct FormatArguments {
@@ -106,16 +106,16 @@ struct FormatArguments {
 struct DrawArguments {
   std::string graph;
   std::string output;
-  int depth = 1;  ///< of called functions that are drawn inside
+  int depth = 1;  ///< how many levels of called functions are drawn
 };
 
 struct BenchArguments {
-  std::string output;  ///< a folder; empty: only the summary
-  std::string only;    ///< a part of the names of effects; empty: all
+  std::string output;  ///< a folder; empty: print only the summary
+  std::string only;    ///< part of the names of effects; empty: all
   bool quick = false;
   bool without_picture = false;
   bool without_vulkan = false;
-  std::vector<std::string> lanes;  ///< of the cpu; empty: all of the machine
+  std::vector<std::string> lanes;  ///< of the cpu backend; empty: all that the machine has
   BackendChoice choice;
 };
 
@@ -128,20 +128,20 @@ struct DevicesArguments {
 };
 
 struct NodesArguments {
-  std::string name;       ///< empty: all
-  bool markdown = false;  ///< all, as the manual's tables
+  std::string name;       ///< empty: list all
+  bool markdown = false;  ///< list all as the tables of graphs/README.md
 };
 
 struct SchemaArguments {};
 
 struct Common {
   bool quiet = false;
-  bool json = false;  ///< diagnostics as a JSON array, and nothing else on stderr
+  bool json = false;  ///< print diagnostics as a JSON array, and nothing else on stderr
   bool warnings_as_errors = false;
   std::vector<std::string> disabled;                             ///< ids of warnings
-  bool allow_outside = false;                                    ///< documents may name files anywhere
-  support::Seconds build_timeout = support::default_time_limit;  ///< of each compiler and drawing program
-  std::string library;  ///< the folder of library documents; empty: found beside the command or as installed
+  bool allow_outside = false;                                    ///< documents may name files in any folder
+  support::Seconds build_timeout = support::default_time_limit;  ///< for each run of a compiler, Graphviz or gnuplot
+  std::string library;  ///< the folder of library documents; empty: see library_root()
 };
 
 struct Arguments {
@@ -160,7 +160,7 @@ struct Arguments {
   std::optional<SchemaArguments> schema;
 };
 
-/// Exactly one subcommand is set, or `exit` is (help, version, a wrong command line).
+/// Returns arguments with exactly one subcommand set; or nothing, and sets `exit` (after --help, --version or an error).
 std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit);
 
 }  // namespace isoshade::cli

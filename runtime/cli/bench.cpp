@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade bench: run time against error, as tables and as a picture.
+// isoshade bench: measures run time and error; writes tables and a plot.
 #include <cstdio>
 #include <filesystem>
 
 #include "compiler/support/process.h"
 #include "compiler/support/visible.h"
 #include "runtime/bench/measure.h"
-#include "runtime/bench/report.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -16,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where gnuplot is; reports that it is not there, before anything takes its time.
+/// The path of gnuplot. Called first, so that a missing gnuplot is reported before the long measurement.
 std::optional<std::string> find_gnuplot(support::Diagnostics& diagnostics) {
   const std::string program = support::find_program("gnuplot");
   if (!program.empty()) return program;
   diagnostics.report(support::Id::no_gnuplot, "there is no `gnuplot` on PATH")
-      .suggest("install the package gnuplot-nox, or leave the picture out by --no-picture");
+      .suggest("install the package gnuplot-nox, or pass --no-picture");
   return std::nullopt;
 }
 
@@ -31,7 +30,7 @@ bool draw_picture(const std::string& gnuplot, const std::string& script, support
   if (end && end->late) {
     support::report_late(support::Id::no_gnuplot, gnuplot, "draw " + support::quote(script), limit,
                          diagnostics)
-        .suggest("give it more time (--build-timeout SECONDS), or leave the picture out by --no-picture");
+        .suggest("raise the limit (--build-timeout SECONDS), or pass --no-picture");
     return false;
   }
   if (end && end->status == 0) return true;
@@ -71,15 +70,15 @@ bool bench_to_folder(const BenchArguments& arguments, const Common& common, supp
   if (report->points.empty()) {
     diagnostics
         .report(support::Id::missing_argument,
-                "there is nothing to measure whose name contains " + support::quote(arguments.only))
-        .suggest("leave out --only to see all");
+                "no effect, function or scene has a name that contains " + support::quote(arguments.only))
+        .suggest("omit --only to list all");
     return false;
   }
   identical = bench::all_identical(*report);
   if (!common.quiet) std::fputs(bench::summary(*report).c_str(), stdout);
   if (arguments.output.empty()) return true;
   std::error_code error;
-  fs::create_directories(arguments.output, error);  // write_file tells what cannot be written
+  fs::create_directories(arguments.output, error);  // write_file reports a failure
   const std::string stem = arguments.output + "/bench";
   return scene::write_file(stem + ".csv", bench::csv_text(*report), diagnostics) &&
          scene::write_file(stem + ".json", bench::json_text(*report), diagnostics) &&
@@ -95,7 +94,7 @@ int bench(const BenchArguments& arguments, const Common& common) {
   bool identical = true;
   const bool done = bench_to_folder(arguments, common, diagnostics, identical);
   if (flush(diagnostics, common) || !done) return failure;
-  if (!identical) std::printf("not every point has the same bits on all backends\n");
+  if (!identical) std::printf("the backends computed different bits at some points\n");
   return identical ? success : different;
 }
 

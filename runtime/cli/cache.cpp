@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade cache: where compiled code is kept, how much of it there is, and how to be rid of it.
+// isoshade cache: prints the folder and the size of the cache of compiled C++, or clears it.
 #include "backends/cpu/cache.h"
 
 #include <cstdio>
@@ -14,7 +14,7 @@ int cache(const CacheArguments& arguments, const Common& common) {
   const auto cache = cpu::Cache::open("", diagnostics);
   const bool usual = cache && cache->folder() == cpu::Cache::usual_folder();
   if (cache && !usual)
-    std::printf("there is no cache: each run compiles anew\n");
+    std::printf("there is no cache: every run compiles again\n");
   else if (cache) {
     const cpu::CacheContents held = cache->contents();
     const cpu::CacheContents left = arguments.clear ? cache->clear() : held;
@@ -23,7 +23,7 @@ int cache(const CacheArguments& arguments, const Common& common) {
     if (arguments.clear)
       std::printf("%zu entries deleted, %zu left\n", held.entries - left.entries, left.entries);
     else
-      std::printf("%zu entries, %s; at most %zu and %s are kept\n", held.entries,
+      std::printf("%zu entries, %s; limits: %zu entries, %s\n", held.entries,
                   support::memory_text(held.bytes).c_str(), limit.entries,
                   support::memory_text(limit.bytes).c_str());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade check: proofs over all inputs of a document.
+// isoshade check: proves that a document computes finite numbers for all allowed inputs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,9 +16,9 @@ namespace isoshade::cli {
 
 namespace {
 
-constexpr size_t most_for_tools = 10'000;  ///< diagnostics
+constexpr size_t max_json_diagnostics = 10'000;
 
-/// Of floats the nearest that are not less, or not more: what is told must hold.
+/// The nearest float that is not less (not more) than the value, so that the printed bound holds.
 std::string number_above(double value) {
   auto nearest = static_cast<float>(value);
   if (static_cast<double>(nearest) < value) nearest = std::nextafter(nearest, HUGE_VALF);
@@ -36,12 +36,12 @@ std::string error_text(const prove::Bound& bound) {
   const double ulps = bound.relative * 0x1p24;
   std::string text = "error at most " + number_above(bound.absolute);
   if (!(ulps > 0 && ulps < 1e6)) return text;
-  // Results below the normal floats are zeros: no number of ULP holds for them.
+  // Results below 2^-126 are flushed to zero; for them only the absolute bound `slack` holds.
   text += ", at most " + support::format_float(static_cast<float>(std::ceil(10 * ulps) / 10)) + " ULP";
   return bound.slack > 0 ? text + " and " + number_above(bound.slack) : text;
 }
 
-bool tells_less(const prove::Bound& a, const prove::Bound& b) {
+bool is_weaker(const prove::Bound& a, const prove::Bound& b) {
   return a.absolute > b.absolute || std::min(a.relative, 1.0) > std::min(b.relative, 1.0);
 }
 
@@ -52,7 +52,7 @@ void print_bounds(const prove::Tape& tape, const prove::Proof& proof) {
   bool tips = false;
   for (size_t i = 0; i < tape.outputs.size(); ++i) {
     const prove::Bound &bound = proof.outputs[i], &followed = proof.followed[i];
-    const bool differs = proof.lost[i] == prove::none && tells_less(bound, followed);
+    const bool differs = proof.lost[i] == prove::none && is_weaker(bound, followed);
     std::string error = error_text(followed);
     if (proof.lost[i] != prove::none) error += ", lost at node " + node(proof.lost[i]);
     if (differs) error += "; where rounding tips a branch, " + error_text(bound);
@@ -75,10 +75,10 @@ std::string counted(size_t count, std::string_view what) {
 std::string summary(const prove::Proof& proof, const prove::NotProved& counts) {
   std::string text =
       "not proved" + counted(counts.refuted, "refuted") + counted(counts.undecided, "undecided");
-  text += counted(counts.later, "undecided that read what these give");
-  if (proof.unfinished) text += ", and more that was not looked at";
+  text += counted(counts.later, "undecided that depend on these");
+  if (proof.unfinished) text += "; the search stopped early, so there may be more";
   if (counts.shown < counts.refuted + counts.undecided)
-    text += "; " + std::to_string(counts.shown) + " are shown, --diagnostics json tells all";
+    text += "; " + std::to_string(counts.shown) + " are shown, --diagnostics json prints all";
   return text;
 }
 
@@ -100,7 +100,7 @@ std::string table_of(const prove::Tape& tape, const prove::Proof& proof) {
   return text;
 }
 
-/// What of `where` the subjects have; nothing, and a report, if some name is in none of them.
+/// The restrictions of --where. Reports a name that no subject has, and returns nothing.
 std::optional<std::vector<prove::Restriction>> restrictions(const std::vector<prove::Subject>& subjects,
                                                                const std::vector<NamedRange>& where,
                                                                support::Diagnostics& diagnostics) {
@@ -136,13 +136,13 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   Result result = Result::proved;
   const auto where = restrictions(*subjects, arguments.where, diagnostics);
   if (!where) return Result::error;
-  prove::Effort effort;  // errors of all passes together take as long as those of one function
+  prove::Effort effort;  // the passes of an effect share the error analysis time of one function
   effort.error /= std::max<size_t>(subjects->size(), 1);
   for (const prove::Subject& subject : *subjects) {
     const prove::Proof proof = prove::prove(subject.tape, effort, *where);
     if (proof.vacuous) {
-      diagnostics.report(support::Id::out_of_range, "no input lies within all ranges that " +
-                                                        support::quote(path) + " and --where give");
+      diagnostics.report(support::Id::out_of_range, "no input lies within both the ranges of " +
+                                                        support::quote(path) + " and those of --where");
       return Result::error;
     }
     const bool proved = proof.unproved.empty();
@@ -168,15 +168,15 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
 
 int check_documents(const CheckArguments& arguments, const Common& common) {
   support::Diagnostics diagnostics =
-      common.json ? make_diagnostics(common, most_for_tools) : make_diagnostics(common);
+      common.json ? make_diagnostics(common, max_json_diagnostics) : make_diagnostics(common);
   int exit = success;
   if (!read_standard_input_once(arguments.documents, diagnostics)) exit = failure;
   if (!arguments.output.empty() && arguments.documents.size() > 1) {
     diagnostics
         .report(support::Id::unwritable_file, support::quote(arguments.output) +
-                                                  " would be written once for each of " +
+                                                  " would be overwritten by each of the " +
                                                   std::to_string(arguments.documents.size()) + " documents")
-        .suggest("with -o, check one document at a time");
+        .suggest("check one document at a time with -o");
     exit = failure;
   }
   for (const std::string& document : arguments.documents) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade compile: the programs of a graph as files.
+// isoshade compile: writes the programs of a graph and its reflection. graphs/README.md describes the files.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -29,12 +29,12 @@ class Writer {
   bool program(const std::string& stem, const driver::Program& program) {
     const bool vertex = program.stage == driver::Stage::vertex;
     const auto division = arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
-    const auto bears = [&](driver::Target target) {
+    const auto fits = [&](driver::Target target) {
       return driver::within_limits(program, target, division, diagnostics_);
     };
-    if (wants("cpp") && !bears(driver::Target::cpu)) return false;
+    if (wants("cpp") && !fits(driver::Target::cpu)) return false;
     if (wants("glsl") || wants("spirv")) {
-      if (!bears(driver::Target::vulkan)) return false;
+      if (!fits(driver::Target::vulkan)) return false;
       const std::string text = driver::glsl(program, division);
       const std::string name = stem + (vertex ? ".vert" : ".frag");
       if (wants("glsl") && !write(name, text)) return false;
@@ -55,12 +55,12 @@ class Writer {
     const std::filesystem::path path = std::filesystem::path(arguments_.output) / name;
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(),
-                                        error);  // write_file reports what cannot be written
+                                        error);  // write_file reports a failure
     if (!may_write(path.string(), diagnostics_)) return false;
     if (is_document(path)) {
       diagnostics_
           .report(support::Id::unwritable_file,
-                  support::quote(path.string()) + " is a document, which the reflection would replace")
+                  support::quote(path.string()) + " is a document, which the reflection would overwrite")
           .suggest("choose another folder with -o");
       return false;
     }
@@ -72,13 +72,13 @@ class Writer {
   const std::vector<std::string>& written() const { return written_; }
 
  private:
-  /// Reflection is JSON beside JSON: written to the folder of its graph, it has the graph's name.
+  /// Written to the folder of its graph, the reflection may have the same file name as the graph.
   static bool is_document(const std::filesystem::path& path) {
     std::error_code error;
     if (path.extension() != ".json" || !std::filesystem::is_regular_file(path, error)) return false;
-    support::Diagnostics unheard;
-    const support::Source source = graph::read_source(path.string(), unheard);
-    const auto document = source ? graph::parse_document(source, unheard) : std::nullopt;
+    support::Diagnostics ignored;
+    const support::Source source = graph::read_source(path.string(), ignored);
+    const auto document = source ? graph::parse_document(source, ignored) : std::nullopt;
     return document && document->root.find("isoshade") != nullptr;
   }
 
@@ -112,7 +112,7 @@ ordered_json reflect(const std::vector<driver::Field>& fields) {
   return list;
 }
 
-/// What the function of a document takes, in order.
+/// The parameters of the document's function, in order.
 ordered_json reflect(const std::vector<interface::Binding>& bindings) {
   ordered_json list = ordered_json::array();
   for (const interface::Binding& binding : bindings) {
@@ -127,21 +127,21 @@ ordered_json reflect(const std::vector<interface::Binding>& bindings) {
   return list;
 }
 
-/// What the files of a pass begin with. Two names of 128 characters and an ending would be longer than the name of a
-/// file may be: then the names are cut, and the pass's number keeps files apart ("." is in no name).
+/// The common beginning of the file names of a pass. Two names of 128 characters with an extension exceed the length
+/// limit of file names; long names are therefore cut, and the number of the pass keeps them unique ("." is in no name).
 std::string pass_stem(const driver::Effect& effect, size_t pass) {
-  constexpr size_t most = 200;
+  constexpr size_t limit = 200;
   const std::string stem = effect.name + "." + effect.passes[pass].name;
-  if (stem.size() <= most) return stem;
+  if (stem.size() <= limit) return stem;
   return effect.name.substr(0, 96) + "." + effect.passes[pass].name.substr(0, 96) + "." +
          std::to_string(pass);
 }
 
-// Reflection comes first: where it would replace a document, nothing else is written either.
+// The reflection is written first: if it would overwrite a document, no other file is written either.
 bool write_effect(const driver::Effect& effect, std::string_view precision, Writer& writer) {
   ordered_json reflection{{"effect", effect.name}, {"document", effect.document}, {"precision", precision}};
   reflection["parameters"] = reflect(effect.parameters.fields);
-  // In the record they follow the parameters, one word each.
+  // One word each in the record, after the parameters.
   for (const driver::Image& image : effect.parameters.images) {
     constexpr const char* decodings[] = {"linear", "srgb", "srgb if 8 bits"};
     ordered_json row{{"name", image.slot.name}, {"file", image.file}};
@@ -203,7 +203,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
   options.tier = arguments.precision;
   int dumped = 0;
   const bool lists_stages = arguments.dump_after == "help";
-  std::set<std::string, std::less<>> listed;  // passes run more than once
+  std::set<std::string, std::less<>> listed;  // some passes run more than once
   if (!arguments.dump_after.empty())
     options.dump = [&](std::string_view stage, const std::function<std::string()>& text) {
       if (lists_stages && listed.emplace(stage).second)
@@ -229,7 +229,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
   }
   if (done) done = writer.headers();
   if (done && !arguments.dump_after.empty() && !lists_stages && dumped == 0)
-    diagnostics.report(support::Id::unknown_stage, "no stage \"" + arguments.dump_after + "\"")
+    diagnostics.report(support::Id::unknown_stage, "there is no stage \"" + arguments.dump_after + "\"")
         .suggest("`--dump-after help` lists the stages of this graph");
   if (flush(diagnostics, common) || !done) return failure;
   if (!common.quiet)

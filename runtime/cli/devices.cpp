@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade devices: what there is to run on, and whether it computes what the contract says.
+// isoshade devices: lists the Vulkan devices and whether each passes the probe.
 #include <cstdio>
 
 #include "runtime/cli/session.h"
@@ -25,7 +25,7 @@ bool print_device(const vulkan::DeviceInfo& device, support::Diagnostics& diagno
                 check.detail.empty() ? "" : ": ", check.detail.c_str());
   const char* division = backend->division() == driver::Division::native ? "native" : "exact";
   std::printf("   division: %s; %s\n", division,
-              backend->probe().passed() ? "images are identical to every other device's"
+              backend->probe().passed() ? "images are identical to those of every proven device"
                                         : "NOT proven: images may differ from those of other devices");
   return true;
 }
@@ -44,8 +44,8 @@ int devices([[maybe_unused]] const DevicesArguments& arguments, [[maybe_unused]]
     if (!print_device(device, diagnostics)) break;
   }
   if (!any && !diagnostics.has_errors())
-    diagnostics.report(support::Id::no_device, "no Vulkan device of that name")
-        .suggest("`isoshade devices` lists all");
+    diagnostics.report(support::Id::no_device, "no Vulkan device has that name or number")
+        .suggest("`isoshade devices` lists all devices");
 #else
   diagnostics.report(support::Id::no_device, "this isoshade was built without Vulkan");
 #endif

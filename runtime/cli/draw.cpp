@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade draw: a graph as a picture.
+// isoshade draw: draws a graph as a diagram.
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The picture in `format` as Graphviz makes it of `dot`; through files, so that no shell is needed.
+/// Runs Graphviz on `dot` and returns its output in `format`. Passes files, which needs no shell.
 std::optional<std::string> lay_out(const std::string& dot, const std::string& document,
                                    const std::string& format, support::Seconds limit,
                                    support::Diagnostics& diagnostics) {
   const auto fail = [&](const std::string& message) {
     diagnostics.report(support::Id::no_graphviz, message)
-        .suggest("install the package graphviz, or write a .dot file and draw it elsewhere");
+        .suggest("install the package graphviz, or write a .dot file and draw it on another machine");
     return std::nullopt;
   };
   const std::string program = support::find_program("dot");
@@ -33,10 +33,10 @@ std::optional<std::string> lay_out(const std::string& dot, const std::string& do
   if (!folder) {
     const int failure = errno;
     diagnostics
-        .report(support::Id::unwritable_file, "no temporary folder can be made in " +
+        .report(support::Id::unwritable_file, "cannot create a temporary folder in " +
                                                   support::quote(support::temporary_parent()) + ": " +
                                                   std::strerror(failure))
-        .suggest("set TMPDIR to a folder that can be written");
+        .suggest("set TMPDIR to a writable folder");
     return std::nullopt;
   }
   const std::string input = folder->path() + "/graph.dot";
@@ -47,14 +47,13 @@ std::optional<std::string> lay_out(const std::string& dot, const std::string& do
     support::report_late(support::Id::no_graphviz, program, "draw " + support::quote(document), limit,
                          diagnostics)
         .suggest(
-            "give it more time (--build-timeout SECONDS), or write a .dot file and draw it by another "
-            "layout");
+            "raise the limit (--build-timeout SECONDS), or write a .dot file and draw it with another layout");
     return std::nullopt;
   }
   if (!end || end->status != 0)
     return fail("`dot` failed: " + (end ? support::quote(end->output) : "it cannot be run"));
-  const support::Source picture = graph::read_source(output, diagnostics);
-  return picture != nullptr ? std::optional(picture->text()) : std::nullopt;
+  const support::Source diagram = graph::read_source(output, diagnostics);
+  return diagram != nullptr ? std::optional(diagram->text()) : std::nullopt;
 }
 
 bool draw_to_file(const DrawArguments& arguments, const Common& common, support::Diagnostics& diagnostics) {
@@ -73,8 +72,8 @@ bool draw_to_file(const DrawArguments& arguments, const Common& common, support:
   if (graph == nullptr || !may_write(arguments.output, diagnostics)) return false;
   const std::string dot = driver::draw(*graph, arguments.depth);
   if (format == ".dot") return scene::write_file(arguments.output, dot, diagnostics);
-  const auto picture = lay_out(dot, arguments.graph, format.substr(1), common.build_timeout, diagnostics);
-  return picture && scene::write_file(arguments.output, *picture, diagnostics);
+  const auto diagram = lay_out(dot, arguments.graph, format.substr(1), common.build_timeout, diagnostics);
+  return diagram && scene::write_file(arguments.output, *diagram, diagnostics);
 }
 
 }  // namespace

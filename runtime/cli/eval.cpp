@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade eval: a function document over a table.
+// isoshade eval: evaluates a function document for each row of a table.
 #include "backends/reference/backend.h"
 #include "compiler/driver/driver.h"
 #include "runtime/cli/session.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade nodes, isoshade schema: the node library for readers and for editors.
+// isoshade nodes, isoshade schema: describe the node library for readers and for editors.
 #include <algorithm>
 #include <cstdio>
 
@@ -15,7 +15,7 @@ namespace isoshade::cli {
 
 namespace {
 
-/// What is measured of a row: as far as it takes them, floats and three of them.
+/// The types for which the cost is printed: of those that the row accepts, float and a type of three components.
 std::vector<nodes::Example> measured(const nodes::Row& row) {
   const std::vector<nodes::Example> all = nodes::examples_of(row);
   std::vector<nodes::Example> chosen;
@@ -44,7 +44,7 @@ CostText cost_text(const nodes::Row& row, functions::Tier tier) {
   return {cost, error};
 }
 
-/// Of the default tier, and of the others where they differ.
+/// Cost and error in the default tier, and in the others if they differ.
 std::string cost_text(const nodes::Row& row) {
   const CostText usual = cost_text(row, functions::Tier::standard);
   std::string text = "cost   " + usual.cost + "\nerror  " + usual.error + "\n";
@@ -88,7 +88,7 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   const nodes::Row* called = nodes::find_function(arguments.name);
   if (called != nullptr && called->group == "function") {
     const std::string_view node = nodes::called_elsewhere(arguments.name, nodes::table());
-    std::string text = nodes::row_text(*called) + "  Called in expressions, its arguments in this order.\n";
+    std::string text = nodes::row_text(*called) + "  For expressions; its arguments are in this order.\n";
     if (!node.empty()) text += "  The node is " + std::string(node) + ".\n";
     std::fputs(text.c_str(), stdout);
     return success;
@@ -99,7 +99,7 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   const std::string_view other = nodes::called_elsewhere(arguments.name, nodes::table());
   const std::string_view near = other.empty() ? support::nearest(arguments.name, names) : other;
   diagnostics
-      .report(support::Id::unknown_node, "neither the nodes nor the library have " + support::quote(arguments.name))
+      .report(support::Id::unknown_node, "no node and no library function is called " + support::quote(arguments.name))
       .suggest(near.empty() ? "`isoshade nodes` lists all" : "did you mean " + support::quote(near) + "?");
   flush(diagnostics, common);
   return failure;

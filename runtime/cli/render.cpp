@@ -1,63 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade render: a scene to an image file.
+// isoshade render: renders a scene to an image file.
 #include "runtime/render/render.h"
 
 #include <cstdio>
 
-#include "runtime/cli/scene_source.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/image_file.h"
-#include "runtime/scene/load.h"
+#include "runtime/scene/scene.h"
 
 namespace isoshade::cli {
 
 namespace {
 
-/// Reports scenes in which no object, or more than one, is meant by --mesh.
-bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnostics& diagnostics) {
-  scene::Object* only = nullptr;
-  int models = 0;
-  for (scene::Object& object : scene.objects) {
-    if (object.mesh.kind != scene::MeshKind::gltf) continue;
-    only = &object;
-    ++models;
-  }
-  if (models == 0 && scene.objects.size() == 1) only = &scene.objects[0];
-  if (only == nullptr || models > 1) {
-    diagnostics.report(support::Id::unknown_setting,
-                       "--mesh is for scenes with one glTF, or with one object: this one has " +
-                           std::to_string(models) + " glTF and " + std::to_string(scene.objects.size()) +
-                           " objects");
-    return false;
-  }
-  only->mesh = {};
-  only->mesh.kind = scene::MeshKind::gltf;
-  only->mesh.file = file;
-  only->mesh.fit = true;
-  only->mesh_where = {};
-  return true;
-}
-
-}  // namespace
-
-std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
-                                       const Common& common, support::Diagnostics& diagnostics) {
-  const support::Source source = graph::read_source(path, diagnostics);
-  if (source == nullptr) return std::nullopt;
-  auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics);
-  if (!scene) return std::nullopt;
-  if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
-  if (changes.time) scene->time = *changes.time;
-  if (changes.samples) {
-    scene->samples = *changes.samples;
-    scene->samples_where = {};
-  }
-  return scene;
-}
-
-namespace {
-
-/// The exit code.
+/// Returns the exit code.
 int render_to_file(const RenderArguments& arguments, const Common& common,
                    support::Diagnostics& diagnostics) {
   if (!scene::check_image_path(arguments.output, diagnostics)) return failure;

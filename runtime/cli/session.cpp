@@ -14,6 +14,8 @@
 #include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/places.h"
+#include "runtime/scene/load.h"
+#include "runtime/scene/scene.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
 #endif
@@ -53,8 +55,8 @@ bool flush(support::Diagnostics& diagnostics, const Common& common) {
     std::set<support::Source> sources;
     for (const support::Diagnostic& diagnostic : diagnostics.all()) sources.insert(diagnostic.where.file);
     for (const support::Source& source : sources) {
-      support::Diagnostics unread;
-      const auto document = source != nullptr ? graph::parse_document(source, unread) : std::nullopt;
+      support::Diagnostics ignored;
+      const auto document = source != nullptr ? graph::parse_document(source, ignored) : std::nullopt;
       if (document) graph::add_pointers(*document, diagnostics);
     }
   }
@@ -63,19 +65,64 @@ bool flush(support::Diagnostics& diagnostics, const Common& common) {
   return diagnostics.has_errors();
 }
 
+namespace {
+
+/// Puts the glTF file in place of the mesh of the only glTF object, or of the only object. Reports scenes where the
+/// object is ambiguous.
+bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnostics& diagnostics) {
+  scene::Object* only = nullptr;
+  int models = 0;
+  for (scene::Object& object : scene.objects) {
+    if (object.mesh.kind != scene::MeshKind::gltf) continue;
+    only = &object;
+    ++models;
+  }
+  if (models == 0 && scene.objects.size() == 1) only = &scene.objects[0];
+  if (only == nullptr || models > 1) {
+    diagnostics.report(support::Id::unknown_setting,
+                       "--mesh needs a scene with one glTF mesh or one object; this scene has " +
+                           std::to_string(models) + " glTF meshes and " +
+                           std::to_string(scene.objects.size()) + " objects");
+    return false;
+  }
+  only->mesh = {};
+  only->mesh.kind = scene::MeshKind::gltf;
+  only->mesh.file = file;
+  only->mesh.fit = true;
+  only->mesh_where = {};
+  return true;
+}
+
+}  // namespace
+
+std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
+                                       const Common& common, support::Diagnostics& diagnostics) {
+  const support::Source source = graph::read_source(path, diagnostics);
+  if (source == nullptr) return std::nullopt;
+  auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics);
+  if (!scene) return std::nullopt;
+  if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
+  if (changes.time) scene->time = *changes.time;
+  if (changes.samples) {
+    scene->samples = *changes.samples;
+    scene->samples_where = {};
+  }
+  return scene;
+}
+
 bool may_write(const std::string& path, support::Diagnostics& diagnostics) {
   if (path == "-" || !support::was_read(path)) return true;
   diagnostics
       .report(support::Id::unwritable_file, "writing " + support::quote(path) + " would destroy an input")
-      .suggest("give the output another name");
+      .suggest("choose another name for the output");
   return false;
 }
 
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics) {
   if (std::count(inputs.begin(), inputs.end(), "-") <= 1) return true;
   diagnostics
-      .report(support::Id::unreadable_file, "standard input is asked for twice, and can be read only once")
-      .suggest("give all but one as files");
+      .report(support::Id::unreadable_file, "\"-\" is given twice, but standard input can be read only once")
+      .suggest("pass all but one as files");
   return false;
 }
 
@@ -121,8 +168,8 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
   if (no_compiler && !asked_for && stand_in == StandIn::allowed) {
     if (!common.quiet)
       std::fputs(
-          "note: there is no C++ compiler on this machine; the interpreter serves, with the same bits but "
-          "slowly\n",
+          "note: there is no C++ compiler on this machine; using the interpreter, which is slower but computes the same "
+          "bits\n",
           stderr);
     return interpreter::create();
   }

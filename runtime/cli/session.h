@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the subcommands share: where the library is, how diagnostics are printed, how backends are made.
+// What the subcommands share: finding the library, loading scenes, printing diagnostics, creating backends.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,40 +11,47 @@
 #include "compiler/check/library.h"
 #include "runtime/cli/arguments.h"
 
+namespace isoshade::scene {
+struct Scene;
+}
+
 namespace isoshade::cli {
 
-/// The folder of library documents: as given, the installed one beside the command, or that of
-/// the source tree the command was built from.
+/// The folder of library documents: that of --library, else the one installed with the command, else that of the source
+/// tree that the command was built from.
 std::string library_root(const Common& common);
 
-/// The library as the command line has it.
+/// The library, with the options of the command line.
 check::Library make_library(const Common& common);
 
-/// A sink that obeys -Werror and -Wno-ID, and keeps so many errors.
+/// Diagnostics that respect -Werror and -Wno-ID and keep up to `limit` errors.
 support::Diagnostics make_diagnostics(const Common& common, size_t limit = 50);
 
-/// Prints what has been reported to stderr, as text or as --diagnostics says; returns whether there was an
-/// error.
+/// Prints the diagnostics to stderr, in the format of --diagnostics. Returns whether there is an error.
 bool flush(support::Diagnostics& diagnostics, const Common& common);
 
-/// Why --fail-on-nan ends with 1, also where its warnings are silenced.
+/// Printed when --fail-on-nan makes the exit code 1, even if the warning is disabled.
 inline constexpr const char* not_finite_text = "--fail-on-nan: pixels are infinite or NaN\n";
 
-/// Progress for a person: to stderr, if that is a terminal and nobody asked for quiet.
+/// Prints a line of progress to stderr, if that is a terminal and --quiet is not set.
 void progress(const Common& common, const std::string& line);
 
-/// Whether it is safe to write the file: it is none of those that have been read so far, whatever named them. Ask when
-/// all is read and nothing computed. Reports if it is one.
+/// Reads a scene and applies the changes of the command line. A glTF file of --mesh is centred and scaled to unit size.
+std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
+                                       const Common& common, support::Diagnostics& diagnostics);
+
+/// Returns false, with a diagnostic, if the file has been read in this run, by whatever path. Call it after reading all
+/// inputs and before computing.
 bool may_write(const std::string& path, support::Diagnostics& diagnostics);
 
-/// Whether "-" stands at most once among the files to be read. Reports if not.
+/// Returns false, with a diagnostic, if "-" occurs more than once among the inputs.
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics);
 
-/// Whether the interpreter may serve for the cpu: not where the cpu is to be proven.
+/// Whether the interpreter may replace the cpu backend if there is no compiler; not if the cpu backend is to be verified.
 enum class StandIn { allowed, refused };
 
-/// Makes a backend by its name. Where there is no compiler and none was named, the interpreter stands in for the
-/// cpu and says so.
+/// Creates a backend by its name. If there is no compiler and the user named none, the interpreter replaces the cpu
+/// backend, with a note on stderr.
 std::unique_ptr<backends::Backend> make_backend(const std::string& name, const BackendChoice& choice,
                                                 const Common& common, support::Diagnostics& diagnostics,
                                                 StandIn stand_in = StandIn::allowed);

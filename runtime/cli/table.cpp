@@ -36,12 +36,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t\r\"") - begin + 1);
 }
 
-/// Walks over a CSV text: lines, and the cells in them with their places.
+/// Reads the lines of a CSV text and their cells, and reports errors at their positions.
 class Reader {
  public:
   Reader(const support::Source& source, support::Diagnostics& diagnostics)
       : source_(source), text_(source->text()), diagnostics_(diagnostics) {
-    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // spreadsheets put a byte order mark there
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // spreadsheets write a byte order mark
   }
 
   bool next_line() {
@@ -96,7 +96,7 @@ std::vector<Column> all_columns(const std::vector<driver::Field>& fields) {
   return columns;
 }
 
-/// The first ones of very many.
+/// The names separated by commas, at most 16 of them.
 std::string joined(const std::vector<std::string_view>& names) {
   constexpr size_t most = 16;
   std::string text;
@@ -104,7 +104,7 @@ std::string joined(const std::vector<std::string_view>& names) {
   return names.size() > most ? text + ",..." : text;
 }
 
-/// "c.g" as columns have it, "c.y".
+/// "c.y" for "c.g": columns are named by x y z w.
 std::string column_name(std::string_view cell) {
   std::string name(cell);
   if (name.size() < 3 || name[name.size() - 2] != '.') return name;
@@ -114,7 +114,7 @@ std::string column_name(std::string_view cell) {
   return name;
 }
 
-/// Which of `columns` each cell of the heading names.
+/// The column that each cell of the heading names.
 std::optional<std::vector<const Column*>> read_heading(Reader& reader, const std::vector<Column>& columns) {
   std::vector<const Column*> heading;
   std::vector<std::string_view> names;
@@ -130,7 +130,7 @@ std::optional<std::vector<const Column*>> read_heading(Reader& reader, const std
         report.note("the columns are " + joined(names));
       good = false;
     } else if (std::ranges::find(heading, &*found) != heading.end()) {
-      reader.report(cell, "the column \"" + std::string(cell) + "\" is there twice");
+      reader.report(cell, "the column \"" + std::string(cell) + "\" occurs twice");
       good = false;
     } else {
       heading.push_back(&*found);
@@ -159,7 +159,7 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
   Reader reader(source, diagnostics);
   if (!reader.next_line()) {
     diagnostics.report(support::Id::bad_table, {source, 0, 0}, "the table is empty")
-        .suggest("its first line names the columns");
+        .suggest("the first line must name the columns");
     return std::nullopt;
   }
   const std::vector<Column> columns = all_columns(fields);
@@ -170,7 +170,7 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
     const std::vector<std::string_view> cells = reader.cells();
     if (cells.size() != heading->size()) {
       reader.report({}, "this row has " + std::to_string(cells.size()) +
-                            (cells.size() == 1 ? " cell" : " cells") + ", and there are " +
+                            (cells.size() == 1 ? " cell" : " cells") + ", but there are " +
                             std::to_string(heading->size()) + " columns");
       return std::nullopt;
     }
@@ -183,7 +183,7 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
         auto& report = reader.report(cells[i], "\"" + std::string(cells[i].substr(0, 40)) + "\" is not " +
                                                    std::string(kinds[static_cast<size_t>(column.cell)]));
         if (column.cell == Cell::floating && support::parse_float(cells[i]))
-          report.suggest("it is beyond the range of float; infinities are written inf and -inf");
+          report.suggest("it is outside the range of float; write infinities as inf and -inf");
         return std::nullopt;
       }
       table.words[table.rows * columns.size() + column.word] = *value;
@@ -195,7 +195,7 @@ std::optional<Table> read_table(const support::Source& source, const std::vector
 
 namespace {
 
-/// `cell` tells the text of a word of the table.
+/// `cell` returns the text of a word of the table.
 template <class CellText>
 std::string write_cells(size_t rows, const std::vector<Column>& columns, CellText cell) {
   std::string text;

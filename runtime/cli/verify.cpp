@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// isoshade verify: scenes on several backends, every bit compared, hashes held against recorded ones.
+// isoshade verify: renders scenes on several backends, compares every bit, and compares hashes with recorded ones.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
-#include "runtime/cli/scene_source.h"
 #include "runtime/cli/session.h"
 #include "runtime/compare/compare.h"
 #include "runtime/compare/golden.h"
 #include "runtime/compare/report.h"
 #include "runtime/render/render.h"
+#include "runtime/scene/scene.h"
 
 namespace isoshade::cli {
 
@@ -30,7 +30,7 @@ class Verifier {
     if (result == success) {
       for (const std::string& path : arguments_.scenes) result = std::max(result, verify_scene(path));
       if (arguments_.update && result == different)
-        std::printf("nothing is recorded: the images differ\n");
+        std::printf("no hash was recorded, because the images differ\n");
       else if (arguments_.update && result == success &&
                !compare::update_goldens(arguments_.golden, goldens_, diagnostics_))
         result = failure;
@@ -43,7 +43,7 @@ class Verifier {
     if (arguments_.update && arguments_.golden.empty()) {
       diagnostics_
           .report(support::Id::missing_argument,
-                  "--update records hashes in a golden file, and none is named")
+                  "--update records hashes in a golden file, but none is named")
           .suggest("add --golden FILE");
       return false;
     }
@@ -52,12 +52,12 @@ class Verifier {
     if (!read_standard_input_once(read, diagnostics_)) return false;
     if (!arguments_.golden.empty() && std::ranges::count(arguments_.scenes, "-") != 0) {
       diagnostics_
-          .report(support::Id::missing_argument, "a scene on standard input has no name to record a hash by")
-          .suggest("give the scene as a file");
+          .report(support::Id::missing_argument, "a scene on standard input has no name under which to record a hash")
+          .suggest("pass the scene as a file");
       return false;
     }
     if (!arguments_.golden.empty()) {
-      // A file that --update is about to make need not be there yet. What it holds then is read again when it is written.
+      // --update may create the file. If it exists, update_goldens reads it again before writing.
       if (!arguments_.update || std::filesystem::exists(arguments_.golden)) {
         auto read = compare::read_goldens(arguments_.golden, diagnostics_);
         if (!read) return false;
@@ -78,8 +78,8 @@ class Verifier {
       }
     }
     if (backends_.size() < 2 && arguments_.golden.empty()) {
-      diagnostics_.report(support::Id::missing_argument, "one backend alone has nothing to be compared with")
-          .suggest("name a second one in --backends, several --lanes, or recorded hashes by --golden FILE");
+      diagnostics_.report(support::Id::missing_argument, "a single backend cannot be compared with anything")
+          .suggest("name a second one in --backends, several --lanes, or recorded hashes with --golden FILE");
       return false;
     }
     return true;
@@ -118,7 +118,7 @@ class Verifier {
       progress(common_, "  rendering on " + backends_[i].name);
       render::DrawStats stats;
       if (!render::render(*plan, *backends_[i].backend, images[i], stats, diagnostics_)) return failure;
-      if (i > 0) continue;  // the others differ, or have the same
+      if (i > 0) continue;  // the others either differ or have the same pixels
       render::warn_non_finite(scene, *plan, stats.non_finite, diagnostics_);
       if (!arguments_.fail_on_nan || stats.non_finite.none()) continue;
       std::fputs(not_finite_text, stderr);
@@ -126,7 +126,7 @@ class Verifier {
     }
     for (size_t i = 1; i < images.size(); ++i)
       result = std::max(result, compare_with_first(path, scene, images, i));
-    return std::max(result, hold_against_golden(path, scene, images[0]));
+    return std::max(result, compare_with_golden(path, scene, images[0]));
   }
 
   int compare_with_first(const std::string& path, const scene::Scene& scene,
@@ -152,7 +152,7 @@ class Verifier {
     return different;
   }
 
-  int hold_against_golden(const std::string& path, const scene::Scene& scene, const backends::Image& image) {
+  int compare_with_golden(const std::string& path, const scene::Scene& scene, const backends::Image& image) {
     const std::string hash = compare::image_hash(image);
     std::printf("  sha256 %s\n", hash.c_str());
     if (arguments_.golden.empty()) return success;
@@ -177,7 +177,7 @@ class Verifier {
   check::Library library_;
   support::Diagnostics diagnostics_ = make_diagnostics(common_);
   std::vector<NamedBackend> backends_;
-  compare::Goldens goldens_;  ///< those of the file; with --update, those to be put into it
+  compare::Goldens goldens_;  ///< those read from the file; with --update, those to write to it
 };
 
 }  // namespace

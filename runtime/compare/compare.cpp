@@ -12,15 +12,15 @@
 namespace isoshade::compare {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "hashes are over little-endian words");
+static_assert(std::endian::native == std::endian::little, "the hashes are defined over little-endian words");
 
 void check_whole(const backends::Image& image) {
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  support::assert_that(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "image of odd size");
+  support::assert_that(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "the pixel count of an image does not match its size");
 }
 
-/// Floats in ascending order: negative ones are turned round and come first.
-uint32_t place_on_line(float x) {
+/// Maps floats to integers in the same order: negative floats come first, with their bits inverted.
+uint32_t ordered_bits(float x) {
   constexpr uint32_t sign = 0x80000000u;
   const auto bits = std::bit_cast<uint32_t>(x);
   return (bits & sign) != 0 ? ~bits : bits | sign;
@@ -50,8 +50,8 @@ Pixel pixel_at(const backends::Image& image, int x, int y) {
 }
 
 uint32_t ulp_distance(float a, float b) {
-  const uint32_t x = place_on_line(a);
-  const uint32_t y = place_on_line(b);
+  const uint32_t x = ordered_bits(a);
+  const uint32_t y = ordered_bits(b);
   return std::max(x, y) - std::min(x, y);
 }
 

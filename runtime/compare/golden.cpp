@@ -35,7 +35,7 @@ std::string read_hash(const Document& document, graph::ObjectReader& reader, std
                     });
   if (!fits && golden.find(key) != nullptr) {
     diagnostics.report(Id::out_of_range, document.span(*golden.find(key)),
-                       quote(key) + " is not a hash of 64 lower-case hex digits");
+                       quote(key) + " is not a hash of 64 lower-case hexadecimal digits");
   }
   return hash;
 }
@@ -69,15 +69,15 @@ std::string json_string(const std::string& text) {
   return quoted + "\"";
 }
 
-/// Held until its end by one process at a time. No file is needed for it, so none is left.
+/// Locks a folder against other processes. Locking the folder itself needs no lock file that could be left behind.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
       : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (descriptor_ < 0) return;  // whoever writes there reports it
+    if (descriptor_ < 0) return;  // the write that follows reports the error
     constexpr int most_attempts = 600;
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
-      // Some file systems know no locks: there it goes without.
+      // Without a lock if the file system does not support them.
       held_by_another_ = flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
       if (!held_by_another_) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -115,11 +115,11 @@ std::optional<Goldens> read_goldens(const std::string& path, Diagnostics& diagno
   const size_t errors_before = diagnostics.error_count();
   const support::Source source = graph::read_source(path, diagnostics);
   const auto document = source ? graph::parse_document(source, diagnostics) : std::nullopt;
-  if (!document || !check_object(*document, document->root, "a file of goldens", diagnostics))
+  if (!document || !check_object(*document, document->root, "a golden file", diagnostics))
     return std::nullopt;
   Goldens goldens;
   for (const Member& scene : document->root.members) {
-    if (!check_object(*document, scene.value, "a scene's goldens", diagnostics)) continue;
+    if (!check_object(*document, scene.value, "the entry of a scene", diagnostics)) continue;
     for (const Member& tier : scene.value.members)
       goldens[scene.key][tier.key] = read_golden(*document, tier.value, diagnostics);
   }

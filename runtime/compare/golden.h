@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Golden images: the recorded hashes of scenes, by the scene's path from the file and the precision tier.
+// Golden images: recorded hashes, by the path of the scene (relative to this file) and the precision tier.
 //
 //   {
 //     "../../graphs/scenes/material_balls.json": {
@@ -25,22 +25,20 @@ struct Golden {
   bool operator==(const Golden&) const = default;
 };
 
-/// By scene, then by tier.
+/// Keys: scene, then tier.
 using Goldens = std::map<std::string, std::map<std::string, Golden>>;
 
-/// How a scene is named in the file: by its path from the folder of that file, so that it does not matter where
-/// the command is run.
+/// The key of a scene: its path relative to the folder of the golden file, whatever the working directory.
 std::string golden_key(const std::string& scene_path, const std::string& golden_path);
 
-/// Reports a file that is missing or is no file of goldens.
+/// Reports a missing or malformed file.
 std::optional<Goldens> read_goldens(const std::string& path, support::Diagnostics& diagnostics);
-/// Puts these into the file, or makes it; what else it holds by then stays, also what another process is putting there:
-/// they wait for each other, by a lock on the folder. Sorted and indented, so that a change shows as one line. The file
-/// is replaced whole or not at all.
+/// Writes `changes` to the file, creating it if needed, and keeps all other entries. A lock on the folder keeps concurrent
+/// updates from losing entries. The file is replaced atomically; it is sorted and indented, so that diffs are small.
 bool update_goldens(const std::string& path, const Goldens& changes, support::Diagnostics& diagnostics);
 std::string goldens_text(const Goldens& goldens);
 
-/// Empty if the scene is recorded with just these hashes; otherwise what is wrong, as one line.
+/// Empty if the recorded hashes of the scene are the same; otherwise one line that says what differs.
 std::string golden_mismatch(const Goldens& goldens, const std::string& key, const std::string& tier,
                             const Golden& found);
 

@@ -24,7 +24,7 @@ std::string report_text(const NamedImage& a, const NamedImage& b, const Comparis
             ", sha256 " + image_hash(*side->image) + "\n";
   }
   if (comparison.same_size)
-    text += "\ndifference.png: yellow where pixels differ by 1 ULP, to red where by 2^31; grey: identical\n";
+    text += "\ndifference.png: from yellow (pixels differ by 1 ULP) to red (by 2^31 ULP); grey: identical\n";
   return text;
 }
 
@@ -58,7 +58,7 @@ bool write_report(const std::string& folder, const NamedImage& a, const NamedIma
   std::filesystem::create_directories(root, error);
   if (error) {
     diagnostics.report(support::Id::unwritable_file,
-                       "cannot make the folder " + support::quote(folder) + ": " + error.message());
+                       "cannot create the folder " + support::quote(folder) + ": " + error.message());
     return false;
   }
   for (const NamedImage* side : {&a, &b}) {

@@ -29,7 +29,7 @@ TEST_F(Cli, SaysWhereATableIsWrong) {
   EXPECT_NE(error("alpha\n1\n").find("there is no column \"n_dot_h\""), std::string::npos);
   EXPECT_NE(error("\xef\xbb\xbf"
                   "alpha,n_dot_h\n1\n")
-                .find("this row has 1 cell, and there are 2 columns"),
+                .find("this row has 1 cell, but there are 2 columns"),
             std::string::npos);
   EXPECT_NE(error("alpha,n_dot_h\n1,one\n").find("in.csv:2:3: error[bad-table]: \"one\" is not a float"),
             std::string::npos);

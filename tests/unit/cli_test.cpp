@@ -195,7 +195,7 @@ TEST_F(Cli, ShowsAnotherTime) {
   EXPECT_EQ(run("render " + scene + " -o " + file("a.png") + " --time soon").exit, 2);
   for (const char* time : {"nan", "inf", "-2e9", "soon"})
     EXPECT_NE(
-        run("render " + scene + " -o " + file("c.png") + " --time " + time).text.find("is no number from"),
+        run("render " + scene + " -o " + file("c.png") + " --time " + time).text.find("is not a number from"),
         std::string::npos)
         << time;
 }
