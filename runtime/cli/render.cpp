@@ -6,9 +6,54 @@
 
 #include "runtime/cli/session.h"
 #include "runtime/scene/image_file.h"
-#include "runtime/scene/scene.h"
+#include "runtime/scene/load.h"
 
 namespace isoshade::cli {
+
+namespace {
+
+/// Puts the glTF file in place of the mesh of the only glTF object, or of the only object. Reports scenes where the
+/// object is ambiguous.
+bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnostics& diagnostics) {
+  scene::Object* only = nullptr;
+  int models = 0;
+  for (scene::Object& object : scene.objects) {
+    if (object.mesh.kind != scene::MeshKind::gltf) continue;
+    only = &object;
+    ++models;
+  }
+  if (models == 0 && scene.objects.size() == 1) only = &scene.objects[0];
+  if (only == nullptr || models > 1) {
+    diagnostics.report(support::Id::unknown_setting,
+                       "--mesh needs a scene with one glTF mesh or one object; this scene has " +
+                           std::to_string(models) + " glTF meshes and " +
+                           std::to_string(scene.objects.size()) + " objects");
+    return false;
+  }
+  only->mesh = {};
+  only->mesh.kind = scene::MeshKind::gltf;
+  only->mesh.file = file;
+  only->mesh.fit = true;
+  only->mesh_where = {};
+  return true;
+}
+
+}  // namespace
+
+std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
+                                       const Common& common, support::Diagnostics& diagnostics) {
+  const support::Source source = graph::read_source(path, diagnostics);
+  if (source == nullptr) return std::nullopt;
+  auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics);
+  if (!scene) return std::nullopt;
+  if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
+  if (changes.time) scene->time = *changes.time;
+  if (changes.samples) {
+    scene->samples = *changes.samples;
+    scene->samples_where = {};
+  }
+  return scene;
+}
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Golden images: recorded hashes, by the path of the scene (relative to this file) and the precision tier.
+// Golden images: recorded hashes, by the path of the scene (relative to the golden file) and the precision tier.
 //
 //   {
 //     "../../graphs/scenes/material_balls.json": {
