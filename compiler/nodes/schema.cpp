@@ -147,7 +147,7 @@ SchemaJson color_schema() {
 SchemaJson pass_schema() {
   std::vector<SchemaKey> keys{{"name", reference("id"), true}};
   for (const interface::PassStateRow& row : interface::pass_states())
-    keys.push_back({std::string(row.key), described(one_of(row.values), std::string(row.doc))});
+    keys.push_back({row.key, described(one_of(row.values), row.doc)});
   keys.insert(keys.end(), {{"position", described(reference("link"), "where vertices go; else they stay")},
                            {"position_space", one_of({"world", "object", "view"})},
                            {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
