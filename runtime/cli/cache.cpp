@@ -23,7 +23,7 @@ int cache(const CacheArguments& arguments, const Common& common) {
     if (arguments.clear)
       std::printf("%zu entries deleted, %zu left\n", held.entries - left.entries, left.entries);
     else
-      std::printf("%zu entries, %s; limits: %zu entries, %s\n", held.entries,
+      std::printf("%zu entries, %s (at most %zu entries, %s)\n", held.entries,
                   support::memory_text(held.bytes).c_str(), limit.entries,
                   support::memory_text(limit.bytes).c_str());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands that work with documents: compile, eval, check, fmt, draw, nodes; and how diagnostics are told.
+// The subcommands for documents (compile, eval, check, fmt, draw, nodes) and the options for diagnostics.
 #include <algorithm>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 using namespace testing;
 namespace fs = std::filesystem;
 
-TEST_F(Cli, EvaluatesATable) {
+TEST_F(Cli, EvalWritesOneRowPerInputRow) {
   const std::string table = file("in.csv", "n_dot_h, alpha\n1, 0.5\n0x1.8p-1,0.0625\n0.5,nan\n");
   for (const char* backend : {"cpu", "interpreter"})
     EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " --backend " + backend).text,
@@ -20,7 +20,7 @@ TEST_F(Cli, EvaluatesATable) {
   EXPECT_EQ(read(folder_ / "out.csv"), "out\n0x1.45f306p+0\n0x1.a57c44p-8\nnan\n");
 }
 
-TEST_F(Cli, SaysWhereATableIsWrong) {
+TEST_F(Cli, TableErrorsHaveAPosition) {
   const auto error = [&](const std::string& text) {
     return run("eval " + ggx + " --inputs " + file("in.csv", text)).text;
   };
@@ -35,7 +35,7 @@ TEST_F(Cli, SaysWhereATableIsWrong) {
             std::string::npos);
 }
 
-TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
+TEST_F(Cli, CompiledFilesNeedNoSourceTree) {
   const Outcome outcome =
       run("compile " + graphs + "/materials/cook_torrance.json --target glsl,cpp,spirv -o " + file("out"));
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
@@ -47,7 +47,7 @@ TEST_F(Cli, CompilesAGraphToFilesThatStandAlone) {
   EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
 }
 
-TEST_F(Cli, CompilesAnEffectWhoseNamesAreAsLongAsMayBe) {
+TEST_F(Cli, LongestNamesGiveValidFileNames) {
   const std::string effect(128, 'e'), pass(127, 'p');
   std::string passes;
   for (const char* digit : {"1", "2"})
@@ -60,14 +60,14 @@ TEST_F(Cli, CompilesAnEffectWhoseNamesAreAsLongAsMayBe) {
   const Outcome outcome =
       run("compile " + file("long.json", document) + " --target glsl,cpp,spirv -o " + file("out"));
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
-  // The reflection, and of two passes two stages of three files.
+  // The reflection, and three files for each of two stages of two passes.
   const auto files = fs::directory_iterator(folder_ / "out");
   EXPECT_EQ(
       std::count_if(begin(files), end(files), [](const auto& entry) { return entry.is_regular_file(); }),
       1 + 2 * 2 * 3);
 }
 
-TEST_F(Cli, CompilesAPostToFiles) {
+TEST_F(Cli, CompileWritesPosts) {
   const Outcome outcome =
       run("compile " + graphs + "/effects/bloom/blur.json --target glsl,cpp -o " + file("out"));
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
@@ -78,7 +78,7 @@ TEST_F(Cli, CompilesAPostToFiles) {
   EXPECT_NE(reflection.find("\"taps\""), std::string::npos) << reflection;
 }
 
-TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
+TEST_F(Cli, CheckSetsTheExitCodeAndWritesCounterexamplesForEval) {
   const Outcome proved = run("check " + ggx);
   EXPECT_EQ(proved.exit, 0) << proved.text;
   EXPECT_NE(proved.text.find("ggx_d.json: proved\n  out in ["), std::string::npos) << proved.text;
@@ -94,7 +94,7 @@ TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
   EXPECT_NE(restricted.text, proved.text);
   const std::string fog = graphs + "/library/fog/height_density.json";
   EXPECT_EQ(run("check " + fog + " --precision fast").text, run("check " + fog).text)
-      << "it calls nothing that differs";
+      << "it calls no function that differs between tiers";
   const Outcome unknown = run("check " + ggx + " --where n_dot_x=0:1");
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_NE(unknown.text.find("did you mean \"n_dot_h\"?"), std::string::npos) << unknown.text;
@@ -108,7 +108,7 @@ TEST_F(Cli, ChecksByExitCodeAndGivesCounterexamplesToEval) {
   EXPECT_NE(as_data.text.find("\"refuted\""), std::string::npos) << as_data.text;
 }
 
-TEST_F(Cli, ListsTheNodesAndTellsAllOfOne) {
+TEST_F(Cli, NodesListsAllAndDescribesOne) {
   const Outcome all = run("nodes");
   EXPECT_EQ(all.exit, 0);
   EXPECT_NE(all.text.find("\n  noise3d "), std::string::npos);
@@ -121,7 +121,7 @@ TEST_F(Cli, ListsTheNodesAndTellsAllOfOne) {
   EXPECT_NE(none.text.find("did you mean \"noise3d\"?"), std::string::npos) << none.text;
 }
 
-TEST_F(Cli, ListsTheFunctionsOfTheLibraryAndTellsAllOfOne) {
+TEST_F(Cli, NodesListsLibraryFunctionsAndDescribesOne) {
   EXPECT_NE(run("nodes").text.find("\nlibrary\n  brdf/"), std::string::npos);
   const Outcome one = run("nodes brdf/ggx_d");
   EXPECT_EQ(one.exit, 0);
@@ -133,7 +133,7 @@ TEST_F(Cli, ListsTheFunctionsOfTheLibraryAndTellsAllOfOne) {
   EXPECT_NE(none.text.find("did you mean \"brdf/ggx_d\"?"), std::string::npos) << none.text;
 }
 
-TEST_F(Cli, NamesNodesByWhatOthersCallThem) {
+TEST_F(Cli, NodesSuggestsTheNodeForTheNameInOtherLanguages) {
   EXPECT_NE(run("nodes lerp").text.find("did you mean \"mix\"?"), std::string::npos);
   const Outcome function = run("nodes dot");
   EXPECT_EQ(function.exit, 0);
@@ -142,7 +142,7 @@ TEST_F(Cli, NamesNodesByWhatOthersCallThem) {
   EXPECT_NE(run("rendr a.json").text.find("Did you mean \"render\"?"), std::string::npos);
 }
 
-TEST_F(Cli, ListsStagesAndDumpsThemWithoutAFolder) {
+TEST_F(Cli, DumpAfterNeedsNoOutputFolder) {
   const Outcome stages = run("compile " + ggx + " --dump-after help");
   EXPECT_EQ(stages.exit, 0) << stages.text;
   EXPECT_EQ(stages.text.find("\nfold\n"), stages.text.rfind("\nfold\n")) << stages.text;
@@ -152,7 +152,7 @@ TEST_F(Cli, ListsStagesAndDumpsThemWithoutAFolder) {
   EXPECT_EQ(run("compile " + ggx).exit, 2);
 }
 
-TEST_F(Cli, TablesNameComponentsOfColoursAsColours) {
+TEST_F(Cli, TablesAcceptColourComponentNames) {
   const std::string function = file(
       "f.json",
       R"({"isoshade": 1, "function": "f", "inputs": {"c": {"type": "color3"}}, "outputs": {"out": "c"}})");
@@ -161,7 +161,7 @@ TEST_F(Cli, TablesNameComponentsOfColoursAsColours) {
             "out.x,out.y,out.z\n0x1p+0,0x1p+1,0x1p+2\n");
 }
 
-TEST_F(Cli, DumpsEveryStage) {
+TEST_F(Cli, DumpAfterPrintsEveryStage) {
   const std::string command = "compile " + ggx + " -o " + file("out") + " --quiet --dump-after ";
   std::istringstream stages(run(command + "help").text);
   int count = 0;
@@ -171,7 +171,7 @@ TEST_F(Cli, DumpsEveryStage) {
   EXPECT_EQ(run(command + "nowhere").exit, 2);
 }
 
-TEST_F(Cli, FormatsDocumentsInPlaceAndChecksThem) {
+TEST_F(Cli, FmtFormatsInPlaceAndChecks) {
   const std::string path = file("f.json", "{\"isoshade\":1,  \"function\":\"f\"}");
   const Outcome listed = run("fmt --check " + path);
   EXPECT_EQ(listed.exit, 1);
@@ -185,7 +185,7 @@ TEST_F(Cli, FormatsDocumentsInPlaceAndChecksThem) {
   EXPECT_EQ(read(broken), "{\"a\": ");
 }
 
-TEST_F(Cli, DrawsGraphsAsSvgPngAndDot) {
+TEST_F(Cli, DrawWritesSvgPngAndDot) {
   if (std::system("command -v dot >/dev/null") != 0) GTEST_SKIP() << "graphviz is not installed";
   for (const std::string name : {"g.svg", "g.png", "g.dot"}) {
     const Outcome outcome = run("draw " + ggx + " -o " + file(name));
@@ -197,7 +197,7 @@ TEST_F(Cli, DrawsGraphsAsSvgPngAndDot) {
   EXPECT_EQ(run("draw " + ggx + " -o " + file("g.pdf")).exit, 2);
 }
 
-TEST_F(Cli, TellsDiagnosticsAsData) {
+TEST_F(Cli, DiagnosticsJsonHasPositionsAndPointers) {
   const std::string path =
       file("f.json", R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
 "nodes": {"n": {"type": "add", "in1": "y", "in2": 1}}, "outputs": {"out": "n"}})");
@@ -209,7 +209,7 @@ TEST_F(Cli, TellsDiagnosticsAsData) {
   EXPECT_EQ(run("compile " + ggx + " -o " + file("out") + " --diagnostics json").text, "[]\n");
 }
 
-TEST_F(Cli, TakesWarningsAsAsked) {
+TEST_F(Cli, WarningOptionsAreRespected) {
   const std::string path =
       file("f.json", R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
 "nodes": {"lost": {"type": "add", "in1": "x", "in2": 1}}, "outputs": {"out": "x"}})");
@@ -226,7 +226,7 @@ TEST_F(Cli, TakesWarningsAsAsked) {
   EXPECT_NE(unknown.text.find("unused-node"), std::string::npos) << unknown.text;
 }
 
-TEST_F(Cli, FilesOutsideOfTheCollectionAreRefusedUnlessAllowed) {
+TEST_F(Cli, FilesOutsideTheCollectionNeedAllowOutside) {
   fs::create_directories(folder_ / "a");
   fs::create_directories(folder_ / "b");
   file("a/part.json", R"({"isoshade": 1, "function": "part", "inputs": {"x": {"type": "float"}},

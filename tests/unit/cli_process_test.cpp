@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command among processes, limits and files: what is left when it is stopped, and what it says where the machine
-// does not give what it asks for.
+// Signals, time limits, file and memory limits: the command leaves no files or processes, and reports what failed.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -40,8 +39,8 @@ class CliProcess : public Cli {
     return surroundings_ + ISOSHADE_COMMAND + " " + arguments;
   }
 
-  /// A compiler, or another program, that never ends and has a child that does not either. Both numbers are written
-  /// to files beside it.
+  /// A program, such as a compiler, that never exits and has a child that never exits. It writes both process ids to files
+  /// in its folder.
   std::string endless(const std::string& name) const {
     const std::string path =
         file(name, "#!/bin/sh\n[ \"$1\" = --version ] && echo c++ 1.0 && exit\necho $$ >" + file("program") +
@@ -64,7 +63,7 @@ class CliProcess : public Cli {
     }
     return false;
   }
-  /// The files in these folders that a run has left: caches keep entries, and nothing else stays.
+  /// The files that a run has left in these folders, except cache entries.
   std::string left_over() const {
     std::string names;
     for (const char* where : {"", "temporary", "cache/isoshade"}) {
@@ -81,7 +80,7 @@ class CliProcess : public Cli {
   std::string surroundings_, scene_;
 };
 
-TEST_F(CliProcess, ASignalEndsTheCompilerTooAndLeavesNothing) {
+TEST_F(CliProcess, ASignalStopsTheCompilerAndLeavesNoFiles) {
   const std::string compiler = endless("c++");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     for (const char* name : {"program", "child"}) fs::remove(folder_ / name);
@@ -103,7 +102,7 @@ TEST_F(CliProcess, ASignalEndsTheCompilerTooAndLeavesNothing) {
   }
 }
 
-TEST_F(CliProcess, ACompilerThatDoesNotEndIsEndedAndTheDocumentNamed) {
+TEST_F(CliProcess, ACompilerThatHangsIsStoppedAndTheDocumentNamed) {
   const Outcome outcome = run_command(command("render " + scene_ + " --lanes 1 --build-timeout 0.5 --cxx " +
                                               endless("c++") + " -o " + file("a.png")));
   EXPECT_EQ(outcome.exit, 2);
@@ -116,7 +115,7 @@ TEST_F(CliProcess, ACompilerThatDoesNotEndIsEndedAndTheDocumentNamed) {
   EXPECT_EQ(run("render " + scene_ + " --build-timeout nan -o " + file("a.png")).exit, 2);
 }
 
-TEST_F(CliProcess, ADrawingThatDoesNotEndIsEnded) {
+TEST_F(CliProcess, GraphvizThatHangsIsStopped) {
   endless("dot");
   const Outcome outcome = run_command("PATH=" + folder_.string() + ":/usr/bin:/bin " +
                                       command("draw " + ggx + " --build-timeout 0.5 -o " + file("a.svg")));
@@ -127,7 +126,7 @@ TEST_F(CliProcess, ADrawingThatDoesNotEndIsEnded) {
   EXPECT_EQ(left_over(), "");
 }
 
-TEST_F(CliProcess, AFileThatMayNotGrowIsToldAndNotHalfWritten) {
+TEST_F(CliProcess, AFileSizeLimitIsReportedAndLeavesNoPartialFile) {
   for (const char* blocks : {"0", "1", "8"}) {
     const Outcome outcome = run_command(
         "ulimit -f " + std::string(blocks) + "; " +
@@ -145,8 +144,8 @@ TEST_F(CliProcess, AFileThatMayNotGrowIsToldAndNotHalfWritten) {
   EXPECT_EQ(left_over(), "");
 }
 
-TEST_F(CliProcess, AReadOnlyDiskIsToldWithTheWayOut) {
-  // A mount of this process alone; not every machine lets one be made.
+TEST_F(CliProcess, AReadOnlyDiskIsReportedWithAFix) {
+  // A mount that only this process sees; not every machine permits it.
   const std::string mount =
       "unshare -m sh -c 'mount -t tmpfs -o ro,size=1m none " + file("temporary") + " && ";
   if (run_command(mount + "true'").exit != 0) GTEST_SKIP() << "no read-only disk can be mounted";
@@ -158,7 +157,7 @@ TEST_F(CliProcess, AReadOnlyDiskIsToldWithTheWayOut) {
   EXPECT_NE(outcome.text.find("exit 2"), std::string::npos) << outcome.text;
 }
 
-TEST_F(CliProcess, AFullDiskIsToldWithTheWayOut) {
+TEST_F(CliProcess, AFullDiskIsReportedWithAFix) {
   const std::string mount = "unshare -m sh -c 'mount -t tmpfs -o size=16k none " + file("temporary") + " && ";
   if (run_command(mount + "true'").exit != 0) GTEST_SKIP() << "no small disk can be mounted";
   const Outcome outcome =
@@ -168,10 +167,10 @@ TEST_F(CliProcess, AFullDiskIsToldWithTheWayOut) {
                   "; echo exit $?; ls -A " + file("temporary") + "'");
   EXPECT_NE(outcome.text.find("a.exr\": No space left on device"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("make room"), std::string::npos) << outcome.text;
-  EXPECT_TRUE(outcome.text.ends_with("exit 2\n")) << "and nothing is left: " << outcome.text;
+  EXPECT_TRUE(outcome.text.ends_with("exit 2\n")) << "no file may be left: " << outcome.text;
 }
 
-TEST_F(CliProcess, WhatIsNoRegularFileIsRefusedInsteadOfWaitedFor) {
+TEST_F(CliProcess, FilesThatAreNotRegularAreRejectedWithoutBlocking) {
   ASSERT_EQ(mkfifo(file("pipe").c_str(), 0600), 0);
   const std::string pipe = file("pipe"), out = " -o " + file("a.png");
   file("in_effect.json",
@@ -225,7 +224,7 @@ TEST_F(CliProcess, NoInputIsOverwritten) {
     EXPECT_EQ(read(folder_ / name), before) << name;
   }
   EXPECT_EQ(run("render " + file("scene.png") + " --backend interpreter -o " + file("a.png")).exit, 0);
-  // Of a function that another one calls, too.
+  // Also a function that another one calls.
   file("inner.json", R"({"isoshade": 1, "function": "inner", "inputs": {"x": {"type": "float"}},
     "nodes": {"n": {"type": "sin", "in": "x"}}, "outputs": {"out": "n"}})");
   const std::string outer =
@@ -241,12 +240,12 @@ TEST_F(CliProcess, NoInputIsOverwritten) {
   EXPECT_NE(read(folder_ / "inner.json").find("\"inner\""), std::string::npos);
 }
 
-TEST_F(CliProcess, ALinkAsOutputStaysAndWhatItNamesIsWritten) {
+TEST_F(CliProcess, OutputThroughASymbolicLinkWritesItsTarget) {
   fs::create_directories(folder_ / "deep");
   fs::create_symlink("deep/target.png", folder_ / "one.png");
   fs::create_symlink("one.png", folder_ / "two.png");
   const std::string render = "render " + scene_ + " --backend interpreter -o ";
-  for (int i = 0; i < 2; ++i) {  // dangling at first
+  for (int i = 0; i < 2; ++i) {  // the link dangles in the first run
     EXPECT_EQ(run(render + file("two.png")).exit, 0);
     EXPECT_TRUE(fs::is_symlink(folder_ / "one.png") && fs::is_symlink(folder_ / "two.png"));
     EXPECT_EQ(read(folder_ / "deep/target.png").substr(1, 3), "PNG");
@@ -259,7 +258,7 @@ TEST_F(CliProcess, ALinkAsOutputStaysAndWhatItNamesIsWritten) {
   EXPECT_EQ(run(render + file(longest)).exit, 0) << "a name may have 255 characters";
 }
 
-TEST_F(CliProcess, SeveralThatRecordHashesKeepAll) {
+TEST_F(CliProcess, ConcurrentUpdatesOfGoldensLoseNoEntry) {
   const std::string golden = file("hashes.json");
   std::string all;
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
@@ -274,7 +273,7 @@ TEST_F(CliProcess, SeveralThatRecordHashesKeepAll) {
   EXPECT_EQ(run("verify " + file("scene_c.json") + " --backends interpreter --golden " + golden).exit, 0);
 }
 
-TEST_F(CliProcess, TheCacheIsFoundAndCleared) {
+TEST_F(CliProcess, CachePrintsItsFolderAndClears) {
   EXPECT_EQ(run_command(command("render " + scene_ + " --lanes 1 -o " + file("a.png"))).exit, 0);
   file("cache/isoshade/photo.jpg", "precious");
   const Outcome told = run_command(command("cache"));
@@ -286,7 +285,7 @@ TEST_F(CliProcess, TheCacheIsFoundAndCleared) {
   EXPECT_EQ(read(folder_ / "cache/isoshade/photo.jpg"), "precious");
 }
 
-TEST_F(CliProcess, AnUnsafeCacheIsNotUsedAndTold) {
+TEST_F(CliProcess, AnUnsafeCacheIsReportedAndNotUsed) {
   fs::create_directories(folder_ / "cache/isoshade");
   fs::permissions(folder_ / "cache/isoshade", fs::perms::all);
   const Outcome outcome = run_command(command("render " + scene_ + " --lanes 1 -o " + file("a.png")));
@@ -296,14 +295,14 @@ TEST_F(CliProcess, AnUnsafeCacheIsNotUsedAndTold) {
   EXPECT_EQ(left_over(), "");
 }
 
-TEST_F(CliProcess, MemoryThatRunsOutIsToldAndEndsNothingByASignal) {
+TEST_F(CliProcess, RunningOutOfMemoryIsReportedAndExitsWithTwo) {
   const auto limited = [&](int mebibytes, const std::string& arguments) {
     return run_command("ulimit -c 0; ulimit -v " + std::to_string(1024 * mebibytes) + "; " +
                        command(arguments));
   };
-  int least = 20;  // in which the command starts at all
+  int least = 20;  // MiB in which the command can start
   while (least < 400 && limited(least, "--version").exit != 0) least += 5;
-  if (least >= 400) GTEST_SKIP() << "this build takes its address space beforehand";
+  if (least >= 400) GTEST_SKIP() << "this build reserves its address space at start-up";
   EXPECT_EQ(run_command(command("render " + scene_ + " --lanes 1 -o " + file("a.png"))).exit, 0)
       << "fills the cache";
   std::string rows = "n_dot_h,alpha\n";
@@ -339,17 +338,17 @@ TEST_F(CliProcess, MemoryThatRunsOutIsToldAndEndsNothingByASignal) {
   EXPECT_NE(json.text.find("\"id\": \"device-limit\""), std::string::npos) << json.text;
 }
 
-TEST_F(CliProcess, AnImageIsRefusedBeforeItTakesAllMemory) {
+TEST_F(CliProcess, AnImageThatExceedsMemoryIsRejectedBeforeAllocation) {
   const Outcome outcome = run_command(
       "ulimit -v 1000000; " +
       command("render " + scene_ + " --backend interpreter --size 8192x8192 -o " + file("a.exr")));
-  if (outcome.text.find("cannot allocate memory") != std::string::npos) GTEST_SKIP() << "of a sanitizer";
+  if (outcome.text.find("cannot allocate memory") != std::string::npos) GTEST_SKIP() << "a sanitizer reports this first";
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_NE(outcome.text.find("the image needs 1.2 GiB of memory"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("--size"), std::string::npos) << outcome.text;
 }
 
-TEST_F(CliProcess, NumbersBeyondTheRangeOfFloatAreNoInputs) {
+TEST_F(CliProcess, NumbersOutsideTheRangeOfFloatAreRejected) {
   const std::string eval = "eval " + ggx + " --backend interpreter --inputs ";
   for (const char* number : {"1e400", "-1e400", "1e39", "0x1p200"}) {
     const Outcome outcome = run(eval + file("in.csv", "n_dot_h,alpha\n1," + std::string(number) + "\n"));
@@ -360,7 +359,7 @@ TEST_F(CliProcess, NumbersBeyondTheRangeOfFloatAreNoInputs) {
     EXPECT_EQ(run(eval + file("in.csv", "n_dot_h,alpha\n1," + std::string(number) + "\n")).exit, 0) << number;
 }
 
-TEST_F(CliProcess, OnePointNoughtIsOne) {
+TEST_F(CliProcess, IntegersMayBeWrittenAsFloats) {
   std::string text = scene_text("s");
   text.replace(text.find("\"isoshade\": 1"), 13, "\"isoshade\": 1.0");
   text.replace(text.find("[8, 8]"), 6, "[8.0, 0.8e1]");

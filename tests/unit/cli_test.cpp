@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command as a user meets it: exit codes, what goes where, and what it says when used wrongly.
+// The command line: exit codes, outputs, and messages for wrong usage.
 #include <gtest/gtest.h>
 
 #include "tests/unit/command.h"
@@ -11,14 +11,14 @@ namespace {
 using namespace testing;
 namespace fs = std::filesystem;
 
-TEST_F(Cli, TellsItsVersionAndItsExitCodes) {
+TEST_F(Cli, PrintsVersionAndExitCodes) {
   EXPECT_EQ(run("--version").text, "isoshade " ISOSHADE_VERSION "\n");
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit, 0);
   EXPECT_NE(help.text.find("Exit codes: 0"), std::string::npos);
 }
 
-TEST_F(Cli, EndsWithTwoWhereItIsUsedWrongly) {
+TEST_F(Cli, UsageErrorsExitWithTwo) {
   for (const char* arguments :
        {"", "paint", "render", "render x.json", "--no-such-flag", "verify a.json --backends gpu",
         "render a.json -o b.png --size 0x5", "render a.json -o b.png --size 9000x1",
@@ -26,14 +26,14 @@ TEST_F(Cli, EndsWithTwoWhereItIsUsedWrongly) {
     EXPECT_EQ(run(arguments).exit, 2) << arguments;
 }
 
-TEST_F(Cli, NamesAMissingFile) {
+TEST_F(Cli, MissingFilesAreNamed) {
   const Outcome outcome = run("render " + file("none.json") + " -o " + file("a.png"));
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_NE(outcome.text.find("error[missing-file]"), std::string::npos) << outcome.text;
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
-TEST_F(Cli, RendersPngAndExrAndRefusesOtherEndings) {
+TEST_F(Cli, RendersPngAndExrAndRejectsOtherExtensions) {
   EXPECT_EQ(run("render " + scene + " --size 16x9 -o " + file("a.png")).exit, 0);
   EXPECT_EQ(read(folder_ / "a.png").substr(1, 3), "PNG");
   EXPECT_EQ(run("render " + scene + " --size 16x9 --backend interpreter -o " + file("a.exr")).exit, 0);
@@ -43,7 +43,7 @@ TEST_F(Cli, RendersPngAndExrAndRefusesOtherEndings) {
   EXPECT_NE(outcome.text.find(".png"), std::string::npos) << outcome.text;
 }
 
-TEST_F(Cli, HasAReferenceThatDrawsSmallImagesAndPrintsManyDigits) {
+TEST_F(Cli, TheReferenceRendersSmallImagesAndPrintsFortyDigits) {
   const std::string out = " --backend reference -o " + file("a.exr");
   EXPECT_EQ(run("render " + scene + " --size 16x9" + out).exit, 0);
   const Outcome large = run("render " + scene + " --size 16x300" + out);
@@ -59,7 +59,7 @@ TEST_F(Cli, HasAReferenceThatDrawsSmallImagesAndPrintsManyDigits) {
       "0.1591549386630056853734159179071997401493,inf\n");
 }
 
-TEST_F(Cli, SaysOfASettingWhatIsWrongWithIt) {
+TEST_F(Cli, InvalidSettingsAreExplained) {
   const std::string command =
       "render " + graphs + "/scenes/material_balls.json --size 8x8 -o " + file("a.png");
   const Outcome unknown = run(command + " --set balls.roughnes=0.5");
@@ -71,7 +71,7 @@ TEST_F(Cli, SaysOfASettingWhatIsWrongWithIt) {
   EXPECT_EQ(run(command + " --set balls.base_color=0.1,0.2,0.3").exit, 0);
 }
 
-TEST_F(Cli, ShowsAModelInPlaceOfTheOnlyObject) {
+TEST_F(Cli, MeshReplacesTheMeshOfTheOnlyObject) {
   std::ofstream(file("model.glb"), std::ios::binary)
       << testing::glb(testing::square_json(), testing::square_data());
   std::ofstream(file("plain.json")) << R"({"isoshade": 1, "effect": "plain",
@@ -94,7 +94,7 @@ TEST_F(Cli, ShowsAModelInPlaceOfTheOnlyObject) {
   EXPECT_NE(which.text.find("2 objects"), std::string::npos) << which.text;
 }
 
-TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
+TEST_F(Cli, VerifyComparesBackendsAndRecordedHashes) {
   const Outcome same = run("verify " + scene + " --backends cpu,interpreter --size 32x18");
   EXPECT_EQ(same.exit, 0) << same.text;
   EXPECT_NE(same.text.find("identical: 0 of 576 pixels differ"), std::string::npos) << same.text;
@@ -115,17 +115,17 @@ TEST_F(Cli, VerifiesAndHoldsScenesAgainstRecordedHashes) {
                         " --backends cpu --golden hashes.json")
                 .exit,
             0)
-      << "the file is the same from wherever it is used";
+      << "the working directory must not matter";
 }
 
-TEST_F(Cli, ComputesInThePrecisionThatIsAskedFor) {
+TEST_F(Cli, PrecisionSelectsTheTier) {
   const std::string golden = file("hashes.json");
   const std::string command = "verify " + scene + " --backends cpu --golden " + golden;
   EXPECT_EQ(run(command + " --update").exit, 0);
   EXPECT_EQ(run(command + " --precision fast").exit, 1) << "none is recorded";
   EXPECT_EQ(run(command + " --precision fast --update").exit, 0);
   EXPECT_EQ(run(command + " --precision fast").exit, 0);
-  EXPECT_EQ(run(command).exit, 0) << "both are kept";
+  EXPECT_EQ(run(command).exit, 0) << "both tiers are kept";
   EXPECT_EQ(run(command + " --precision best").exit, 2);
 
   std::ofstream(file("root.json"))
@@ -144,7 +144,7 @@ TEST_F(Cli, ComputesInThePrecisionThatIsAskedFor) {
   EXPECT_NE(node.find("with --precision fast"), std::string::npos) << node;
 }
 
-TEST_F(Cli, MeasuresEveryFormPrecisionAndBackend) {
+TEST_F(Cli, BenchMeasuresEveryFormPrecisionAndBackend) {
   const Outcome outcome =
       run("bench --quick --only toon_highlight --lanes 1,4 --no-picture -o " + file("bench"));
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
@@ -161,7 +161,7 @@ TEST_F(Cli, MeasuresEveryFormPrecisionAndBackend) {
   }
 #ifdef ISOSHADE_VULKAN
   EXPECT_EQ(points, 2 * 3 * 3 + 1)
-      << "two forms, three precisions, three backends; built-ins of the source's form";
+      << "two forms, three precisions, three backends; built-ins for the source's form";
 #else
   EXPECT_EQ(points, 2 * 3 * 2);
 #endif
@@ -177,7 +177,7 @@ std::string hash_of(const std::string& changes) {
   return outcome.text.substr(at, at == std::string::npos ? at : 71);
 }
 
-TEST_F(Cli, DrawsSeveralSamplesAPixel) {
+TEST_F(Cli, SamplesOverridesTheScene) {
   EXPECT_EQ(hash_of("--samples 4"), hash_of("--set samples=4"));
   EXPECT_EQ(hash_of("--samples 1 --set samples=4"), hash_of(""));
   EXPECT_NE(hash_of("--samples 4"), hash_of("--samples 16"));
@@ -189,8 +189,8 @@ TEST_F(Cli, DrawsSeveralSamplesAPixel) {
       << large.text;
 }
 
-TEST_F(Cli, ShowsAnotherTime) {
-  EXPECT_EQ(hash_of(""), hash_of("--time 2.125")) << "the scene's own";
+TEST_F(Cli, TimeOverridesTheScene) {
+  EXPECT_EQ(hash_of(""), hash_of("--time 2.125")) << "the time of the scene";
   EXPECT_NE(hash_of(""), hash_of("--time 2.5"));
   EXPECT_EQ(run("render " + scene + " -o " + file("a.png") + " --time soon").exit, 2);
   for (const char* time : {"nan", "inf", "-2e9", "soon"})
@@ -200,19 +200,19 @@ TEST_F(Cli, ShowsAnotherTime) {
         << time;
 }
 
-TEST_F(Cli, TellsOfPostsThatAreSwitchedOff) {
+TEST_F(Cli, StatsListSkippedPosts) {
   const std::string command = "render " + graphs +
                               "/scenes/fog_balls.json --size 16x9 --backend interpreter --stats -o " +
                               file("a.png");
   const Outcome all = run(command);
   EXPECT_NE(all.text.find("posts:    2"), std::string::npos);
-  EXPECT_NE(all.text.find("\nbuild:    0.0 ms\nvertices: "), std::string::npos) << all.text;  // it interprets
+  EXPECT_NE(all.text.find("\nbuild:    0.0 ms\nvertices: "), std::string::npos) << all.text;  // the interpreter compiles nothing
   const Outcome without = run(command + " --set fog.fog_density=0");
   EXPECT_NE(without.text.find("skipped:  post fog: fog_density is 0"), std::string::npos) << without.text;
   EXPECT_NE(without.text.find("posts:    1"), std::string::npos) << without.text;
 }
 
-TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
+TEST_F(Cli, AnUnknownSubcommandListsTheKnownOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("compile, render, verify, eval, check, fmt, draw, bench, cache, devices"),
@@ -220,34 +220,34 @@ TEST_F(Cli, NamesAWrongSubcommandAndTheRightOnes) {
       << outcome.text;
 }
 
-TEST_F(Cli, NeverWritesOverWhatItReads) {
+TEST_F(Cli, InputsAreNeverOverwritten) {
   const std::string text =
       R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
           "nodes": {"n": {"type": "sin", "in": "x"}}, "outputs": {"out": "n"}})";
   const std::string function = file("f.json", text), table = file("in.csv", "x\n1\n");
   EXPECT_EQ(run("compile " + function + " -o " + folder_.string()).exit, 2)
-      << "f.json is its reflection's name";
+      << "the reflection would overwrite f.json";
   EXPECT_FALSE(fs::exists(folder_ / "f.cpp")) << "all or nothing";
   EXPECT_EQ(run("eval " + function + " --inputs " + table + " -o " + function).exit, 2);
   EXPECT_EQ(run("eval " + function + " --inputs " + table + " -o " + table).exit, 2);
   EXPECT_EQ(read(function), text);
   EXPECT_EQ(read(table), "x\n1\n");
-  // Reflection itself may be replaced, by that of the next run.
+  // A later run may overwrite the reflection.
   for (int i = 0; i < 2; ++i) EXPECT_EQ(run("compile " + function + " -o " + file("out")).exit, 0);
 }
 
-TEST_F(Cli, WritesToAPipeByItsPath) {
+TEST_F(Cli, WritesToAPipe) {
   const std::string table = file("in.csv", "n_dot_h,alpha\n1,0.5\n");
   EXPECT_EQ(run("eval " + ggx + " --inputs " + table + " -o /dev/stdout | cat").text, "out\n0x1.45f306p+0\n");
 }
 
-TEST_F(Cli, ReadsStandardInputForOneThingOnly) {
+TEST_F(Cli, StandardInputIsReadOnlyOnce) {
   EXPECT_NE(run("eval - --inputs - < " + ggx).text.find("only once"), std::string::npos);
   EXPECT_NE(run("verify - - < " + scene).text.find("only once"), std::string::npos);
   EXPECT_EQ(run("verify - --golden " + file("g.json") + " --update < " + scene).exit, 2) << "it has no name";
 }
 
-TEST_F(Cli, FailsWhereNobodyCanReadWhatItSays) {
+TEST_F(Cli, AFailureToWriteStandardOutputIsAnError) {
   const std::string verify = "verify " + scene + " --backends interpreter,interpreter --size 8x8";
   EXPECT_EQ(run(verify).exit, 0);
   EXPECT_EQ(run(verify + " 2>&1 >/dev/full").exit, 2);
@@ -258,7 +258,7 @@ TEST_F(Cli, FailsWhereNobodyCanReadWhatItSays) {
   EXPECT_EQ(read(folder_ / "a.png").substr(1, 3), "PNG") << "and nothing else is written to the file";
 }
 
-TEST_F(Cli, TakesTheInterpreterForTheCpuOnlyWhereNothingIsProven) {
+TEST_F(Cli, TheInterpreterReplacesTheCpuExceptForVerify) {
   const std::string bare = "env -u ISOSHADE_CXX PATH=/nonexistent ";
   const std::string render = "render " + scene + " --size 8x8 -o " + file("a.png");
   const auto with = [](const std::string& environment, const std::string& arguments) {

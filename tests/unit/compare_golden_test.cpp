@@ -41,7 +41,7 @@ TEST_F(GoldenFile, ReadsBackWhatItWrites) {
   EXPECT_EQ(*read, goldens);
 }
 
-TEST_F(GoldenFile, KeepsWhatOthersPutThereAtTheSameTime) {
+TEST_F(GoldenFile, ConcurrentUpdatesLoseNoEntry) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 16; ++i) {
     threads.emplace_back([this, i] {
@@ -68,7 +68,7 @@ TEST_F(GoldenFile, IsSortedAndIndented) {
                 "      \"image\": \"" + ones + "\",\n      \"encoded\": \"" + fs + "\"\n    }\n  }\n}\n");
 }
 
-TEST_F(GoldenFile, SaysWhatDoesNotMatch) {
+TEST_F(GoldenFile, MismatchNamesTheDifference) {
   Goldens goldens;
   goldens["a.json"]["default"] = golden('1');
   const auto mismatch = [&](const std::string& key, const std::string& tier, const Golden& found) {
@@ -85,7 +85,7 @@ TEST_F(GoldenFile, SaysWhatDoesNotMatch) {
   EXPECT_NE(mismatch("a.json", "default", encoded).find("encoded"), std::string::npos);
 }
 
-TEST_F(GoldenFile, RefusesWhatIsNoGolden) {
+TEST_F(GoldenFile, RejectsMalformedFiles) {
   for (const char* text : {"[]", "{\"a\": 1}", "{\"a\": {\"default\": {}}}",
                            R"({"a": {"default": {"size": [1, 1], "image": "xyz", "encoded": "xyz"}}})",
                            R"({"a": {"default": {"size": [1, 1], "image": 1, "encoded": 2}}})", "{"}) {
@@ -99,7 +99,7 @@ TEST_F(GoldenFile, RefusesWhatIsNoGolden) {
   EXPECT_EQ(diagnostics.all()[0].id, support::Id::missing_file);
 }
 
-TEST(GoldenKey, IsTheSameFromWhereverItIsAskedFor) {
+TEST(GoldenKey, DoesNotDependOnTheWorkingDirectory) {
   const std::string key = "../../graphs/scenes/a.json";
   EXPECT_EQ(compare::golden_key("./graphs/scenes/../scenes/a.json", "tests/golden/hashes.json"), key);
   const fs::path here = fs::current_path();

@@ -23,7 +23,7 @@ Image image_of(float value) {
   return image;
 }
 
-TEST(Report, HoldsBothImagesTheHeatMapAndTheWords) {
+TEST(Report, HasBothImagesTheHeatMapAndAText) {
   const fs::path folder =
       fs::path(::testing::TempDir()) / ("isoshade_report" + std::to_string(::getpid())) / "deep";
   const Image a = image_of(1.0f);
@@ -55,7 +55,7 @@ TEST(Report, HoldsBothImagesTheHeatMapAndTheWords) {
   fs::remove_all(folder.parent_path());
 }
 
-TEST(Report, SaysWhereItCannotBeWritten) {
+TEST(Report, ReportsAnUnwritableFolder) {
   const Image a = image_of(0);
   Diagnostics diagnostics;
   EXPECT_FALSE(compare::write_report("/dev/null/folder", {"a", "", &a}, {"b", "", &a}, compare::compare(a, a),

@@ -30,7 +30,7 @@ TEST(Compare, EqualBitsAreIdentical) {
   EXPECT_EQ(compare::describe(comparison, "cpu", "vulkan"), "identical: 0 of 6 pixels differ");
 }
 
-TEST(Compare, SeesEveryBitOfEveryChannelAndDepth) {
+TEST(Compare, DetectsEveryBitOfEveryChannelAndDepth) {
   const Image a = grey_image(3, 2, 1.0f);
   for (int word = 0; word < 5; ++word) {
     for (int bit = 0; bit < 32; ++bit) {
@@ -56,7 +56,7 @@ TEST(Compare, NegativeZeroIsNotZero) {
   EXPECT_EQ(comparison.largest_ulp, 1u);
 }
 
-TEST(Compare, CountsFloatsBetweenTwo) {
+TEST(Compare, UlpDistanceCountsFloatsBetween) {
   const float inf = std::numeric_limits<float>::infinity();
   EXPECT_EQ(ulp_distance(1.0f, std::nextafter(1.0f, 2.0f)), 1u);
   EXPECT_EQ(ulp_distance(1.0f, 2.0f), 0x800000u);
@@ -66,7 +66,7 @@ TEST(Compare, CountsFloatsBetweenTwo) {
   EXPECT_EQ(ulp_distance(0x1p-126f, -0x1p-126f), 0x1000001u);
 }
 
-TEST(Compare, FindsTheFirstInReadingOrderAndTheLargest) {
+TEST(Compare, FindsTheFirstDifferenceInRowOrderAndTheLargest) {
   const Image a = grey_image(4, 4, 1.0f);
   Image b = a;
   b.rgba[4 * 9 + 2] = 1.0f + 0x1p-20f;
@@ -89,7 +89,7 @@ TEST(Compare, ImagesOfDifferentSizeDiffer) {
   EXPECT_NE(compare::image_hash(grey_image(2, 3, 0)), compare::image_hash(grey_image(3, 2, 0)));
 }
 
-TEST(Compare, HashesAreOverTheWordsThatTheContractNames) {
+TEST(Compare, HashesCoverTheWordsOfTheContract) {
   // By Python's hashlib.
   Image image = grey_image(1, 1, 0);
   image.rgba = {1.0f, 0.5f, 0.25f, 1.0f};
