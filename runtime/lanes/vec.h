@@ -36,6 +36,7 @@ requires(N == 2) struct vec<T, N> {
   T x, y;
 
   vec() = default;
+  ISOSHADE_INLINE explicit vec(T all) : x(all), y(all) {}
   ISOSHADE_INLINE vec(T x_, T y_) : x(x_), y(y_) {}
   template <Broadcasts<T> Uniform>
   ISOSHADE_INLINE vec(const vec<Uniform, 2>& uniform) : x(uniform.x), y(uniform.y) {}
@@ -46,6 +47,14 @@ requires(N == 2) struct vec<T, N> {
   ISOSHADE_INLINE friend vec operator-(vec a, vec b) { return {a.x - b.x, a.y - b.y}; }
   ISOSHADE_INLINE friend vec operator*(vec a, vec b) { return {a.x * b.x, a.y * b.y}; }
   ISOSHADE_INLINE friend vec operator/(vec a, vec b) { return {a.x / b.x, a.y / b.y}; }
+  ISOSHADE_INLINE friend vec operator+(vec a, T b) { return a + vec(b); }
+  ISOSHADE_INLINE friend vec operator+(T a, vec b) { return vec(a) + b; }
+  ISOSHADE_INLINE friend vec operator-(vec a, T b) { return a - vec(b); }
+  ISOSHADE_INLINE friend vec operator-(T a, vec b) { return vec(a) - b; }
+  ISOSHADE_INLINE friend vec operator*(vec a, T b) { return a * vec(b); }
+  ISOSHADE_INLINE friend vec operator*(T a, vec b) { return vec(a) * b; }
+  ISOSHADE_INLINE friend vec operator/(vec a, T b) { return a / vec(b); }
+  ISOSHADE_INLINE friend vec operator/(T a, vec b) { return vec(a) / b; }
   ISOSHADE_INLINE friend vec negate(vec a) { return {negate(a.x), negate(a.y)}; }
   ISOSHADE_INLINE friend vec abs(vec a) { return {abs(a.x), abs(a.y)}; }
   ISOSHADE_INLINE friend vec sqrt(vec a) { return {sqrt(a.x), sqrt(a.y)}; }
@@ -60,7 +69,9 @@ requires(N == 3) struct vec<T, N> {
   T x, y, z;
 
   vec() = default;
+  ISOSHADE_INLINE explicit vec(T all) : x(all), y(all), z(all) {}
   ISOSHADE_INLINE vec(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
+  ISOSHADE_INLINE vec(const vec<T, 2>& xy, T z_) : x(xy.x), y(xy.y), z(z_) {}
   template <Broadcasts<T> Uniform>
   ISOSHADE_INLINE vec(const vec<Uniform, 3>& uniform) : x(uniform.x), y(uniform.y), z(uniform.z) {}
 
@@ -70,6 +81,14 @@ requires(N == 3) struct vec<T, N> {
   ISOSHADE_INLINE friend vec operator-(vec a, vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   ISOSHADE_INLINE friend vec operator*(vec a, vec b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
   ISOSHADE_INLINE friend vec operator/(vec a, vec b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+  ISOSHADE_INLINE friend vec operator+(vec a, T b) { return a + vec(b); }
+  ISOSHADE_INLINE friend vec operator+(T a, vec b) { return vec(a) + b; }
+  ISOSHADE_INLINE friend vec operator-(vec a, T b) { return a - vec(b); }
+  ISOSHADE_INLINE friend vec operator-(T a, vec b) { return vec(a) - b; }
+  ISOSHADE_INLINE friend vec operator*(vec a, T b) { return a * vec(b); }
+  ISOSHADE_INLINE friend vec operator*(T a, vec b) { return vec(a) * b; }
+  ISOSHADE_INLINE friend vec operator/(vec a, T b) { return a / vec(b); }
+  ISOSHADE_INLINE friend vec operator/(T a, vec b) { return vec(a) / b; }
   ISOSHADE_INLINE friend vec negate(vec a) { return {negate(a.x), negate(a.y), negate(a.z)}; }
   ISOSHADE_INLINE friend vec abs(vec a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
   ISOSHADE_INLINE friend vec sqrt(vec a) { return {sqrt(a.x), sqrt(a.y), sqrt(a.z)}; }
@@ -86,7 +105,10 @@ requires(N == 4) struct vec<T, N> {
   T x, y, z, w;
 
   vec() = default;
+  ISOSHADE_INLINE explicit vec(T all) : x(all), y(all), z(all), w(all) {}
   ISOSHADE_INLINE vec(T x_, T y_, T z_, T w_) : x(x_), y(y_), z(z_), w(w_) {}
+  ISOSHADE_INLINE vec(const vec<T, 3>& xyz, T w_) : x(xyz.x), y(xyz.y), z(xyz.z), w(w_) {}
+  ISOSHADE_INLINE vec(const vec<T, 2>& xy, T z_, T w_) : x(xy.x), y(xy.y), z(z_), w(w_) {}
   template <Broadcasts<T> Uniform>
   ISOSHADE_INLINE vec(const vec<Uniform, 4>& uniform)
       : x(uniform.x), y(uniform.y), z(uniform.z), w(uniform.w) {}
@@ -97,6 +119,14 @@ requires(N == 4) struct vec<T, N> {
   ISOSHADE_INLINE friend vec operator-(vec a, vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
   ISOSHADE_INLINE friend vec operator*(vec a, vec b) { return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w}; }
   ISOSHADE_INLINE friend vec operator/(vec a, vec b) { return {a.x / b.x, a.y / b.y, a.z / b.z, a.w / b.w}; }
+  ISOSHADE_INLINE friend vec operator+(vec a, T b) { return a + vec(b); }
+  ISOSHADE_INLINE friend vec operator+(T a, vec b) { return vec(a) + b; }
+  ISOSHADE_INLINE friend vec operator-(vec a, T b) { return a - vec(b); }
+  ISOSHADE_INLINE friend vec operator-(T a, vec b) { return vec(a) - b; }
+  ISOSHADE_INLINE friend vec operator*(vec a, T b) { return a * vec(b); }
+  ISOSHADE_INLINE friend vec operator*(T a, vec b) { return vec(a) * b; }
+  ISOSHADE_INLINE friend vec operator/(vec a, T b) { return a / vec(b); }
+  ISOSHADE_INLINE friend vec operator/(T a, vec b) { return vec(a) / b; }
   ISOSHADE_INLINE friend vec negate(vec a) { return {negate(a.x), negate(a.y), negate(a.z), negate(a.w)}; }
   ISOSHADE_INLINE friend vec abs(vec a) { return {abs(a.x), abs(a.y), abs(a.z), abs(a.w)}; }
   ISOSHADE_INLINE friend vec sqrt(vec a) { return {sqrt(a.x), sqrt(a.y), sqrt(a.z), sqrt(a.w)}; }
@@ -105,6 +135,22 @@ requires(N == 4) struct vec<T, N> {
     return {select(c, a.x, b.x), select(c, a.y, b.y), select(c, a.z, b.z), select(c, a.w, b.w)};
   }
 };
+
+/// A uniform vector with a number for each lane.
+#define ISOSHADE_WITH_NUMBER(op)                                                    \
+  template <int W, int R, int N>                                                    \
+  ISOSHADE_INLINE vec<Float<W, R>, N> operator op(vec<float, N> a, Float<W, R> b) { \
+    return vec<Float<W, R>, N>(a) op b;                                             \
+  }                                                                                 \
+  template <int W, int R, int N>                                                    \
+  ISOSHADE_INLINE vec<Float<W, R>, N> operator op(Float<W, R> a, vec<float, N> b) { \
+    return a op vec<Float<W, R>, N>(b);                                             \
+  }
+ISOSHADE_WITH_NUMBER(+)
+ISOSHADE_WITH_NUMBER(-)
+ISOSHADE_WITH_NUMBER(*)
+ISOSHADE_WITH_NUMBER(/)
+#undef ISOSHADE_WITH_NUMBER
 
 /// Between two uniform vectors, lane by lane.
 template <int W, int R, int N>
