@@ -207,8 +207,8 @@ void Builder::finish(std::span<const ValueId> results) {
   f.blocks[0].yields.assign(results.begin(), results.end());
 }
 
-uint32_t Builder::add_origin(std::string node, uint32_t line) {
-  function().origins.push_back({std::move(node), line});
+uint32_t Builder::add_origin(std::string node, uint32_t line, std::string doc) {
+  function().origins.push_back({std::move(node), line, std::move(doc)});
   return static_cast<uint32_t>(function().origins.size() - 1);
 }
 

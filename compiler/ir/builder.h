@@ -51,7 +51,7 @@ class Builder {
 
   /// Instructions made from here on come from this origin (an index into the function's origins).
   void set_origin(uint32_t origin) { origin_ = origin; }
-  uint32_t add_origin(std::string node, uint32_t line);
+  uint32_t add_origin(std::string node, uint32_t line, std::string doc = {});
   /// Gives `value` the name of the origin's node.
   void name(ValueId value, uint32_t origin);
 

@@ -27,6 +27,7 @@ inline constexpr int max_block_depth = 128;
 struct Origin {
   std::string node;   ///< the node's id; names the value in emitted text
   uint32_t line = 0;  ///< in the function's document
+  std::string doc = {};  ///< the author's words on the node, for readers of emitted text
   friend bool operator==(const Origin&, const Origin&) = default;
 };
 
@@ -65,9 +66,8 @@ struct Parameter {
   Type type;
   std::string group;     ///< empty: a plain parameter
   bool uniform = false;  ///< the same for all lanes of a batch (material parameters, light data, counts)
-  std::optional<float> least = {},
-                       most =
-                           {};  ///< what each component is at least and at most; never NaN if both are there
+  std::optional<float> least = {}, most = {};  ///< of each component; if both are there, it is never NaN
+  std::string doc = {};  ///< the author's words on it, for readers of emitted text
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
@@ -104,10 +104,21 @@ struct Function {
   friend bool operator==(const Function&, const Function&) = default;
 };
 
+/// A part of a record, by its place in the record.
+struct RecordField {
+  std::string name;
+  uint32_t first = 0;  ///< word
+  uint32_t words = 1;
+  friend bool operator==(const RecordField&, const RecordField&) = default;
+};
+
 /// A read-only array of 32-bit elements that stages load from.
 struct Buffer {
   std::string name;
   Scalar element = Scalar::floating;  ///< floating or integer
+  /// Of the records that it consists of, if emitted text is to name them. Then each load's index is the first word of
+  /// a record, or that plus a constant, or a constant where there is one record.
+  std::vector<RecordField> fields = {};
   friend bool operator==(const Buffer&, const Buffer&) = default;
 };
 

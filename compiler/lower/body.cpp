@@ -58,7 +58,12 @@ class Body {
         environment_(environment),
         values_(graph.types.size()),
         origins_(graph.nodes.size()),
-        summed_by_(graph.nodes.size(), ir::none) {}
+        summed_by_(graph.nodes.size(), ir::none),
+        is_inside_expression_(graph.nodes.size()) {
+    for (const graph::Expression& expression : graph.graph.expressions)
+      std::fill(is_inside_expression_.begin() + expression.first, is_inside_expression_.begin() + expression.end,
+                true);
+  }
 
   void make(uint32_t node);
   Value read(const Operand& operand);
@@ -90,6 +95,7 @@ class Body {
   std::vector<Value> values_;        ///< of TypedGraph::types; of per-turn nodes, those of the last loop
   std::vector<uint32_t> origins_;    ///< of Graph::nodes; 0 until there is one
   std::vector<uint32_t> summed_by_;  ///< the last sum that met a node
+  std::vector<bool> is_inside_expression_;  ///< by node: not one of the author's own
   std::vector<uint32_t> position_;   ///< in TypedGraph::order
   std::vector<ir::ValueId> light_;   ///< the results of light_at in the current loop
   ir::ValueId tap_ = ir::none;       ///< the number of the tap in the current loop
@@ -123,7 +129,9 @@ uint32_t Body::origin_of(uint32_t node) {
 
 uint32_t Body::add_origin(std::string name, uint32_t node) {
   const graph::Node& source = graph_.graph.nodes[node];
-  const uint32_t origin = b_.add_origin(std::move(name), graph_.graph.span(source.id_place).line());
+  const bool is_whole = name == source.id;
+  const uint32_t origin = b_.add_origin(std::move(name), graph_.graph.span(source.id_place).line(),
+                                        is_whole ? source.doc : std::string());
   if (std::vector<uint32_t>* nodes = environment_.node_of_origin; nodes != nullptr) {
     nodes->resize(origin + 1, ir::none);
     (*nodes)[origin] = node;
@@ -345,6 +353,7 @@ void Body::name_value(const Value& value, uint32_t origin, ir::ValueId first_new
 }
 
 void Body::name_results(uint32_t index, ir::ValueId first_new) {
+  if (is_inside_expression_[index]) return;
   const Node& node = graph_.nodes[index];
   const std::span<const Value> results = results_of(node);
   const bool summand = node.row != nullptr && node.row->is_summand();

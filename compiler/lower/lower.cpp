@@ -101,6 +101,7 @@ std::vector<Binding> bind_input(const TypedGraph& graph, uint32_t index, const s
                     {columns[c], nodes::ir_type(input.type), group, is_parameter},
                     assumed_of(input)};
     if (is_parameter) limit(binding.parameter, input);
+    if (c == 0) binding.parameter.doc = input.doc;
     if (columns.size() > 1) binding.element = static_cast<int>(c * columns.size());
     bindings.push_back(std::move(binding));
   }
