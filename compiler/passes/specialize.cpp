@@ -2,12 +2,15 @@
 #include "compiler/passes/passes.h"
 
 #include <algorithm>
+#include <bit>
+#include <charconv>
 #include <map>
 #include <optional>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "compiler/functions/library.h"
 #include "compiler/ir/laws.h"
 #include "compiler/support/assert.h"
 
@@ -129,8 +132,8 @@ class Specializer {
     const auto [entry, is_new] = clones_.try_emplace({callee, arguments}, 0);
     if (!is_new) return entry->second;
     ir::Function clone = module_.functions[callee];
+    clone.name = free_name(name_of(clone, arguments));
     clone.library.clear();
-    clone.name = free_name(clone.name);
     bind(clone, arguments);
     cloned_instructions_ += clone.instructions.size();
     module_.functions.push_back(std::move(clone));
@@ -138,9 +141,50 @@ class Specializer {
     return entry->second = static_cast<uint32_t>(module_.functions.size() - 1);
   }
 
+  /// A float in letters: 0.04 is "0_04".
+  static std::string in_letters(uint32_t bits) {
+    char buffer[32];
+    const char* end = std::to_chars(buffer, buffer + sizeof buffer, std::bit_cast<float>(bits)).ptr;
+    std::string text;
+    for (const char* c = buffer; c != end; ++c) {
+      if (*c == '-') text += "minus_";
+      if (*c == '.') text += '_';
+      if (*c != '-' && *c != '.' && *c != '+') text += *c;
+    }
+    return text;
+  }
+
+  /// The function and what is constant in it: "iso_pow_2_4", "sky_roughness_1". The library's parameters say nothing.
+  static std::string name_of(const ir::Function& function, const std::vector<Words>& arguments) {
+    constexpr size_t most_written = 2;
+    const auto is_constant = [](const Words& words) { return words.has_value(); };
+    const auto written = static_cast<size_t>(std::ranges::count_if(arguments, is_constant));
+    const std::string whole = own_name(function);
+    std::string name = whole;
+    for (size_t i = 0; i < arguments.size() && written <= most_written; ++i) {
+      if (!arguments[i]) continue;
+      const ir::Parameter& parameter = function.parameters[i];
+      if (function.library.empty()) name += "_" + parameter.name;
+      const auto differs = [&](uint32_t word) { return word != arguments[i]->front(); };
+      if (parameter.type.is_float() && std::ranges::none_of(*arguments[i], differs))
+        name += "_" + in_letters(arguments[i]->front());
+      if (parameter.type == ir::int_type && static_cast<int32_t>(arguments[i]->front()) >= 0)
+        name += "_" + std::to_string(arguments[i]->front());
+    }
+    return name == whole ? name + "_of_constants" : name;
+  }
+
+  /// Without the types that tell apart variants of a row: "iso_mix", not "iso_mix_v3v3f".
+  static std::string own_name(const ir::Function& function) {
+    const auto variant =
+        std::ranges::find(functions::variants(), function.library, &functions::Variant::name);
+    if (variant == functions::variants().end()) return function.name;
+    return function.name.substr(0, function.name.size() - variant->name.size()) + std::string(variant->row);
+  }
+
   std::string free_name(const std::string& name) {
-    std::string free;
-    do { free = name + "_" + std::to_string(++numbers_[name]); } while (!names_.insert(free).second);
+    std::string free = name;
+    while (!names_.insert(free).second) free = name + "_" + std::to_string(++numbers_[name]);
     return free;
   }
 
@@ -201,15 +245,100 @@ class Specializer {
   size_t cloned_instructions_ = 0;
 };
 
+/// Puts the bodies of short clones of library functions where they are called: `0.04 * (1.0 - c) + b * c`.
+class Inliner {
+ public:
+  Inliner(ir::Module& module, uint32_t first_clone) : module_(module), first_clone_(first_clone) {}
+
+  void run() {
+    if (first_clone_ == module_.functions.size()) return;
+    short_.assign(module_.functions.size(), false);
+    // What has nothing but calls of short clones may be short itself then.
+    while (find_short())
+      for (ir::Function& function : module_.functions)
+        if (!function.is_declaration()) inline_calls(function);
+  }
+
+ private:
+  static constexpr int most_operations = 5;
+
+  /// Whether there are more than were known.
+  bool find_short() {
+    bool found = false;
+    for (size_t f = first_clone_; f < module_.functions.size(); ++f) {
+      if (short_[f] || !is_short(module_.functions[f])) continue;
+      short_[f] = found = true;
+    }
+    return found;
+  }
+
+  static bool is_short(const ir::Function& f) {
+    if (!f.document.empty() || f.blocks.size() != 1 || f.results.size() != 1) return false;
+    int operations = 0;
+    for (const ir::InstructionId id : f.blocks[0].instructions) {
+      const ir::Opcode op = f.instructions[id].op;
+      if (ir::is_primitive(op)) ++operations;
+      if (!ir::is_primitive(op) && op != ir::Opcode::constant) return false;
+    }
+    // What the last instruction makes is returned, so it can make what the call made.
+    return operations <= most_operations && operations > 0 &&
+           f.instructions[f.blocks[0].instructions.back()].first_result == f.blocks[0].yields[0];
+  }
+
+  void inline_calls(ir::Function& f) const {
+    for (ir::Block& block : f.blocks) {
+      const auto is_inlined = [&](ir::InstructionId id) {
+        return f.instructions[id].op == ir::Opcode::call && short_[f.instructions[id].imm];
+      };
+      if (std::ranges::none_of(block.instructions, is_inlined)) continue;
+      std::vector<ir::InstructionId> list;
+      for (const ir::InstructionId id : block.instructions)
+        is_inlined(id) ? append_body(f, id, list) : list.push_back(id);
+      block.instructions = std::move(list);
+    }
+  }
+
+  void append_body(ir::Function& f, ir::InstructionId call_id, std::vector<ir::InstructionId>& list) const {
+    const ir::Instruction call = f.instructions[call_id];
+    const ir::Function& body = module_.functions[call.imm];
+    std::vector<ir::ValueId> values(body.values.size(), ir::none);
+    for (size_t i = 0; i < body.parameters.size(); ++i)
+      values[body.blocks[0].parameters[i]] = f.operands[call.first_operand + i];
+    for (const ir::InstructionId id : body.blocks[0].instructions) {
+      ir::Instruction made = body.instructions[id];
+      const auto operands = body.operands_of(made);
+      made.first_operand = static_cast<uint32_t>(f.operands.size());
+      for (const ir::ValueId operand : operands) f.operands.push_back(values[operand]);
+      made.origin = call.origin;
+      ir::ValueId& result = values[made.first_result];
+      if (made.first_result == body.blocks[0].yields[0]) {
+        result = call.first_result;
+      } else {
+        result = static_cast<ir::ValueId>(f.values.size());
+        f.values.push_back({body.type(made.first_result), 0});
+      }
+      made.first_result = result;
+      f.instructions.push_back(made);
+      list.push_back(static_cast<ir::InstructionId>(f.instructions.size() - 1));
+    }
+  }
+
+  ir::Module& module_;
+  uint32_t first_clone_;
+  std::vector<bool> short_;  ///< by function
+};
+
 }  // namespace
 
 void specialize(ir::Module& module) {
+  const auto before = static_cast<uint32_t>(module.functions.size());
   Specializer specializer(module);
   // Folding a clone makes further arguments constant, one level of calls deeper each time.
   for (size_t first = 0, count = module.functions.size(); specializer.step(first);) {
     fold(module, {}, count);
     first = std::exchange(count, module.functions.size());
   }
+  Inliner(module, before).run();
 }
 
 }  // namespace isoshade::passes

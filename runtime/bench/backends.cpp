@@ -63,11 +63,10 @@ bool add_vulkan(const BenchOptions& options, const BuiltIns* built_ins, std::vec
 }
 #endif
 
-/// The name "f" for the line "float f(float a) {"; empty if the line does not begin a definition.
-std::string_view defined_name(std::string_view line) {
-  const size_t open = line.find('('), space = line.find(' ');
-  if (line.empty() || line[0] == ' ' || !line.ends_with(" {") || open == line.npos || space > open) return {};
-  return line.substr(space + 1, open - space - 1);
+/// The type, the name and the type of the first parameter of a definition: "vec3 f(vec3". That tells overloads apart.
+std::string_view signature_of(std::string_view head) {
+  const size_t open = head.find('(');
+  return open == head.npos ? std::string_view() : head.substr(0, head.find(' ', open));
 }
 
 void erase_all(std::string& text, std::string_view what) {
@@ -88,13 +87,15 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
     const size_t start = line == std::string::npos ? 0 : line + 1;
     const std::string_view head =
         std::string_view(definition).substr(start, definition.find(" {\n", start) + 2 - start);
-    const std::string_view name = defined_name(head);
-    support::assert_that(!name.empty(), definition);
-    // The first occurrence of " NAME(" is the definition, because functions are defined before they are called.
-    const size_t call = glsl.find(" " + std::string(name) + "(");
-    if (call == std::string::npos) continue;  // this tier does not call it
-    const size_t begin = glsl.rfind('\n', call) + 1;
-    glsl.replace(begin, glsl.find(close, begin) + close.size() - begin, definition);
+    const std::string_view signature = signature_of(head);
+    support::assert_that(!signature.empty(), definition);
+    const size_t line_end = glsl.find("\n" + std::string(signature) + " ");
+    if (line_end == std::string::npos) continue;  // this tier does not call it
+    const size_t begin = line_end + 1;
+    const size_t line_close = glsl.find('\n', begin);
+    const bool is_line = glsl[glsl.find_last_not_of(' ', line_close - 1)] == '}';  // "float f(float a) { return a; }"
+    const size_t after = is_line ? line_close + 1 : glsl.find(close, begin) + close.size();
+    glsl.replace(begin, after - begin, definition);
   }
   return glsl;
 }

@@ -54,7 +54,7 @@ float iso_log(float a) {
 float iso_pow(float a, float b) {
   return pow(a, b);
 }
-float iso_pow_1(float a) {
+float iso_pow_5(float a) {
   return pow(a, 5.0);
 }
 float iso_sin(float a) {
@@ -69,13 +69,13 @@ float iso_srgb_encode(float a) {
 float iso_srgb_decode(float a) {
   return a <= 0.04045 ? a / 12.92 : pow((a + 0.055) / 1.055, 2.4);
 }
-vec3 iso_normalize_v3(vec3 a) {
+vec3 iso_normalize(vec3 a) {
   return normalize(a);
 }
-float iso_length_v3(vec3 a) {
+float iso_length(vec3 a) {
   return length(a);
 }
-float iso_dot_v3(vec3 a, vec3 b) {
+float iso_dot(vec3 a, vec3 b) {
   return dot(a, b);
 }
 float iso_min(float a, float b) {
