@@ -35,18 +35,24 @@ F edge_wide(X x0, X y0, X x1, X y1, P px, P py) {
 }
 
 /// The three edge functions at a pixel centre, (px, py) in 1/256 pixel. `wide`: an edge spans 2^15 or more.
-template <class F, class X, class P>
-vec<F, 3> edge_functions(X x0, X y0, X x1, X y1, X x2, X y2, bool_of<F> wide, P px, P py) {
+/// `wide_edge`: edge_wide, or what calls it.
+template <class F, class X, class P, class WideEdge>
+vec<F, 3> edge_functions(X x0, X y0, X x1, X y1, X x2, X y2, bool_of<F> wide, P px, P py, WideEdge wide_edge) {
   return branch(
       wide,
       [=] {
-        return vec<F, 3>(edge_wide<F>(x1, y1, x2, y2, px, py), edge_wide<F>(x2, y2, x0, y0, px, py),
-                         edge_wide<F>(x0, y0, x1, y1, px, py));
+        return vec<F, 3>(wide_edge(x1, y1, x2, y2, px, py), wide_edge(x2, y2, x0, y0, px, py),
+                         wide_edge(x0, y0, x1, y1, px, py));
       },
       [=] {
         return vec<F, 3>(edge_narrow<F>(x1, y1, x2, y2, px, py), edge_narrow<F>(x2, y2, x0, y0, px, py),
                          edge_narrow<F>(x0, y0, x1, y1, px, py));
       });
+}
+
+template <class F, class X, class P>
+vec<F, 3> edge_functions(X x0, X y0, X x1, X y1, X x2, X y2, bool_of<F> wide, P px, P py) {
+  return edge_functions<F>(x0, y0, x1, y1, x2, y2, wide, px, py, edge_wide<F, X, P>);
 }
 
 /// Depth is linear in screen space. Clamped to [0, 1].
@@ -73,6 +79,10 @@ vec<F, 3> attribute_weights(vec<F, 3> edges, F inverse_w0, F inverse_w1, F inver
 template <class F, class A>
 F interpolate(vec<F, 3> weights, A a0, A a1, A a2) {
   return (weights[0] * a0 + weights[1] * a1) + weights[2] * a2;
+}
+template <class F, int N>
+vec<F, N> interpolate(vec<F, 3> weights, vec<F, N> a0, vec<F, N> a1, vec<F, N> a2) {
+  return (splat<N>(weights[0]) * a0 + splat<N>(weights[1]) * a1) + splat<N>(weights[2]) * a2;
 }
 
 }  // namespace isoshade::functions

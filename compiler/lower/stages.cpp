@@ -8,9 +8,20 @@ namespace isoshade::lower {
 
 namespace {
 
+/// wide_edge(x0, y0, x1, y1, px, py): one edge function, through 64 bits.
+uint32_t add_wide_edge(ir::Module& module) {
+  std::vector<ir::Parameter> parameters;
+  for (const char* name : {"x0", "y0", "x1", "y1", "px", "py"}) parameters.push_back(int_parameter(name));
+  Kernel k(module, interface::names::wide_edge, std::move(parameters), {{"edge", ir::float_type}});
+  const auto at = [&](size_t parameter) { return k.integer(parameter); };
+  k.b.finish(std::array{functions::edge_wide<Float>(at(0), at(1), at(2), at(3), at(4), at(5)).value});
+  return k.index;
+}
+
 /// edges_at(x, y, triangle): the edge functions at the centre of a pixel.
 void add_edges(ir::Module& module) {
   if (module.find("edges_at") != ir::none) return;
+  const uint32_t wide_edge = add_wide_edge(module);
   Kernel k(module, "edges_at", {int_parameter("x"), int_parameter("y"), int_parameter("triangle")},
            {{"edges", ir::vector_type(3)}});
   const Int record = k.named("record", k.integer(2) * Int(triangle_word::stride));
@@ -22,7 +33,11 @@ void add_edges(ir::Module& module) {
         k.named(std::string(1, "xy"[i % 2]) + std::to_string(i / 2), word(triangle_word::position + i)));
   const Int px = k.named("px", shift_left(k.integer(0), Int(8)) + Int(128));
   const Int py = k.named("py", shift_left(k.integer(1), Int(8)) + Int(128));
-  const Vec3 edges = functions::edge_functions<Float>(p[0], p[1], p[2], p[3], p[4], p[5], wide, px, py);
+  const auto call_wide_edge = [&](auto... coordinates) {
+    return Float(k.b, k.b.call(wide_edge, std::array{coordinates.id(k.b)...})[0]);
+  };
+  const Vec3 edges =
+      functions::edge_functions<Float>(p[0], p[1], p[2], p[3], p[4], p[5], wide, px, py, call_wide_edge);
   k.b.finish(std::array{k.named("edges", edges.value)});
 }
 

@@ -12,23 +12,32 @@ using interface::Surface;
 namespace {
 
 /// attributeN(weights, first0, first1, first2): N words of `vertices` from each vertex's own, interpolated.
-void add_attribute(ir::Module& module, int width) {
-  const std::string name = "attribute" + std::to_string(width);
+template <int N>
+void add_attribute(ir::Module& module) {
+  const std::string name = "attribute" + std::to_string(N);
   if (module.find(name) != ir::none) return;
   Kernel k(module, name,
            {{"weights", ir::vector_type(3), "", false},
             int_parameter("first0"),
             int_parameter("first1"),
             int_parameter("first2")},
-           {{"value", ir::vector_type(width)}});
-  std::vector<ir::ValueId> components;
-  for (int i = 0; i < width; ++i) {
-    const auto word = [&](size_t vertex) {
-      return k.load(FrameBuffer::vertices, k.integer(vertex) + Int(i));
-    };
-    components.push_back(functions::interpolate<Float>(k.vector3(0), word(1), word(2), word(3)).value);
+           {{"value", ir::vector_type(N)}});
+  const auto words = [&](size_t vertex) {
+    std::vector<ir::ValueId> components;
+    for (int i = 0; i < N; ++i)
+      components.push_back(k.load(FrameBuffer::vertices, k.integer(vertex) + Int(i)).value);
+    return lanes::vec<Float, N>(k.b, k.b.construct(components));
+  };
+  k.b.finish(std::array{functions::interpolate<Float>(k.vector3(0), words(1), words(2), words(3)).value});
+}
+
+void add_attribute(ir::Module& module, int width) {
+  switch (width) {
+    case 2: return add_attribute<2>(module);
+    case 3: return add_attribute<3>(module);
+    case 4: return add_attribute<4>(module);
   }
-  k.b.finish(std::array{k.b.construct(components)});
+  support::bug("no attribute is so wide");
 }
 
 }  // namespace
