@@ -46,54 +46,50 @@ class Cpp final : public Language {
   Cpp(const ir::Module& module, uint32_t entry)
       : functions_(module.functions.data()), called_(code_of(module, entry).called) {}
 
-  std::string_view declared_type(ir::Type type, bool uniform) const override {
-    constexpr std::string_view one[] = {"const float", "const vec2<float>", "const vec3<float>",
-                                        "const vec4<float>"};
-    constexpr std::string_view lanes[] = {"const F", "const vec2<F>", "const vec3<F>", "const vec4<F>"};
+  std::string_view type(ir::Type type, bool uniform) const override {
+    constexpr std::string_view one[] = {"float", "vec2<float>", "vec3<float>", "vec4<float>"};
+    constexpr std::string_view lanes[] = {"F", "vec2<F>", "vec3<F>", "vec4<F>"};
     switch (type.scalar) {
-      case ir::Scalar::boolean: return uniform ? "const bool" : "const bool_of<F>";
-      case ir::Scalar::integer: return uniform ? "const int" : "const int_of<F>";
+      case ir::Scalar::boolean: return uniform ? "bool" : "bool_of<F>";
+      case ir::Scalar::integer: return uniform ? "int" : "int_of<F>";
       case ir::Scalar::floating: break;
     }
     return uniform ? one[type.width - 1] : lanes[type.width - 1];
   }
-  std::string_view type(ir::Type type, bool uniform) const override {
-    return declared_type(type, uniform).substr(std::string_view("const ").size());
+  void local_type(std::string& out, ir::Type type, bool uniform, bool) const override {
+    out.append("const ").append(this->type(type, uniform));
   }
   std::string literal(ir::Type type, uint32_t bits) const override {
-    switch (type.scalar) {
-      case ir::Scalar::boolean: return bits != 0 ? "true" : "false";
-      case ir::Scalar::integer:
-        return bits == 0x80000000u ? "(-2147483647 - 1)" : std::to_string(static_cast<int32_t>(bits));
-      case ir::Scalar::floating: break;
-    }
+    if (!type.is_float()) return bits != 0 ? "true" : "false";
     if (is_finite(bits)) return decimal(bits) + "f";
     if (bits == 0x7f800000u) return "__builtin_inff()";
     return bits == 0xff800000u ? "(-__builtin_inff())" : "__builtin_nanf(\"\")";
   }
-  std::string_view op_text(const ir::OpInfo& row) const override { return row.cpp; }
+  const OpText& op_text(ir::Opcode op) const override {
+    static const std::vector<OpText> texts = parse_op_texts(&ir::OpInfo::cpp);
+    return texts[static_cast<size_t>(op)];
+  }
   void exactly(std::string& out, const Operand& operand, bool uniform) const override {
     if (uniform || (!operand.uniform && !operand.literal))
       out += operand.text;
     else
       out.append(type(operand.type, false)).append("(").append(operand.text).append(")");
   }
-  // Operators broadcast what is uniform by themselves; a function's arguments are all of one type.
-  void argument(std::string& out, const Operand& operand, bool uniform,
-                std::string_view pattern) const override {
-    if (pattern.ends_with(')'))
-      exactly(out, operand, uniform);
-    else
-      out += operand.text;
-  }
   void load(std::string& out, std::string_view buffer, std::string_view index) const override {
     out.append("load(buffers.").append(buffer).append(", ").append(index).append(")");
   }
+  void word_reader(std::string& out, std::string_view name, int width) const override {
+    out.append("template <class I>\nISOSHADE_INLINE auto ")
+        .append(name)
+        .append("(const Buffers& buffers, I word) {\n");
+    out.append("  return vec").append(std::to_string(width)).append("<float_of<I>>(");
+  }
+  void end_word_reader(std::string& out) const override { out += ");\n}\n"; }
   void callee(std::string& out, const FunctionText& function, bool uniform) const override {
     out.append(function.name).append(lanes_of(uniform));
   }
   bool passes_buffers() const override { return true; }
-  void result_record(std::string& out, std::string_view record, bool uniform) const override {
+  void local_record(std::string& out, std::string_view record, bool uniform, bool) const override {
     out.append("const ").append(record).append(lanes_of(uniform));
   }
   void parameter(std::string& out, ir::Type type, bool uniform, std::string_view name,
@@ -104,22 +100,37 @@ class Cpp final : public Language {
     out.append(this->type(type, uniform)).append(" ").append(name);
   }
   std::string_view no_value() const override { return "{}"; }
-  void branch_head(std::string& out, std::string_view condition, bool other) const override {
-    out.append(other ? "if (!all(" : "if (any(").append(condition).append(")) {");
+  void branch_head(std::string& out, const Operand& condition, bool other) const override {
+    if (!condition.uniform)
+      out.append(other ? "if (!all(" : "if (any(").append(condition.text).append(")) {");
+    else if (other)
+      out += "else {";
+    else
+      out.append("if (").append(condition.text).append(") {");
   }
   void branch_value(std::string& out, const Operand& condition, std::string_view variable,
                     const Operand& value, bool uniform, bool other) const override {
     out.append(variable).append(" = ");
+    other &= !condition.uniform;
     if (other) out.append("select(").append(condition.text).append(", ").append(variable).append(", ");
     exactly(out, value, uniform);
     out += other ? ");" : ";";
   }
-  void record(std::string& out, std::string_view name,
-              const std::vector<std::pair<ir::Type, std::string>>& fields, bool uniform) const override {
-    out.append(uniform ? "struct " : "template <class F>\nstruct ").append(name).append(" {\n");
-    for (const auto& [type, field] : fields)
-      out.append("  ").append(this->type(type, uniform)).append(" ").append(field).append(";\n");
-    out += "};\n";
+  void record(std::string& out, std::string_view name, std::span<const RecordField> fields,
+              bool uniform) const override {
+    const bool is_line = fits_on_line(name, fields);
+    out.append(uniform ? "struct " : "template <class F>\nstruct ")
+        .append(name)
+        .append(is_line ? " {" : " {\n");
+    for (const RecordField& field : fields) {
+      out.append(is_line ? " " : "  ")
+          .append(type(field.type, uniform))
+          .append(" ")
+          .append(field.name)
+          .append(";");
+      out.append(field.comment.empty() ? "" : "  // ").append(field.comment).append(is_line ? "" : "\n");
+    }
+    out += is_line ? " };\n" : "};\n";
   }
   void make_record(std::string& out, std::string_view name, bool uniform,
                    const std::vector<Operand>& fields) const override {
@@ -130,8 +141,8 @@ class Cpp final : public Language {
     }
     out += "}";
   }
-  void function_head(std::string& out, const ir::Function& function,
-                     const FunctionText& text) const override {
+  void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
+                     bool) const override {
     const auto index = static_cast<size_t>(&function - functions_);
     out += called_[index] ? "template <class F>\n[[gnu::noinline]] static "
                           : "template <class F>\nISOSHADE_INLINE ";

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/function_printer.h"
 
+#include <algorithm>
+
+#include "compiler/emit/expression_printer.h"
 #include "compiler/ir/uniformity.h"
 #include "compiler/support/assert.h"
 
@@ -8,250 +11,138 @@ namespace isoshade::emit {
 
 namespace {
 
-constexpr std::string_view component_names[] = {"x", "y", "z", "w"};
+using ir::Opcode;
+using ir::ValueId;
 
-class FunctionPrinter {
+class FunctionPrinter : private ExpressionPrinter {
  public:
-  FunctionPrinter(std::string& out, const ir::Module& module, const ir::Function& function,
-                  const FunctionText& text, const Language& language, const std::vector<FunctionText>& texts,
-                  const Names& globals)
-      : out_(out),
-        module_(module),
-        function_(function),
-        text_(text),
-        language_(language),
-        texts_(texts),
-        names_(Scope::local, &globals, function.values.size()),
-        values_(function.values.size()) {}
+  FunctionPrinter(std::string& out, const ir::Function& function, const FunctionText& text,
+                  const TextContext& context)
+      : ExpressionPrinter(function, context), out_(out), text_(text) {}
 
-  void print() {
-    find_used();
-    language_.function_head(out_, function_, text_);
-    declare_parameters();
+  bool print() {
+    std::string parameters;
     if (function_.is_declaration()) {
-      out_ += ");  // yours to provide\n";
-      return;
+      declare_parameters(parameters);
+      language_.function_head(out_, function_, text_, false);
+      out_.append(parameters).append(");  // yours to provide\n");
+      return false;
     }
+    nesting_ = find_nesting(function_);
     uniform_ = ir::uniform_values(function_);
-    out_ += ") {\n";
+    find_used();
+    declare_parameters(parameters);
     print_block(0);
-    out_ += "  return ";
-    print_returned();
-    out_ += ";\n}\n";
+    std::string returned;
+    const bool exact = print_returned(returned);
+    language_.function_head(out_, function_, text_, exact);
+    out_.append(parameters).append(") {");
+    const bool is_line = body_.empty() && line_columns() <= 117;
+    out_.append(is_line ? "" : "\n")
+        .append(body_)
+        .append(is_line ? " return " : "  return ")
+        .append(returned);
+    out_.append(is_line ? "; }" : ";");
+    if (function_.results.size() == 1) name_returned(function_.blocks[0].yields[0]);
+    out_ += is_line ? "\n" : "\n}\n";
+    return is_line;
   }
 
  private:
-  std::string& indent() { return out_.append(indent_, ' '); }
-
-  /// What stands before the next part of a list in parentheses.
-  void separate() {
-    if (out_.back() != '(') out_ += ", ";
-  }
-
-  /// Behind the statement that makes a node's value stands `// a :12`.
-  void end_line(ir::ValueId value) {
-    const uint32_t origin = function_.values[value].names;
-    const ir::Origin& from = function_.origins[origin];
-    if (from.line != 0)
-      out_.append("  // ").append(comment_text(from.node)).append(" :").append(std::to_string(from.line));
-    out_ += "\n";
-  }
-
-  void end_statement(ir::ValueId value) {
-    out_ += ";";
-    end_line(value);
-  }
-
-  std::string name_value(ir::ValueId value, uint32_t origin) {
-    const uint32_t names = function_.values[value].names;
-    if (names != 0) return names_.take(function_.origins[names].node);
-    return names_.take(origin != 0 ? function_.origins[origin].node + "_t" : "t");
-  }
-
-  // Which values are used at all, and which only where an expression may stand: a sum as an index, a word
-  // that is loaded for one vector. Nothing else is nested: one operator a statement is what keeps it exact.
   void find_used() {
-    used_.assign(values_.size(), false);
-    nested_.assign(values_.size(), true);
-    std::vector<bool> once(values_.size(), false);
-    for (const ir::Block& block : function_.blocks) {
-      for (ir::InstructionId id : block.instructions) {
-        const ir::Instruction& instruction = function_.instructions[id];
-        for (ir::ValueId value : function_.operands_of(instruction)) {
-          if (instruction.op == ir::Opcode::construct) nested_[value] = nested_[value] && !once[value];
-          if (instruction.op == ir::Opcode::construct) once[value] = true;
-          if (instruction.op != ir::Opcode::construct && instruction.op != ir::Opcode::load)
-            nested_[value] = false;
-          used_[value] = true;
-        }
-      }
-      for (ir::ValueId value : block.yields) {
-        used_[value] = true;
-        nested_[value] = false;
-      }
-    }
+    used_.assign(written_.size(), false);
+    for (const ir::Instruction& instruction : function_.instructions)
+      for (const ValueId value : function_.operands_of(instruction)) used_[value] = true;
+    for (const ir::Block& block : function_.blocks)
+      for (const ValueId value : block.yields) used_[value] = true;
   }
 
-  void declare_parameters() {
+  void declare_parameters(std::string& out) {
+    std::string group;
     for (size_t i = 0; i < function_.parameters.size(); ++i) {
       const ir::Parameter& parameter = function_.parameters[i];
       std::string name;
+      if (i > 0 && (parameter.group.empty() || function_.parameters[i - 1].group != parameter.group) &&
+          !out.empty())
+        out += ", ";
       if (parameter.group.empty()) {
         name = names_.take(parameter.name);
         const bool used = !function_.is_declaration() && used_[function_.blocks[0].parameters[i]];
-        separate();
-        language_.parameter(out_, parameter.type, parameter.uniform, name, used);
+        language_.parameter(out, parameter.type, parameter.uniform, name, used);
       } else {
         if (i == 0 || function_.parameters[i - 1].group != parameter.group) {
-          group_ = names_.take(parameter.group);
-          separate();
-          language_.group_type(out_, text_.groups[i], parameter.uniform);
-          out_.append(" ").append(group_);
+          group = names_.take(parameter.group);
+          language_.group_type(out, text_.groups[i], parameter.uniform);
+          out.append(" ").append(group);
         }
-        name = group_ + "." + text_.fields[i];
+        name = group + "." + text_.fields[i];
       }
-      if (!function_.is_declaration()) values_[function_.blocks[0].parameters[i]] = name;
+      if (!function_.is_declaration()) set_name(function_.blocks[0].parameters[i], std::move(name));
     }
+    if (text_.loads && language_.passes_buffers() && !out.empty()) out.insert(0, ", ");
   }
 
-  Operand operand(ir::ValueId value) const {
-    const bool literal = literals_.size() > value && literals_[value];
-    return {values_[value], function_.type(value), uniform_[value], literal};
+  /// About as long as the function would be in one line, in all languages alike.
+  int line_columns() const {
+    int columns = returned_columns_ + static_cast<int>(text_.name.size()) + 24;
+    for (const ir::Parameter& parameter : function_.parameters)
+      columns += static_cast<int>(parameter.name.size()) + 7;
+    return columns;
   }
-  const std::string& text(ir::ValueId value) const { return values_[value]; }
 
-  void print_returned() {
-    const std::vector<ir::ValueId>& yields = function_.blocks[0].yields;
-    if (yields.size() == 1) return language_.exactly(out_, operand(yields[0]), false);
+  /// Behind `return`, the node whose only statement it is.
+  void name_returned(ValueId value) {
+    const ir::Origin& node = function_.origins[function_.values[value].names];
+    if (written_[value].pending && node.line != 0)
+      out_.append("  // ").append(comment_text(node.node)).append(" :").append(std::to_string(node.line));
+  }
+
+  bool print_returned(std::string& out) {
+    indent_ = 2;
+    const std::vector<ValueId>& yields = function_.blocks[0].yields;
+    returned_columns_ = make_room(yields, static_cast<int>(text_.result_type.size()));
+    if (yields.size() == 1 && written_[yields[0]].pending) print_doc(function_.values[yields[0]].names);
+    const bool exact = is_exact(yields);
+    if (yields.size() == 1) {
+      language_.exactly(out, operand(yields[0]), false);
+      return exact;
+    }
     std::vector<Operand> fields;
-    for (ir::ValueId value : yields) fields.push_back(operand(value));
-    language_.make_record(out_, text_.result_type, false, fields);
+    for (const ValueId value : yields) fields.push_back(operand(value));
+    language_.make_record(out, text_.result_type, false, fields);
+    return exact;
   }
 
   void print_block(ir::BlockId block) {
     indent_ += 2;
-    for (ir::InstructionId id : function_.blocks[block].instructions) print(function_.instructions[id]);
+    for (const ir::InstructionId id : function_.blocks[block].instructions) print(function_.instructions[id]);
     indent_ -= 2;
   }
 
-  /// `const F name = `; an expression and end_statement() follow.
-  void begin_definition(const ir::Instruction& instruction) {
-    const ir::ValueId value = instruction.first_result;
-    values_[value] = name_value(value, instruction.origin);
-    indent().append(language_.declared_type(function_.type(value), uniform_[value])).append(" ");
-    out_.append(values_[value]).append(" = ");
-  }
-
   void print(const ir::Instruction& instruction) {
-    const auto operands = function_.operands_of(instruction);
-    const ir::ValueId result = instruction.first_result;
+    const ValueId result = instruction.first_result;
+    if (instruction.result_count == 1 && !nesting_[result].is_used) return;
     switch (instruction.op) {
-      case ir::Opcode::constant:
-        values_[result] = language_.literal(function_.type(result), instruction.imm);
-        if (literals_.empty()) literals_.resize(values_.size());
-        literals_[result] = true;
-        return;
-      case ir::Opcode::hidden_zero: values_[result] = hidden_zero; return;
-      case ir::Opcode::extract:
-        values_[result].append(text(operands[0])).append(".").append(component_names[instruction.imm]);
-        return;
-      case ir::Opcode::construct:
-        begin_definition(instruction);
-        out_.append(language_.type(function_.type(result), uniform_[result])).append("(");
-        for (ir::ValueId value : operands) {
-          separate();
-          language_.exactly(out_, operand(value), uniform_[result]);
-        }
-        out_ += ")";
-        return end_statement(result);
-      case ir::Opcode::load: {
-        const std::string& buffer = module_.buffers[instruction.imm].name;
-        if (nested_[result]) return language_.load(values_[result], buffer, text(operands[0]));
-        begin_definition(instruction);
-        language_.load(out_, buffer, text(operands[0]));
-        return end_statement(result);
-      }
-      case ir::Opcode::iadd:
-        if (!nested_[result]) return print_primitive(instruction);
-        values_[result].append(text(operands[0])).append(" + ").append(text(operands[1]));
-        return;
-      case ir::Opcode::call: return print_call(instruction);
-      case ir::Opcode::branch: return print_branch(instruction);
-      case ir::Opcode::loop: return print_loop(instruction);
+      case Opcode::constant: return print_constant(instruction);
+      case Opcode::hidden_zero: return set_name(result, std::string(hidden_zero));
+      case Opcode::extract: return print_extract(instruction);
+      case Opcode::construct: return print_construct(instruction);
+      case Opcode::load: return print_load(instruction);
+      case Opcode::call: return print_call(instruction);
+      case Opcode::branch: return print_branch(instruction);
+      case Opcode::loop: return print_loop(instruction);
+      case Opcode::ddx:
+      case Opcode::ddy: support::bug("a derivative in what is printed");
       default: return print_primitive(instruction);
     }
-  }
-
-  /// Names for what the text of an op declares beside its result, `$=_low`. They are taken for all languages, so that
-  /// what follows is called alike in each.
-  void take_temporaries(const ir::OpInfo& row, ir::ValueId result) {
-    temporaries_.clear();
-    for (std::string_view rest : {row.glsl, row.cpp}) {
-      for (size_t hole; (hole = rest.find("$=_")) != std::string_view::npos;) {
-        rest.remove_prefix(hole + 2);
-        const std::string_view suffix = suffix_of(rest);
-        if (name_of(suffix).empty())
-          temporaries_.push_back({suffix, names_.take(values_[result] + std::string(suffix))});
-      }
-    }
-  }
-
-  std::string_view name_of(std::string_view suffix) const {
-    for (const auto& [of, name] : temporaries_)
-      if (of == suffix) return name;
-    return {};
-  }
-
-  /// The rest of the name that begins with `$=`.
-  static std::string_view suffix_of(std::string_view text) {
-    const size_t end = text.find_first_not_of("_abcdefghijklmnopqrstuvwxyz");
-    return text.starts_with('_') ? text.substr(0, end) : std::string_view();
-  }
-
-  /// What stands in an op's text for `$=`, the result, or `$0`, an operand.
-  void fill(char hole, const ir::Instruction& instruction, std::string_view pattern) {
-    const ir::ValueId result = instruction.first_result;
-    if (hole == '=') {
-      out_ += values_[result];
-      return;
-    }
-    const ir::ValueId value = function_.operands_of(instruction)[static_cast<size_t>(hole - '0')];
-    if (instruction.op == ir::Opcode::select && hole == '0')
-      out_ += text(value);
-    else
-      language_.argument(out_, operand(value), uniform_[result], pattern);
-  }
-
-  void print_primitive(const ir::Instruction& instruction) {
-    const ir::ValueId result = instruction.first_result;
-    const std::string_view pattern = language_.op_text(ir::info(instruction.op));
-    const bool statement = pattern.starts_with(';');
-    if (statement) {
-      values_[result] = name_value(result, instruction.origin);
-      indent();
-    } else {
-      begin_definition(instruction);
-    }
-    take_temporaries(ir::info(instruction.op), result);
-    std::string_view rest = pattern.substr(statement ? 1 : 0);
-    for (size_t hole; (hole = rest.find('$')) != std::string_view::npos;) {
-      out_ += rest.substr(0, hole);
-      const char what = rest[hole + 1];
-      rest.remove_prefix(hole + 2);
-      const std::string_view suffix = suffix_of(rest);
-      suffix.empty() ? fill(what, instruction, pattern) : void(out_ += name_of(suffix));
-      rest.remove_prefix(suffix.size());
-    }
-    out_ += rest;
-    statement ? end_line(result) : end_statement(result);
   }
 
   /// `Surface surface; surface.a = x; surface.b = y;` for each group of a call; returns the names, at the first
   /// operand of each. Not constructed: where the call returns a struct, glslang 12 takes the arguments' fields
   /// for those of the result, and crashes on a constructor that has fewer.
   std::vector<std::string> print_groups(const ir::Instruction& instruction) {
-    const std::vector<ir::Parameter>& parameters = module_.functions[instruction.imm].parameters;
-    const FunctionText& called = texts_[instruction.imm];
+    const std::vector<ir::Parameter>& parameters = context_.module.functions[instruction.imm].parameters;
+    const FunctionText& called = context_.texts[instruction.imm];
     const auto operands = function_.operands_of(instruction);
     std::vector<std::string> names(operands.size());
     size_t first = 0;
@@ -262,76 +153,94 @@ class FunctionPrinter {
         first = i;
         names[i] = names_.take(parameter.group);
         language_.group_value(indent(), called.groups[i], parameter.uniform);
-        out_.append(" ").append(names[i]).append(";\n");
+        body_.append(" ").append(names[i]).append(";\n");
       }
       indent().append(names[first]).append(".").append(called.fields[i]).append(" = ");
-      language_.exactly(out_, operand(operands[i]), parameter.uniform);
-      out_ += ";\n";
+      language_.exactly(body_, operand(operands[i]), parameter.uniform);
+      body_ += ";\n";
     }
     return names;
   }
 
-  /// `f(a, b)`.
-  void print_call_expression(const ir::Instruction& instruction, const std::vector<std::string>& groups) {
-    const ir::Function& callee = module_.functions[instruction.imm];
-    const FunctionText& called = texts_[instruction.imm];
-    language_.callee(out_, called, uniform_[instruction.first_result]);
-    out_ += called.loads && language_.passes_buffers() ? "(buffers" : "(";
-    const auto operands = function_.operands_of(instruction);
-    for (size_t i = 0; i < operands.size(); ++i) {
-      const bool plain = callee.parameters[i].group.empty();
-      if (!plain && groups[i].empty()) continue;  // another field of the same group
-      separate();
-      out_ += plain ? text(operands[i]) : groups[i];
-    }
-    out_ += ")";
-  }
-
   void print_call(const ir::Instruction& instruction) {
-    const FunctionText& called = texts_[instruction.imm];
-    const ir::ValueId first = instruction.first_result;
-    const std::vector<std::string> groups = print_groups(instruction);
-    if (instruction.result_count == 1) {
-      begin_definition(instruction);
-    } else {
-      const std::string name =
-          names_.take(instruction.origin != 0 ? function_.origins[instruction.origin].node : "t");
-      language_.result_record(indent(), called.result_type, uniform_[first]);
-      out_.append(" ").append(name).append(" = ");
-      for (uint32_t i = 0; i < instruction.result_count; ++i)
-        values_[first + i] = name + "." + called.result_fields[i];
+    const ir::Function& callee = context_.module.functions[instruction.imm];
+    const FunctionText& called = context_.texts[instruction.imm];
+    const ValueId first = instruction.first_result;
+    const auto operands = function_.operands_of(instruction);
+    Written made;
+    made.exact = is_exact(operands);
+    const std::vector<std::string> groups =
+        std::ranges::any_of(called.groups, [](const std::string& group) { return !group.empty(); })
+            ? print_groups(instruction)
+            : std::vector<std::string>();
+    std::vector<ValueId> plain;
+    for (size_t i = 0; i < operands.size(); ++i)
+      if (callee.parameters[i].group.empty()) plain.push_back(operands[i]);
+    made.columns = make_room(plain, static_cast<int>(called.name.size() + 2 + 2 * plain.size()));
+    language_.callee(made.text, called, uniform_[first]);
+    made.text += called.loads && language_.passes_buffers() ? "(buffers" : "(";
+    int column = static_cast<int>(called.name.size() + indent_) + 1;
+    for (size_t i = 0; i < operands.size(); ++i) {
+      const bool is_plain = callee.parameters[i].group.empty();
+      if (!is_plain && groups[i].empty()) continue;  // another field of the same group
+      separate(made.text);
+      const int columns = 2 + (is_plain ? columns_of(operands[i]) : static_cast<int>(groups[i].size()));
+      column += columns;
+      if (column > most_columns + 8 && columns < column) {
+        made.text.back() = '\n';
+        made.text.append(indent_ + 4, ' ');
+        column = static_cast<int>(indent_) + 4 + columns;
+      }
+      made.text += is_plain ? operand(operands[i]).text : std::string_view(groups[i]);
     }
-    print_call_expression(instruction, groups);
-    end_statement(first);
+    made.text += ")";
+    if (instruction.result_count == 1) return finish(first, std::move(made));
+    print_doc(instruction.origin);
+    const std::string name =
+        names_.take(instruction.origin != 0 ? std::string_view(function_.origins[instruction.origin].node)
+                                            : noun_of(instruction));
+    language_.local_record(indent(), called.result_type, uniform_[first], made.exact);
+    body_.append(" ").append(name).append(" = ").append(made.text).append(";\n");
+    for (uint32_t i = 0; i < instruction.result_count; ++i)
+      set_name(first + i, name + "." + called.result_fields[i]);
   }
 
   void declare_results(const ir::Instruction& instruction) {
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
-      const ir::ValueId value = instruction.first_result + i;
-      values_[value] = name_value(value, instruction.origin);
+      const ValueId value = instruction.first_result + i;
+      print_doc(function_.values[value].names);
+      set_name(value, name_value(value, instruction));
     }
   }
 
+  /// Makes a yield ready to be assigned to a variable. The declaration of an int or a bool promises no exactness.
+  void prepare_assigned(ValueId value) {
+    make_room({&value, 1}, 0);
+    if (!function_.type(value).is_float() && written_[value].exact) need_name(value);
+  }
+
   void print_branch(const ir::Instruction& instruction) {
+    const ValueId condition = function_.operands_of(instruction)[0];
+    need_name(condition);
     declare_results(instruction);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
-      const ir::ValueId value = instruction.first_result + i;
-      language_.variable(indent(), function_.type(value), uniform_[value], values_[value]);
-      out_ += language_.no_value();
-      end_statement(value);
+      const ValueId value = instruction.first_result + i;
+      language_.variable(indent(), function_.type(value), uniform_[value], written_[value].text);
+      body_.append(language_.no_value()).append(";");
+      end_line(value);
     }
-    const Operand condition = operand(function_.operands_of(instruction)[0]);
     for (int side = 0; side < 2; ++side) {
-      language_.branch_head(indent(), condition.text, side == 1);
-      out_ += "\n";
-      const ir::BlockId block = instruction.blocks[side];
+      language_.branch_head(indent(), operand(condition), side == 1);
+      body_ += "\n";
+      const ir::BlockId block = instruction.blocks[static_cast<size_t>(side)];
       print_block(block);
       indent_ += 2;
       for (uint32_t i = 0; i < instruction.result_count; ++i) {
-        const ir::ValueId value = instruction.first_result + i;
-        language_.branch_value(indent(), condition, values_[value],
-                               operand(function_.blocks[block].yields[i]), uniform_[value], side == 1);
-        out_ += "\n";
+        const ValueId value = instruction.first_result + i, yield = function_.blocks[block].yields[i];
+        prepare_assigned(yield);
+        language_.branch_value(indent(), operand(condition), written_[value].text, operand(yield),
+                               uniform_[value], side == 1);
+        body_ += "\n";
       }
       indent_ -= 2;
       indent() += "}\n";
@@ -342,62 +251,57 @@ class FunctionPrinter {
     const auto operands = function_.operands_of(instruction);
     const ir::Block& body = function_.blocks[instruction.blocks[0]];
     support::assert_that(uniform_[operands[0]], "a loop's count is uniform");
+    need_name(operands[0]);
+    for (const ValueId initial : operands.subspan(1)) prepare_assigned(initial);
     declare_results(instruction);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
-      const ir::ValueId value = instruction.first_result + i;
-      language_.variable(indent(), function_.type(value), uniform_[value], values_[value]);
-      out_ += " = ";
-      language_.exactly(out_, operand(operands[i + 1]), uniform_[value]);
-      end_statement(value);
-      values_[body.parameters[i + 1]] = values_[value];
+      const ValueId value = instruction.first_result + i;
+      language_.variable(indent(), function_.type(value), uniform_[value], written_[value].text);
+      body_ += " = ";
+      language_.exactly(body_, operand(operands[i + 1]), uniform_[value]);
+      body_ += ";";
+      end_line(value);
+      set_name(body.parameters[i + 1], written_[value].text);
     }
     const std::string index = names_.take("index");
-    values_[body.parameters[0]] = index;
+    set_name(body.parameters[0], index);
     indent().append("for (int ").append(index).append(" = 0; ").append(index).append(" < ");
-    out_.append(text(operands[0])).append("; ++").append(index).append(") {\n");
+    body_.append(operand(operands[0]).text).append("; ++").append(index).append(") {\n");
     print_block(instruction.blocks[0]);
     indent_ += 2;
     // All at once: what one carried value becomes may be what another was.
     std::vector<std::string> next(instruction.result_count);
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
-      const ir::ValueId value = instruction.first_result + i;
+      const ValueId value = instruction.first_result + i;
+      prepare_assigned(body.yields[i]);
       language_.exactly(next[i], operand(body.yields[i]), uniform_[value]);
       if (instruction.result_count == 1) continue;
-      const std::string name = names_.take(values_[value] + "_next");
-      indent().append(language_.declared_type(function_.type(value), uniform_[value])).append(" ");
-      out_.append(name).append(" = ").append(next[i]).append(";\n");
+      const std::string name = names_.take(written_[value].text + "_next");
+      language_.local_type(indent(), function_.type(value), uniform_[value], false);
+      body_.append(" ").append(name).append(" = ").append(next[i]).append(";\n");
       next[i] = name;
     }
     for (uint32_t i = 0; i < instruction.result_count; ++i)
-      indent().append(values_[instruction.first_result + i]).append(" = ").append(next[i]).append(";\n");
+      indent()
+          .append(written_[instruction.first_result + i].text)
+          .append(" = ")
+          .append(next[i])
+          .append(";\n");
     indent_ -= 2;
     indent() += "}\n";
   }
 
   std::string& out_;
-  const ir::Module& module_;
-  const ir::Function& function_;
   const FunctionText& text_;
-  const Language& language_;
-  const std::vector<FunctionText>& texts_;
-  Names names_;
-  std::vector<std::string> values_;  ///< how each value is written
-  std::vector<bool> uniform_;
-  std::vector<bool> literals_;
-  std::vector<bool> used_;
-  std::vector<bool> nested_;
-  std::vector<std::pair<std::string_view, std::string>>
-      temporaries_;  ///< of the op that is printed, by suffix
-  std::string group_;
-  size_t indent_ = 0;
+  std::vector<bool> used_;  ///< by value
+  int returned_columns_ = 0;
 };
 
 }  // namespace
 
-void print_function(std::string& out, const ir::Module& module, const ir::Function& function,
-                    const FunctionText& text, const Language& language,
-                    const std::vector<FunctionText>& texts, const Names& globals) {
-  FunctionPrinter(out, module, function, text, language, texts, globals).print();
+bool print_function(std::string& out, const ir::Function& function, const FunctionText& text,
+                    const TextContext& context) {
+  return FunctionPrinter(out, function, text, context).print();
 }
 
 }  // namespace isoshade::emit

@@ -5,9 +5,8 @@
 
 namespace isoshade::emit {
 
-/// Appends one function: its head and body, or its prototype if it has none.
-void print_function(std::string& out, const ir::Module& module, const ir::Function& function,
-                    const FunctionText& text, const Language& language,
-                    const std::vector<FunctionText>& texts, const Names& globals);
+/// Appends one function: its head and body, or its prototype if it has none. Whether it is short enough for one line.
+bool print_function(std::string& out, const ir::Function& function, const FunctionText& text,
+                    const TextContext& context);
 
 }  // namespace isoshade::emit

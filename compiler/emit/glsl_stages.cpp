@@ -21,14 +21,13 @@ namespace {
 
 constexpr std::string_view push_constants =
     "layout(push_constant) uniform Push {\n"
-    "  int object;\n  int light_count;\n  int program;\n  int first;\n  int count;\n  int width;\n"
-    "  int origin_x;\n  int origin_y;\n  int projected;\n"
+    "  int object, light_count, program, first, count, width, origin_x, origin_y, projected;\n"
     "} push;\n";
 
 // A uniform will not do: lavapipe compiles a shader again for the values of some.
 constexpr std::string_view zero =
     "readonly buffer iso_zero_block { float iso_zero; };\n"
-    "#define ISO_ZERO iso_zero\n";
+    "#define ISO_ZERO iso_zero  // 0.0 where a driver would fold arithmetic with a literal, by rules of its own\n";
 
 /// "layout(set = 0, binding = 8) ": the first after those of the frame, or a later one.
 std::string binding(size_t after_frame, std::string_view layout = "std430, ") {
@@ -44,9 +43,7 @@ constexpr std::string_view canonical_bits =
     "}\n";
 
 constexpr std::string_view canonical_vector =
-    "ivec4 canonical(vec4 v) {\n"
-    "  return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w));\n"
-    "}\n";
+    "ivec4 canonical(vec4 v) { return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w)); }\n";
 
 std::string buffers_of(const ir::Module& module, std::vector<bool> used) {
   std::string text;
@@ -94,8 +91,7 @@ std::string pixel_main() {
          std::to_string(object_word::program) +
          "]) != push.program) discard;\n"
          "  ivec2 at = target + ivec2(push.origin_x, push.origin_y);\n"
-         "  precise vec4 shaded = pixel(at.x, at.y, triangle, object, push.light_count);\n"
-         "  color = intBitsToFloat(canonical(shaded));\n"
+         "  color = intBitsToFloat(canonical(pixel(at.x, at.y, triangle, object, push.light_count)));\n"
          "}\n";
 }
 
@@ -103,8 +99,7 @@ std::string post_main() {
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
          "  ivec2 at = ivec2(gl_FragCoord.xy);\n"
-         "  precise vec4 made = post(at.x, at.y);\n"
-         "  color = intBitsToFloat(canonical(made));\n"
+         "  color = intBitsToFloat(canonical(post(at.x, at.y)));\n"
          "}\n";
 }
 

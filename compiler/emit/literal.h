@@ -11,4 +11,11 @@ std::string decimal(uint32_t bits);
 
 bool is_finite(uint32_t bits);
 
+/// An int, as GLSL and C++ both read it: decimal where it is small, else its bits in hex; `is_mask`: what is combined
+/// bit by bit.
+std::string integer(uint32_t bits, bool is_mask = false);
+
+/// "0x7f800000", without leading zeros.
+std::string hexadecimal(uint32_t bits);
+
 }  // namespace isoshade::emit

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/names.h"
 
+#include <algorithm>
+
 namespace isoshade::emit {
 
 namespace {
@@ -68,13 +70,32 @@ std::string Names::take(std::string_view wanted, Avoid avoid) {
   return numbered;
 }
 
-std::string comment_text(std::string_view text) {
-  std::string out;
-  for (char c : text.substr(0, 200)) {
+namespace {
+
+std::string harmless(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
     if (c < ' ' || c > '~' || c == '\\' || c == '?' || c == '*') c = '_';
-    out += c;
-  }
   return out;
+}
+
+}  // namespace
+
+std::string comment_text(std::string_view text) { return harmless(text.substr(0, 200)); }
+
+void comment_lines(std::string& out, std::string_view text, size_t indent) {
+  constexpr size_t columns = 100, longest = 1000;
+  const std::string words = harmless(text.substr(0, longest));
+  const size_t wide = columns - std::min(columns / 2, indent + 3);
+  for (std::string_view rest = words; !rest.empty();) {
+    size_t end = rest.size();
+    if (end > wide) {
+      end = rest.rfind(' ', wide);
+      if (end == std::string_view::npos || end == 0) end = std::min(rest.find(' ', wide), rest.size());
+    }
+    out.append(indent, ' ').append("// ").append(rest.substr(0, end)).append("\n");
+    rest.remove_prefix(std::min(rest.size(), end + 1));
+  }
 }
 
 }  // namespace isoshade::emit

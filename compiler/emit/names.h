@@ -39,4 +39,7 @@ class Names {
 /// most 200 characters.
 std::string comment_text(std::string_view text);
 
+/// The same as lines of their own, indented, each at most 100 columns long where its words allow.
+void comment_lines(std::string& out, std::string_view text, size_t indent);
+
 }  // namespace isoshade::emit

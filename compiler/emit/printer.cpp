@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
+#include <unordered_map>
 
 #include "compiler/emit/function_printer.h"
+#include "compiler/emit/literal.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/lower/lower.h"
 #include "compiler/support/assert.h"
@@ -14,27 +17,42 @@ namespace isoshade::emit {
 
 namespace {
 
-bool loads_directly(const ir::Function& function) {
-  for (const ir::Instruction& instruction : function.instructions)
-    if (instruction.op == ir::Opcode::load) return true;
-  return false;
+const ir::Buffer unread_buffer{};
+
+/// The struct that a function's results or a parameter group become: "light_at" -> "LightAt".
+std::string record_name(std::string_view group) {
+  std::string name;
+  bool begins_word = true;
+  for (const char c : group) {
+    const bool is_small = c >= 'a' && c <= 'z';
+    if (c != '_') name += begins_word && is_small ? static_cast<char>(c - 'a' + 'A') : c;
+    begins_word = c == '_';
+  }
+  return name;
 }
 
-/// The struct that a function's results or a parameter group become: "surface" -> "Surface".
-std::string record_name(std::string_view group) {
-  std::string name(group);
-  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  return name;
+/// What is known of a parameter: its own words, and its range.
+std::string comment_of(const ir::Parameter& parameter) {
+  constexpr float unbounded = 1e30f;
+  std::string text = parameter.doc;
+  const auto number = [](float value) { return decimal(std::bit_cast<uint32_t>(value)); };
+  const bool from = parameter.least && *parameter.least > -unbounded;
+  const bool to = parameter.most && *parameter.most < unbounded;
+  if (!from && !to) return text;
+  text += text.empty() ? "" : "; ";
+  if (from) text += (to ? "" : "at least ") + number(*parameter.least);
+  if (to) text += (from ? " to " : "at most ") + number(*parameter.most);
+  return text;
 }
 
 void print_result_record(std::string& out, const ir::Function& function, const FunctionText& text,
                          const Language& language) {
   if (text.result_type.empty()) return;
-  std::vector<std::pair<ir::Type, std::string>> fields;
+  std::vector<RecordField> fields;
   for (size_t i = 0; i < function.results.size(); ++i)
-    fields.emplace_back(function.results[i].type, text.result_fields[i]);
+    fields.push_back({function.results[i].type, text.result_fields[i]});
   language.record(out, text.result_type, fields, false);
-  out += "\n";
+  if (!fits_on_line(text.result_type, fields)) out += "\n";
 }
 
 /// The structs that parameter groups become. Groups of one name and the same fields share one.
@@ -74,10 +92,10 @@ class GroupRecords {
     made.name = globals_.take(record_name(fields[0].group));
     made.fields.assign(fields.begin(), fields.end());
     Names names(Scope::field);
-    std::vector<std::pair<ir::Type, std::string>> printed;
+    std::vector<RecordField> printed;
     for (const ir::Parameter& field : fields) {
       made.names.push_back(names.take(field.name));
-      printed.emplace_back(field.type, made.names.back());
+      printed.push_back({field.type, made.names.back(), comment_text(comment_of(field))});
     }
     language_.record(out, made.name, printed, fields[0].uniform);
     out += "\n";
@@ -89,7 +107,51 @@ class GroupRecords {
   std::vector<Record> records_;
 };
 
+/// Names of functions of our own. Those of the library that differ in the types of their arguments alone share one:
+/// the types select the function, in every language.
+class OwnNames {
+ public:
+  explicit OwnNames(Names& globals) : globals_(globals) {}
+
+  std::string take(const ir::Function& function) {
+    if (function.library.empty()) return globals_.take_own(function.name);
+    const auto is_float = [](const ir::Parameter& parameter) { return parameter.type.is_float(); };
+    if (!std::ranges::all_of(function.parameters, is_float)) return globals_.take_own(function.name);
+    std::string shared(without_types(function.name));
+    const auto [name, is_new] = names_.try_emplace(shared);
+    if (is_new) name->second = globals_.take_own(shared);
+    return name->second;
+  }
+
+ private:
+  /// "iso_mix_v3v3f" -> "iso_mix": variants of one row never have the same types.
+  static std::string_view without_types(std::string_view name) {
+    const size_t last = name.rfind('_');
+    std::string_view types = name.substr(last + 1);
+    if (!types.starts_with('v') && !types.starts_with('m')) return name;
+    while (!types.empty()) {
+      const bool is_wide =
+          (types[0] == 'v' || types[0] == 'm') && types.size() > 1 && types[1] >= '2' && types[1] <= '4';
+      if (!is_wide && types[0] != 'f') return name;
+      types.remove_prefix(is_wide ? 2 : 1);
+    }
+    return name.substr(0, last);
+  }
+
+  Names& globals_;
+  std::unordered_map<std::string, std::string> names_;  ///< by the name that they share in the IR
+};
+
 }  // namespace
+
+bool fits_on_line(std::string_view name, std::span<const RecordField> fields) {
+  size_t columns = name.size() + 12;
+  for (const RecordField& field : fields) {
+    if (!field.comment.empty()) return false;
+    columns += field.name.size() + 7;
+  }
+  return columns <= 80;
+}
 
 bool uses_hidden_zero(const ir::Module& module, uint32_t entry) {
   const std::array entries{entry};
@@ -98,6 +160,63 @@ bool uses_hidden_zero(const ir::Module& module, uint32_t entry) {
     for (const ir::Instruction& instruction : module.functions[index].instructions)
       if (instruction.op == ir::Opcode::hidden_zero) return true;
   return false;
+}
+
+RecordWords::RecordWords(const ir::Buffer& buffer, Names& globals)
+    : buffer_(buffer), taken_(buffer.fields.size()) {
+  for (uint32_t i = 0; i < buffer.fields.size(); ++i) {
+    const ir::RecordField& field = buffer.fields[i];
+    names_.push_back(globals.take(field.name));
+    if (field_of_word_.size() < field.first + field.words)
+      field_of_word_.resize(field.first + field.words, ir::none);
+    std::fill_n(field_of_word_.begin() + field.first, field.words, i);
+  }
+}
+
+const std::string* RecordWords::take(uint32_t word, uint32_t& rest) {
+  if (word >= field_of_word_.size() || field_of_word_[word] == ir::none) return nullptr;
+  const uint32_t field = field_of_word_[word];
+  taken_[field] = true;
+  rest = word - buffer_.fields[field].first;
+  return &names_[field];
+}
+
+void RecordWords::declare(std::string& out) const {
+  constexpr size_t columns = 100;
+  size_t line = out.size();
+  bool any = false;
+  for (size_t i = 0; i < names_.size(); ++i) {
+    if (!taken_[i]) continue;
+    const std::string constant = names_[i] + " = " + std::to_string(buffer_.fields[i].first);
+    const bool fits = any && out.size() - line + constant.size() + 3 <= columns;
+    if (any) out += fits ? ", " : ";\n";
+    if (!fits) line = out.size();
+    out.append(fits ? "" : "const int ").append(constant);
+    any = true;
+  }
+  if (any) out += ";\n";
+}
+
+WordReaders::WordReaders(const ir::Buffer& buffer, Names& globals) : buffer_(buffer) {
+  if (!buffer.name.empty())
+    for (size_t i = 0; i < names_.size(); ++i) names_[i] = globals.take(buffer.name + std::to_string(i + 2));
+}
+
+const std::string& WordReaders::take(size_t width) {
+  taken_[width - 2] = true;
+  return names_[width - 2];
+}
+
+void WordReaders::define(std::string& out, const Language& language) const {
+  for (int width = 2; width <= 4; ++width) {
+    if (!taken_[static_cast<size_t>(width - 2)]) continue;
+    language.word_reader(out, names_[static_cast<size_t>(width - 2)], width);
+    for (int i = 0; i < width; ++i) {
+      if (i != 0) out += ", ";
+      language.load(out, buffer_.name, i == 0 ? "word" : "word + " + std::to_string(i));
+    }
+    language.end_word_reader(out);
+  }
 }
 
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
@@ -112,32 +231,54 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
   const auto is_ours = [](const ir::Function& function) {
     return function.document.empty() || interface::is_kernel_function(function.name);
   };
+  OwnNames own(globals);
   for (const uint32_t index : *order)
-    if (is_ours(module.functions[index])) texts[index].name = globals.take_own(module.functions[index].name);
+    if (is_ours(module.functions[index])) texts[index].name = own.take(module.functions[index]);
   for (const uint32_t index : *order)
     if (!is_ours(module.functions[index])) texts[index].name = globals.take(module.functions[index].name);
+  std::vector<bool> loaded(module.buffers.size());
   for (const uint32_t index : *order) {
     const ir::Function& function = module.functions[index];
     FunctionText& text = texts[index];
-    text.loads = loads_directly(function);
-    for (const ir::Instruction& instruction : function.instructions)
+    for (const ir::Instruction& instruction : function.instructions) {
+      if (instruction.op == ir::Opcode::load) text.loads = loaded[instruction.imm] = true;
       if (instruction.op == ir::Opcode::call) text.loads |= texts[instruction.imm].loads;
+    }
     if (function.results.size() <= 1) continue;
     text.result_type = globals.take(record_name(text.name) + "Result");
     Names fields(Scope::field);
     for (const ir::Result& result : function.results) text.result_fields.push_back(fields.take(result.name));
   }
+  std::vector<RecordWords> records;
+  std::vector<WordReaders> readers;
+  for (size_t i = 0; i < module.buffers.size(); ++i) {
+    records.emplace_back(loaded[i] ? module.buffers[i] : unread_buffer, globals);
+    readers.emplace_back(loaded[i] ? module.buffers[i] : unread_buffer, globals);
+  }
   std::string out;
   GroupRecords groups(language, globals);
+  const TextContext context{module, language, texts, globals, records, readers};
+  bool follows_line = false;
   for (uint32_t index : *order) {
     const ir::Function& function = module.functions[index];
+    const size_t before = out.size();
     if (!out.empty()) out += "\n";
     if (!function.document.empty()) out += "// " + comment_text(function.document) + "\n";
     print_result_record(out, function, texts[index], language);
     groups.print(out, function, texts[index]);
-    print_function(out, module, function, texts[index], language, texts, globals);
+    const size_t begin = out.size();
+    const bool is_line = print_function(out, function, texts[index], context);
+    // Functions of a line stand together.
+    if (is_line && follows_line && begin == before + 1) out.erase(before, 1);
+    follows_line = is_line;
   }
-  return out;
+  std::string head;
+  for (const RecordWords& words : records) words.declare(head);
+  if (!head.empty()) head += "\n";
+  const size_t constants = head.size();
+  for (const WordReaders& reader : readers) reader.define(head, language);
+  if (head.size() != constants) head += "\n";
+  return head + out;
 }
 
 }  // namespace isoshade::emit

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// One walk over the IR for both languages, so that GLSL and C++ read alike line by line: same names, same
-// order, same comments. A Language says only how things are spelled.
+// One walk over the IR for all text languages, so that they read alike line by line: same names, same order, same
+// comments, same nesting. A Language says only how things are spelled.
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "compiler/emit/names.h"
+#include "compiler/emit/op_text.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::emit {
@@ -22,58 +25,115 @@ struct FunctionText {
   bool loads = false;               ///< it, or one it calls, loads from a buffer
 };
 
-/// How a value is written: a name and its spelling's properties.
+/// A value as it is written: an expression and what decides how it fits into another.
 struct Operand {
   std::string_view text;  ///< of the printer
   ir::Type type;
+  Precedence precedence = Precedence::primary;
   bool uniform = false;  ///< one value for all lanes
   bool literal = false;
 };
 
-/// The spelling of one language. What is made of parts is appended to `out`.
+/// A field of a record, and the comment behind it.
+struct RecordField {
+  ir::Type type;
+  std::string name;
+  std::string comment = {};
+};
+
+/// Whether a record is short enough for one line, the same in all languages.
+bool fits_on_line(std::string_view name, std::span<const RecordField> fields);
+
+/// The spelling of one language. What is made of parts is appended to `out`. `exact`: arithmetic on floats stands in
+/// what the declaration is given, and must be done as written.
 class Language {
  public:
   virtual ~Language() = default;
   /// A type as it stands in a parameter list, a field or a construction: "float", "F", "vec3<F>".
   virtual std::string_view type(ir::Type type, bool uniform) const = 0;
-  /// "precise float" or "const F".
-  virtual std::string_view declared_type(ir::Type type, bool uniform) const = 0;
+  /// Begins the definition of a local: "precise float", "const F".
+  virtual void local_type(std::string& out, ir::Type type, bool uniform, bool exact) const = 0;
+  /// A float or a bool; ints are written alike everywhere (literal.h).
   virtual std::string literal(ir::Type type, uint32_t bits) const = 0;
-  virtual std::string_view op_text(const ir::OpInfo& row) const = 0;
+  virtual const OpText& op_text(ir::Opcode op) const = 0;
   /// An operand where its type must be exactly this: an arm of a select, a value that is assigned.
   virtual void exactly(std::string& out, const Operand& operand, bool uniform) const = 0;
-  /// An operand of a primitive op, in its text `pattern`.
-  virtual void argument(std::string& out, const Operand& operand, bool uniform,
-                        std::string_view pattern) const = 0;
   virtual void load(std::string& out, std::string_view buffer, std::string_view index) const = 0;
+  /// A function of WordReaders up to the words that it reads, and behind them.
+  virtual void word_reader(std::string& out, std::string_view name, int width) const = 0;
+  virtual void end_word_reader(std::string& out) const = 0;
   /// What stands before the argument list: name, and in C++ the lanes of the instance.
   virtual void callee(std::string& out, const FunctionText& function, bool uniform) const = 0;
   /// Whether functions that load are given the buffers, as their first argument.
   virtual bool passes_buffers() const = 0;
-  /// The type of a call's result that is a record.
-  virtual void result_record(std::string& out, std::string_view record, bool uniform) const = 0;
+  /// Begins the definition of a local that is a record: the result of a call.
+  virtual void local_record(std::string& out, std::string_view record, bool uniform, bool exact) const = 0;
   virtual void parameter(std::string& out, ir::Type type, bool uniform, std::string_view name,
                          bool used) const = 0;
   /// A variable that is assigned later, and its initialiser until then.
   virtual void variable(std::string& out, ir::Type type, bool uniform, std::string_view name) const = 0;
   virtual std::string_view no_value() const = 0;
   /// The head of a block that runs where the condition holds (or where it does not), and what is assigned at
-  /// its end.
-  virtual void branch_head(std::string& out, std::string_view condition, bool other) const = 0;
+  /// its end. The condition is a name.
+  virtual void branch_head(std::string& out, const Operand& condition, bool other) const = 0;
   virtual void branch_value(std::string& out, const Operand& condition, std::string_view variable,
                             const Operand& value, bool uniform, bool other) const = 0;
   /// "struct Surface {" with fields, whole.
-  virtual void record(std::string& out, std::string_view name,
-                      const std::vector<std::pair<ir::Type, std::string>>& fields, bool uniform) const = 0;
+  virtual void record(std::string& out, std::string_view name, std::span<const RecordField> fields,
+                      bool uniform) const = 0;
   /// A value of a record whose fields are these.
   virtual void make_record(std::string& out, std::string_view name, bool uniform,
                            const std::vector<Operand>& fields) const = 0;
   /// All before the first parameter; in C++ with the buffers, if the function loads.
-  virtual void function_head(std::string& out, const ir::Function& function,
-                             const FunctionText& text) const = 0;
+  virtual void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
+                             bool exact) const = 0;
   /// The type of a local, and of a parameter, that is a whole group.
   virtual void group_value(std::string& out, std::string_view record, bool uniform) const = 0;
   virtual void group_type(std::string& out, std::string_view record, bool uniform) const = 0;
+};
+
+/// Named constants for the words of a buffer's records: `objects[object + roughness]`.
+class RecordWords {
+ public:
+  RecordWords(const ir::Buffer& buffer, Names& globals);
+
+  /// The name of the field that has this word, which the text then declares; null: none has. `rest` receives the word's
+  /// place in the field.
+  const std::string* take(uint32_t word, uint32_t& rest);
+  /// `const int roughness = 54;` for each name that was taken.
+  void declare(std::string& out) const;
+  bool empty() const { return names_.empty(); }
+
+ private:
+  const ir::Buffer& buffer_;
+  std::vector<std::string> names_;  ///< of the fields
+  std::vector<bool> taken_;
+  std::vector<uint32_t> field_of_word_;
+};
+
+/// Functions that read a vector from consecutive words of a buffer: `vec3 objects3(int word)`.
+class WordReaders {
+ public:
+  WordReaders(const ir::Buffer& buffer, Names& globals);
+
+  /// The name of the one for vectors of `width`, which the text then defines.
+  const std::string& take(size_t width);
+  void define(std::string& out, const Language& language) const;
+
+ private:
+  const ir::Buffer& buffer_;
+  std::array<std::string, 3> names_;  ///< by width - 2
+  std::array<bool, 3> taken_{};
+};
+
+/// What the functions of one text share.
+struct TextContext {
+  const ir::Module& module;
+  const Language& language;
+  const std::vector<FunctionText>& texts;  ///< by function
+  const Names& globals;
+  std::vector<RecordWords>& records;  ///< by buffer
+  std::vector<WordReaders>& readers;  ///< by buffer
 };
 
 /// Prints the functions that `entry` needs, callees first, and the records they use. Needs: every function

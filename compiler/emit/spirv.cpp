@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/emit/spirv.h"
 
+#include <algorithm>
 #include <array>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 #include <spirv-tools/libspirv.hpp>
 #include <string_view>
+#include <unordered_set>
 
 #include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
@@ -31,6 +33,7 @@ std::string first_error(std::string_view log) {
 }
 
 constexpr size_t header_words = 5;
+constexpr uint32_t op_decorate = 71, no_contraction = 42;
 
 /// The opcode of an instruction and how many words it has, by its first word.
 struct Instruction {
@@ -62,7 +65,7 @@ bool is_float_arithmetic(uint32_t opcode) {
 
 /// Decorates every operation on floats with NoContraction. Decorations stand before the first type.
 void forbid_contraction(std::vector<uint32_t>& spirv) {
-  constexpr uint32_t op_decorate = 71, no_contraction = 42, first_type = 19, last_type = 39;
+  constexpr uint32_t first_type = 19, last_type = 39;
   size_t types = 0;
   std::vector<uint32_t> decorations;
   for (size_t i = header_words; i < spirv.size();) {
@@ -87,49 +90,85 @@ std::string validate(const std::vector<uint32_t>& spirv) {
   return tools.Validate(spirv) ? "" : "invalid SPIR-V: " + message;
 }
 
-}  // namespace
-
-std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
-                                                   support::Diagnostics& diagnostics,
-                                                   const std::string& what) {
+/// What glslang makes of a text; else `error` tells why there is nothing.
+std::optional<std::vector<uint32_t>> translate(const std::string& glsl, ShaderKind kind, const char* preamble,
+                                               std::string& error) {
   static const Process process;
-  const auto refuse = [&](const std::string& reason) {
-    diagnostics
-        .report(support::Id::bad_shader,
-                "the GLSL of " + what + " does not compile: " + support::visible(reason))
-        .note(
-            "isoshade made this text: unless the graph is larger than glslang takes, please report the "
-            "document");
-    return std::nullopt;
-  };
-
   const EShLanguage stage = kind == ShaderKind::vertex ? EShLangVertex : EShLangFragment;
   glslang::TShader shader(stage);
   const std::array texts = {glsl.data()};
   const std::array lengths = {static_cast<int>(glsl.size())};
   shader.setStringsWithLengths(texts.data(), lengths.data(), 1);
-  // `precise` tells other compilers of the text what must be exact. glslang 12 follows it from each precise value back
-  // along every path to where it comes from: exponential time where structs and vectors are taken apart and made anew,
-  // one after another. Here no operation may be contracted at all, so it need not look.
-  shader.setPreamble("#define precise\n");
+  shader.setPreamble(preamble);
   shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
-  if (!shader.parse(GetDefaultResources(), 450, false, messages))
-    return refuse(first_error(shader.getInfoLog()));
-
+  if (!shader.parse(GetDefaultResources(), 450, false, messages)) {
+    error = first_error(shader.getInfoLog());
+    return std::nullopt;
+  }
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(messages)) return refuse(first_error(program.getInfoLog()));
-
+  if (!program.link(messages)) {
+    error = first_error(program.getInfoLog());
+    return std::nullopt;
+  }
   std::vector<uint32_t> spirv;
   glslang::SpvOptions options;
   options.disableOptimizer = true;
   glslang::GlslangToSpv(*program.getIntermediate(stage), spirv, &options);
-  forbid_contraction(spirv);
-  if (const std::string wrong = validate(spirv); !wrong.empty()) return refuse(wrong);
-  support::assert_that(preserves_nan(spirv), "a shader without SignedZeroInfNanPreserve 32");
   return spirv;
+}
+
+void refuse(support::Diagnostics& diagnostics, const std::string& what, const std::string& reason) {
+  diagnostics
+      .report(support::Id::bad_shader,
+              "the GLSL of " + what + " does not compile: " + support::visible(reason))
+      .note(
+          "isoshade made this text: unless the graph is larger than glslang takes, please report the "
+          "document");
+}
+
+}  // namespace
+
+std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
+                                                   support::Diagnostics& diagnostics,
+                                                   const std::string& what) {
+  std::string error;
+  // `precise` tells other compilers of the text what must be exact. glslang 12 follows it from each precise value back
+  // along every path to where it comes from: exponential time where structs and vectors are taken apart and made anew,
+  // one after another. Here no operation may be contracted at all, so it need not look.
+  std::optional<std::vector<uint32_t>> spirv = translate(glsl, kind, "#define precise\n", error);
+  if (spirv) {
+    forbid_contraction(*spirv);
+    error = validate(*spirv);
+  }
+  if (!error.empty()) {
+    refuse(diagnostics, what, error);
+    return std::nullopt;
+  }
+  support::assert_that(preserves_nan(*spirv), "a shader without SignedZeroInfNanPreserve 32");
+  return spirv;
+}
+
+std::optional<size_t> count_contractible(const std::string& glsl, ShaderKind kind,
+                                         support::Diagnostics& diagnostics) {
+  std::string error;
+  const std::optional<std::vector<uint32_t>> spirv = translate(glsl, kind, "", error);
+  if (!spirv) {
+    refuse(diagnostics, "a shader", error);
+    return std::nullopt;
+  }
+  std::vector<uint32_t> computed;
+  std::unordered_set<uint32_t> exact;
+  for (size_t i = header_words; i < spirv->size();) {
+    const Instruction instruction((*spirv)[i]);
+    support::assert_that(instruction.words != 0, "glslang made SPIR-V without end");
+    if (instruction.opcode == op_decorate && (*spirv)[i + 2] == no_contraction) exact.insert((*spirv)[i + 1]);
+    if (is_float_arithmetic(instruction.opcode)) computed.push_back((*spirv)[i + 2]);
+    i += instruction.words;
+  }
+  return static_cast<size_t>(std::ranges::count_if(computed, [&](uint32_t id) { return !exact.contains(id); }));
 }
 
 }  // namespace isoshade::emit

@@ -24,4 +24,9 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
                                                    support::Diagnostics& diagnostics,
                                                    const std::string& what = "a shader");
 
+/// How many operations on floats the text leaves to a compiler that follows `precise` to contract, or nothing where it
+/// does not compile. Of our texts none: users compile them by compilers of their own. May take exponential time.
+std::optional<size_t> count_contractible(const std::string& glsl, ShaderKind kind,
+                                         support::Diagnostics& diagnostics);
+
 }  // namespace isoshade::emit

@@ -93,7 +93,8 @@ std::string with_built_ins(std::string glsl, const std::string& definitions) {
     if (line_end == std::string::npos) continue;  // this tier does not call it
     const size_t begin = line_end + 1;
     const size_t line_close = glsl.find('\n', begin);
-    const bool is_line = glsl[glsl.find_last_not_of(' ', line_close - 1)] == '}';  // "float f(float a) { return a; }"
+    // "float f(float a) { return a; }"
+    const bool is_line = std::string_view(glsl).substr(begin, line_close - begin).find(" { return ") != glsl.npos;
     const size_t after = is_line ? line_close + 1 : glsl.find(close, begin) + close.size();
     glsl.replace(begin, after - begin, definition);
   }

@@ -125,7 +125,7 @@ func @eval(%row: int) -> (out: int) {
   %x: int = umulhi %row, %row
   %x_low: int = iadd %x, %row
   %x_high: int = imulhi %x_low, %row
-  %x_high_low: int = imulhi %x_high, %x
+  %x_high_low: int = imulhi %x_high, %x_low
   %out: int = iadd %x_high_low, %x_high
   return %out
 })");

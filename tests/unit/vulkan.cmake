@@ -1,5 +1,10 @@
 isoshade_test(emit_spirv_test
-  SOURCES unit/emit_names_of_groups_test.cpp unit/emit_names_test.cpp unit/emit_spirv_test.cpp
+  SOURCES
+    unit/emit_names_of_groups_test.cpp
+    unit/emit_names_test.cpp
+    unit/emit_nesting_test.cpp
+    unit/emit_spirv_test.cpp
+    unit/random_module.cpp
   LINKS isoshade_emit)
 
 if(ISOSHADE_VULKAN)
