@@ -127,6 +127,23 @@ lower::Lowered lower_with_buffers(const check::TypedGraph& typed, const lower::L
   return lowered;
 }
 
+/// Names the words of a block in the texts that load them; `first` words of the record stand before it.
+void name_words(ir::Module& module, const ParameterBlock& block, size_t first) {
+  ir::Buffer& objects = module.buffers[static_cast<size_t>(lower::FrameBuffer::objects)];
+  if (first == 0) objects.fields.clear();
+  objects.one_record = first == 0;
+  const auto add = [&](std::string name, size_t word, int words) {
+    objects.fields.push_back(
+        {std::move(name), static_cast<uint32_t>(first + word), static_cast<uint32_t>(words)});
+  };
+  for (size_t i = 0; i < block.fields.size(); ++i)
+    if (block.fields[i].words > 0)
+      add("parameter_" + block.fields[i].name, block.word_of(i), block.fields[i].words);
+  for (size_t i = 0; i < block.images.size(); ++i)
+    add("image_" + block.images[i].slot.name, block.word_of_image(i), 1);
+  for (size_t i = 0; i < block.taps.size(); ++i) add("taps_" + block.taps[i].name, block.word_of_taps(i), 1);
+}
+
 Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                        const CompileOptions& options) {
   Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
@@ -135,6 +152,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
     return program;
   }
   lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::position});
+  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
   const uint32_t kernel = lower::add_moving_vertex_kernel(
       lowered.module, lowered.interface, layout_of(effect), typed.graph.passes[pass].position_space);
   program.module = std::move(lowered.module);
@@ -146,6 +164,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                       const CompileOptions& options) {
   lower::Lowered lowered = lower_with_buffers(typed, {pass});
+  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
   const uint32_t kernel =
       lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), options.lights);
   Program program{lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
@@ -205,6 +224,7 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
     post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
     post.parameters.taps.back().value = {static_cast<float>(sum.taps)};
   }
+  name_words(lowered.module, post.parameters, 0);
   const uint32_t kernel =
       lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, sums, 0));
   post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {},

@@ -287,7 +287,11 @@ std::string ExpressionPrinter::print_index(uint32_t buffer, const Index& index, 
   }
   const ir::Instruction* made = index.base == ir::none ? nullptr : definition(index.base);
   uint32_t constant = index.constant;
-  if (const bool is_record = made == nullptr || made->op != Opcode::iadd; is_record) {
+  const bool is_constant = made == nullptr ? index.base == ir::none : made->op == Opcode::constant;
+  const bool is_record = context_.module.buffers[buffer].one_record
+                             ? is_constant
+                             : made == nullptr || made->op != Opcode::iadd;
+  if (is_record) {
     const uint32_t word = made != nullptr && made->op == Opcode::constant ? made->imm : constant;
     if (const std::string* name = context_.records[buffer].take(word, constant)) {
       if (made != nullptr && made->op == Opcode::constant) text.clear();

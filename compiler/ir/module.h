@@ -116,9 +116,11 @@ struct RecordField {
 struct Buffer {
   std::string name;
   Scalar element = Scalar::floating;  ///< floating or integer
-  /// Of the records that it consists of, if emitted text is to name them. Then each load's index is the first word of
-  /// a record, or that plus a constant, or a constant where there is one record.
+  /// The words of its records, if emitted text is to name them. Then a load's index is the first word of a record, or
+  /// that plus a constant.
   std::vector<RecordField> fields = {};
+  /// There is one record, which begins at word 0: only loads with a constant index are of its fields.
+  bool one_record = false;
   friend bool operator==(const Buffer&, const Buffer&) = default;
 };
 
