@@ -13,7 +13,7 @@ namespace isoshade::interface {
 
 // VALUE(name, what it means for the manual)
 #define ISOSHADE_CULL(VALUE)                     \
-  VALUE(none, "every face is drawn")             \
+  VALUE(none, "every face is drawn")                 \
   VALUE(back, "faces seen from behind are left out") \
   VALUE(front, "faces seen from the front are left out")
 #define ISOSHADE_DEPTH_TEST(VALUE)                                                                        \

@@ -226,6 +226,15 @@ std::string functions_markdown() {
   return text;
 }
 
+std::string pass_states_markdown() {
+  std::string text = "| key | value | |\n|---|---|---|\n";
+  for (const interface::PassStateRow& state : interface::pass_states())
+    for (size_t v = 0; v < state.values.size(); ++v)
+      text += "| `" + std::string(state.key) + "` | `\"" + std::string(state.values[v]) + "\"`" +
+              (v == state.fallback ? " (default)" : "") + " | " + cell(std::string(state.value_docs[v])) + " |\n";
+  return text;
+}
+
 std::string table_markdown(std::span<const Row> library) {
   std::string text;
   std::string_view group;
@@ -246,7 +255,7 @@ std::string table_markdown(std::span<const Row> library) {
   std::ranges::for_each(table(), add);
   std::ranges::for_each(library, add);
   return text + "\n**functions of expressions**\n\n" + functions_markdown() + "\n**domains**\n\n" +
-         domains_markdown();
+         domains_markdown() + "\n**states of passes**\n\n" + pass_states_markdown();
 }
 
 }  // namespace isoshade::nodes
