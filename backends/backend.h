@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every backend does: run the vertex stage, draw triangles, evaluate a function over a table. The scene
-// steps around it (render/) are the same for all.
+// What every backend does: run vertex programs, draw the triangles of a view, run full-screen passes, evaluate a
+// function over a table. The steps around these (runtime/render) are the same for all backends.
 #pragma once
 
 #include <cstdint>
@@ -20,74 +20,98 @@ namespace isoshade::backends {
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<float> rgba;   ///< 4 * width * height
+  std::vector<float> rgba;   ///< 4 * width * height; empty where the target has no color
   std::vector<float> depth;  ///< width * height
 
-  void resize(int w, int h);
+  void resize(int w, int h, bool has_color = true);
 };
 
-/// One part of an object under one pass.
+/// One part of an object under one pass, in one view.
 struct Draw {
   uint32_t vertex_program = 0;  ///< indices into Frame::programs
   uint32_t pixel_program = 0;
   int object = 0;             ///< the first word of its record in Frame::objects
-  int projected = 0;          ///< the first word of its matrix in Frame::view
+  int projected = 0;          ///< the first word of its matrix in View::words
   uint32_t first_vertex = 0;  ///< its vertices in Frame::vertices
   uint32_t vertex_count = 0;
   std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
   interface::PassState state;         ///< as its vertices are wound, whatever the transform does
 };
 
-/// What takes the most room in an array of a frame, for messages; empty if there is nothing.
-struct Largest {
-  std::string what;     ///< "the image \"a.png\", 2048 x 2048 with mip levels"
-  support::Span where;  ///< what names it
+/// What a view is drawn into.
+struct Target {
+  std::string name;  ///< for messages: "the picture"
+  int width = 0;
+  int height = 0;
+  bool has_color = true;  ///< false: it holds depth alone, and no pixel program is run
 };
 
-/// A part of a frame, in its pixels.
+/// A camera, the draws that it sees and the target that receives them. Its programs may read the targets of earlier
+/// views; posts read the target of the last one.
+struct View {
+  Target target;
+  std::vector<float> words;   ///< lower::view_word: the camera, then the matrices of the draws
+  std::vector<Draw> draws;    ///< in the order in which they are drawn
+  std::vector<size_t> reads;  ///< earlier views (indices into Frame::views) whose targets its programs read
+  float background[4] = {0, 0, 0, 0};
+};
+
+/// The item that takes the most room in an array of a frame, for messages; empty if there is none.
+struct Largest {
+  std::string what;     ///< "the image \"a.png\", 2048 x 2048 with mip levels"
+  support::Span where;  ///< where the scene names it
+};
+
+/// A rectangle of pixels.
 struct Window {
   int x = 0, y = 0;
   int width = 0, height = 0;
 };
 
-/// A frame ready to be drawn: programs and the arrays of lower/frame_layout.h.
+/// All that is drawn for one picture: programs, the arrays of lower/frame_layout.h, and the views.
 struct Frame {
-  int width = 0;
-  int height = 0;
   std::vector<const driver::Program*> programs;
   std::vector<float> vertices;
   std::vector<float> objects;
   std::vector<float> lights;
   std::vector<float> frame;
-  std::vector<float> view;
   std::vector<float> texels;
   std::vector<uint32_t> texel_bytes;
   std::vector<int32_t> textures;
   int light_count = 0;
-  std::vector<Draw> draws;
-  float background[4] = {0, 0, 0, 0};
+  std::vector<View> views;  ///< in the order in which they are drawn; the last one draws the picture
   Largest largest_in_texels, largest_in_texel_bytes, largest_mesh;
+
+  const View& picture() const { return views.back(); }
+};
+
+/// A view ready to be drawn, with the images that its programs read.
+struct ViewPass {
+  const Frame& frame;
+  const View& view;
+  std::span<const float> layers = {};
+  std::span<const int32_t> layer_records = {};
 };
 
 /// A full-screen pass ready to be run: a program of Stage::post and its arrays of lower/frame_layout.h.
 struct ScreenPass {
   const driver::Program* program = nullptr;
-  int width = 0;  ///< of the image that is made
+  int width = 0;  ///< of the image that it makes
   int height = 0;
   std::span<const float> frame;
-  std::span<const float> view;
+  std::span<const float> view;    ///< the camera alone
   std::span<const float> record;  ///< parameters and numbers of taps, as `objects`
-  std::span<const float> images;
-  std::span<const int32_t> image_records;
+  std::span<const float> layers;
+  std::span<const int32_t> layer_records;
 };
 
-/// A frame that is drawn part by part. What the parts share is made ready once.
-class Drawing {
+/// Draws a view window by window. The backend prepares once what all windows share.
+class ViewRenderer {
  public:
-  virtual ~Drawing() = default;
-  /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order, positions in the frame) over the
-  /// background and shades each pixel of the window that they cover once. `image` is of the window's size, and has the
-  /// bits that the same triangles give there in any other window.
+  virtual ~ViewRenderer() = default;
+  /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order, in pixels of the target) over the
+  /// background, and runs the pixel program once for each pixel of the window that they cover, if the target has color.
+  /// `image` gets the size of the window. Its bits do not depend on how a view is divided into windows.
   virtual bool draw(const Window& window, std::span<const int32_t> triangles, Image& image,
                     support::Diagnostics& diagnostics) = 0;
 };
@@ -98,18 +122,19 @@ class Backend {
   virtual std::string_view name() const = 0;
   /// Device or compiler, lanes, division: one line for reports.
   virtual std::string description() const = 0;
-  /// The seconds that went so far into code for the machine: compiled, or found and loaded, where programs are first run.
+  /// The seconds spent so far on machine code: compiling it, or finding and loading it, when a program first runs.
   virtual double build_seconds() const { return 0; }
 
-  /// Runs the vertex programs: clip[d] receives 4 floats for each vertex of draws[d], NaN canonical.
-  virtual bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+  /// Runs the vertex programs: clip[d] receives 4 floats for each vertex of view.draws[d], NaN canonical.
+  virtual bool transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
                          support::Diagnostics& diagnostics) = 0;
-  /// `vertices` are frame.vertices with those that clipping made appended. As long as the drawing lives, frame and
-  /// vertices must, and nothing else may be asked of the backend. Null where that is reported.
-  virtual std::unique_ptr<Drawing> begin(const Frame& frame, std::span<const float> vertices,
-                                         support::Diagnostics& diagnostics) = 0;
-  /// All of a frame at once.
-  bool draw(const Frame& frame, std::span<const float> vertices, std::span<const int32_t> triangles,
+  /// `vertices`: frame.vertices, followed by those that clipping made. What `pass` refers to and `vertices` must
+  /// outlive the ViewRenderer; call no other Backend method until it is destroyed. Null after an error, which is
+  /// reported.
+  virtual std::unique_ptr<ViewRenderer> begin(const ViewPass& pass, std::span<const float> vertices,
+                                              support::Diagnostics& diagnostics) = 0;
+  /// Draws the whole view at once.
+  bool draw(const ViewPass& pass, std::span<const float> vertices, std::span<const int32_t> triangles,
             Image& image, support::Diagnostics& diagnostics);
   /// Runs a full-screen pass: `rgba` receives 4 floats a pixel, rows top down, NaN canonical.
   virtual bool post(const ScreenPass& pass, std::vector<float>& rgba, support::Diagnostics& diagnostics) = 0;

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <climits>
-#include <numeric>
 #include <tbb/enumerable_thread_specific.h>
 #include <utility>
 
-#include "backends/array_limit.h"
 #include "backends/cpu/shade.h"
 #include "backends/cpu/workers.h"
+#include "backends/shared.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
@@ -21,6 +20,8 @@ namespace {
 using backends::Draw;
 using backends::Frame;
 using backends::Image;
+using backends::ScreenPass;
+using backends::ViewPass;
 using driver::Program;
 using lower::FrameBuffer;
 using support::Diagnostics;
@@ -30,10 +31,10 @@ constexpr size_t vertex_chunk = 2048;
 constexpr size_t row_chunk = 2048;
 constexpr size_t triangle_chunk = 8192;
 
-/// The arrays of a call, of which generated code reads none beyond its end.
+/// The arrays that a call passes to generated code.
 class Buffers {
  public:
-  /// `frame`: that of the arrays, if they are of one.
+  /// `frame`: the frame that owns the arrays, or null.
   explicit Buffers(const Frame* frame) : frame_(frame) {
     std::fill(std::begin(views_), std::end(views_), BufferView{&nothing, 1});
   }
@@ -50,15 +51,16 @@ class Buffers {
     view = words.empty() ? BufferView{&nothing, 1} : BufferView{words.data(), static_cast<int>(words.size())};
     return true;
   }
-  bool bind_frame(std::span<const float> vertices, Diagnostics& diagnostics) {
-    return bind(FrameBuffer::vertices, vertices, diagnostics) &&
-           bind<float>(FrameBuffer::objects, frame_->objects, diagnostics) &&
-           bind<float>(FrameBuffer::lights, frame_->lights, diagnostics) &&
-           bind<float>(FrameBuffer::frame, frame_->frame, diagnostics) &&
-           bind<float>(FrameBuffer::view, frame_->view, diagnostics) &&
-           bind<float>(FrameBuffer::texels, frame_->texels, diagnostics) &&
-           bind<uint32_t>(FrameBuffer::texel_bytes, frame_->texel_bytes, diagnostics) &&
-           bind<int32_t>(FrameBuffer::textures, frame_->textures, diagnostics);
+  bool bind(const ViewPass& pass, std::span<const float> vertices, Diagnostics& diagnostics) {
+    const auto use = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+      return bind(buffer, words, diagnostics);
+    };
+    return backends::for_each_array(pass, vertices, use) && backends::for_each_texture_array(pass.frame, use);
+  }
+  bool bind(const ScreenPass& pass, Diagnostics& diagnostics) {
+    return backends::for_each_array(pass, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+      return bind(buffer, words, diagnostics);
+    });
   }
   const BufferView* views() const { return views_; }
 
@@ -67,12 +69,6 @@ class Buffers {
   BufferView views_[std::size(lower::frame_buffers)];
   const Frame* frame_;
 };
-
-size_t words(const std::vector<driver::Field>& fields) {
-  return std::accumulate(fields.begin(), fields.end(), size_t{0}, [](size_t sum, const driver::Field& field) {
-    return sum + static_cast<size_t>(field.words);
-  });
-}
 
 class CpuBackend final : public backends::Backend {
  public:
@@ -86,19 +82,20 @@ class CpuBackend final : public backends::Backend {
   }
   double build_seconds() const override { return kernels_.seconds(); }
 
-  bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+  bool transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
                  Diagnostics& diagnostics) override;
-  std::unique_ptr<backends::Drawing> begin(const Frame& frame, std::span<const float> vertices,
-                                           Diagnostics& diagnostics) override;
-  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override;
+  std::unique_ptr<backends::ViewRenderer> begin(const ViewPass& pass, std::span<const float> vertices,
+                                                Diagnostics& diagnostics) override;
+  bool post(const ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override;
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override;
 
  private:
-  friend class CpuDrawing;
-  using FrameKernels = std::vector<const Kernel*>;  ///< of each program of a frame; null where not asked for
+  friend class CpuViewRenderer;
+  using FrameKernels =
+      std::vector<const Kernel*>;  ///< one for each program of a frame; null until it is needed
 
-  /// Adds those kernels that are asked for and not there yet.
+  /// Adds the kernels that are asked for and still missing.
   bool find_kernels(const Frame& frame, const std::vector<bool>& asked, FrameKernels& kernels,
                     Diagnostics& diagnostics);
 
@@ -107,23 +104,23 @@ class CpuBackend final : public backends::Backend {
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
 };
 
-class CpuDrawing final : public backends::Drawing {
+class CpuViewRenderer final : public backends::ViewRenderer {
  public:
-  CpuDrawing(CpuBackend& backend, const Frame& frame) : backend_(backend), frame_(frame), buffers_(&frame) {
-    kernels_.resize(frame.programs.size());
-  }
+  CpuViewRenderer(CpuBackend& backend, const ViewPass& pass)
+      : backend_(backend), pass_(pass), buffers_(&pass.frame), kernels_(pass.frame.programs.size()) {}
   bool bind(std::span<const float> vertices, Diagnostics& diagnostics) {
-    return buffers_.bind_frame(vertices, diagnostics);
+    return buffers_.bind(pass_, vertices, diagnostics);
   }
 
   bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
             Diagnostics& diagnostics) override;
 
  private:
+  /// Which programs the triangles need.
   std::vector<bool> programs_of(std::span<const int32_t> triangles) const;
 
   CpuBackend& backend_;
-  const Frame& frame_;
+  const ViewPass pass_;
   Buffers buffers_;
   CpuBackend::FrameKernels kernels_;
 };
@@ -144,29 +141,31 @@ bool CpuBackend::find_kernels(const Frame& frame, const std::vector<bool>& asked
   return true;
 }
 
-bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+bool CpuBackend::transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
                            Diagnostics& diagnostics) {
+  const Frame& frame = pass.frame;
+  const std::vector<Draw>& draws = pass.view.draws;
   std::vector<bool> asked(frame.programs.size());
-  for (const Draw& draw : frame.draws) asked[draw.vertex_program] = true;
+  for (const Draw& draw : draws) asked[draw.vertex_program] = true;
   FrameKernels kernels(frame.programs.size());
   if (!find_kernels(frame, asked, kernels, diagnostics)) return false;
   Buffers buffers(&frame);
-  if (!buffers.bind_frame(frame.vertices, diagnostics)) return false;
+  if (!buffers.bind(pass, frame.vertices, diagnostics)) return false;
 
   struct Task {
     size_t draw;
     size_t first;
   };
   std::vector<Task> tasks;
-  clip.resize(frame.draws.size());
-  for (size_t d = 0; d < frame.draws.size(); ++d) {
-    const size_t count = frame.draws[d].vertex_count;
+  clip.resize(draws.size());
+  for (size_t d = 0; d < draws.size(); ++d) {
+    const size_t count = draws[d].vertex_count;
     clip[d].resize(4 * count);
     for (size_t first = 0; first < count; first += vertex_chunk) tasks.push_back({d, first});
   }
   workers_.for_each(tasks.size(), [&](size_t i) {
     const auto [d, first] = tasks[i];
-    const Draw& draw = frame.draws[d];
+    const Draw& draw = draws[d];
     const size_t count = std::min(vertex_chunk, draw.vertex_count - first);
     kernels[draw.vertex_program]->vertex(buffers.views(), draw.object, draw.projected,
                                          static_cast<int>(draw.first_vertex + first), static_cast<int>(count),
@@ -175,37 +174,36 @@ bool CpuBackend::transform(const Frame& frame, std::vector<std::vector<float>>& 
   return true;
 }
 
-std::unique_ptr<backends::Drawing> CpuBackend::begin(const Frame& frame, std::span<const float> vertices,
-                                                     Diagnostics& diagnostics) {
-  auto drawing = std::make_unique<CpuDrawing>(*this, frame);
-  if (!drawing->bind(vertices, diagnostics)) return nullptr;
-  return drawing;
+std::unique_ptr<backends::ViewRenderer> CpuBackend::begin(const ViewPass& pass,
+                                                          std::span<const float> vertices,
+                                                          Diagnostics& diagnostics) {
+  auto renderer = std::make_unique<CpuViewRenderer>(*this, pass);
+  if (!renderer->bind(vertices, diagnostics)) return nullptr;
+  return renderer;
 }
 
-std::vector<bool> CpuDrawing::programs_of(std::span<const int32_t> triangles) const {
-  std::vector<bool> seen(frame_.programs.size());
+std::vector<bool> CpuViewRenderer::programs_of(std::span<const int32_t> triangles) const {
+  std::vector<bool> seen(pass_.frame.programs.size());
+  if (!pass_.view.target.has_color) return seen;
   const size_t count = triangles.size() / lower::triangle_word::stride;
   int last_object = -1;
   for (size_t i = 0; i < count; ++i) {
     const int object = raster::triangle_at(triangles.data(), static_cast<int>(i)).object();
     if (object == last_object) continue;
     last_object = object;
-    const auto program =
-        static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
-    support::assert_that(program < seen.size(), "an object has a program that the frame lacks");
-    seen[program] = true;
+    seen[backends::pixel_program_of(pass_.frame, object)] = true;
   }
   return seen;
 }
 
-bool CpuDrawing::draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
-                      Diagnostics& diagnostics) {
+bool CpuViewRenderer::draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
+                           Diagnostics& diagnostics) {
   if (!buffers_.bind(FrameBuffer::triangles, triangles, diagnostics)) return false;
-  if (!backend_.find_kernels(frame_, programs_of(triangles), kernels_, diagnostics)) return false;
+  if (!backend_.find_kernels(pass_.frame, programs_of(triangles), kernels_, diagnostics)) return false;
   const size_t count = triangles.size() / lower::triangle_word::stride;
   const raster::TileGrid grid(raster::box_at(window.x, window.y, window.width, window.height));
 
-  DrawJob job{frame_, grid, triangles, buffers_.views(), kernels_, {}, image};
+  DrawJob job{pass_.frame, pass_.view, grid, triangles, buffers_.views(), kernels_, {}, image};
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
   job.bins.resize(parts);
   backend_.workers_.for_each(parts, [&](size_t part) {
@@ -214,7 +212,7 @@ bool CpuDrawing::draw(const backends::Window& window, std::span<const int32_t> t
                                   static_cast<int>(std::min(triangle_chunk, count - first)), grid);
   });
 
-  image.resize(window.width, window.height);
+  image.resize(window.width, window.height, pass_.view.target.has_color);
   backend_.workers_.for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
     std::unique_ptr<TilePainter>& painter = backend_.painters_.local();
     if (!painter) painter = std::make_unique<TilePainter>();
@@ -223,20 +221,15 @@ bool CpuDrawing::draw(const backends::Window& window, std::span<const int32_t> t
   return true;
 }
 
-bool CpuBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) {
+bool CpuBackend::post(const ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) {
   const Program* const programs[] = {pass.program};
   const auto kernels = kernels_.kernels(programs, diagnostics);
   if (!kernels) return false;
   Buffers buffers(nullptr);
-  const bool fits = buffers.bind(FrameBuffer::frame, pass.frame, diagnostics) &&
-                    buffers.bind(FrameBuffer::view, pass.view, diagnostics) &&
-                    buffers.bind(FrameBuffer::objects, pass.record, diagnostics) &&
-                    buffers.bind(FrameBuffer::layers, pass.images, diagnostics) &&
-                    buffers.bind(FrameBuffer::layer_records, pass.image_records, diagnostics);
-  if (!fits) return false;
+  if (!buffers.bind(pass, diagnostics)) return false;
   const auto width = static_cast<size_t>(pass.width), height = static_cast<size_t>(pass.height);
   rgba.resize(4 * width * height);
-  // Rows that follow each other read almost the same pixels.
+  // A task takes consecutive rows, because these read almost the same pixels.
   const size_t rows = std::max<size_t>(1, row_chunk / width);
   workers_.for_each((height + rows - 1) / rows, [&](size_t chunk) {
     for (size_t y = chunk * rows; y < std::min(height, (chunk + 1) * rows); ++y)
@@ -260,7 +253,7 @@ bool CpuBackend::evaluate(const Program& program, std::span<const int32_t> input
   }
   Buffers buffers(nullptr);
   if (!buffers.bind(FrameBuffer::inputs, inputs, diagnostics)) return false;
-  const size_t width = words(program.results);
+  const size_t width = backends::word_count(program.results);
   outputs.resize(rows * width);
   const size_t chunks = (rows + row_chunk - 1) / row_chunk;
   workers_.for_each(chunks, [&](size_t chunk) {

@@ -18,18 +18,18 @@ struct CpuOptions {
   int threads = 0;
   /// A path, or a name on PATH. Empty: $ISOSHADE_CXX, else c++, g++, clang++.
   std::string compiler;
-  /// Where compiled code is kept. Empty: isoshade in $XDG_CACHE_HOME or $HOME/.cache.
+  /// The folder that caches compiled code. Empty: isoshade in $XDG_CACHE_HOME or $HOME/.cache.
   std::string cache;
-  /// How long the compiler may take for one program.
+  /// The time that the compiler may take for one program.
   support::Seconds build_timeout = support::default_time_limit;
   /// A folder that receives the generated C++; empty: none does.
   std::string keep;
-  /// The text of a program; emit/stages.h tells what it must export.
+  /// The text of a program; see emit/stages.h for its exports.
   CppText cpp = driver::cpp;
 };
 
-/// Nothing if the lanes, the compiler or the cache cannot be had, which is reported. Id::no_compiler is the
-/// sign that the interpreter should serve instead.
+/// Null if the lanes, the compiler or the cache are not available, which is reported. After Id::no_compiler, callers
+/// should use the interpreter instead.
 std::unique_ptr<backends::Backend> create(const CpuOptions& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::cpu

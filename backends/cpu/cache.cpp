@@ -24,7 +24,7 @@ using support::Diagnostics;
 using support::Id;
 using support::quote;
 
-// After the contents of an entry: this and their SHA-256 in hex.
+// An entry ends with this and the SHA-256 of its contents in hex.
 constexpr std::string_view seal_mark = "\nisoshade:";
 constexpr size_t hash_digits = 64;
 constexpr size_t seal_bytes = seal_mark.size() + hash_digits;
@@ -72,7 +72,7 @@ class File {
 
   bool sync() const { return fsync(descriptor_) == 0; }
 
-  /// Some disks tell only now that they are full.
+  /// Some file systems report a full disk only here.
   bool close() {
     const int descriptor = descriptor_;
     descriptor_ = -1;
@@ -95,14 +95,14 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
-/// Makes the folder and its parents; only the owner can enter what is made.
+/// Creates the folder and its parents; only the owner may enter the new ones.
 bool make_folders(const std::string& path) {
   for (size_t slash = path.find('/', 1); slash != std::string::npos; slash = path.find('/', slash + 1))
     if (mkdir(path.substr(0, slash).c_str(), 0700) != 0 && errno != EEXIST) return false;
   return mkdir(path.c_str(), 0700) == 0 || errno == EEXIST;
 }
 
-/// Why code in the folder could be someone else's; empty if it could not.
+/// The reason why another user could have written code in the folder; empty if there is none.
 std::string danger_of(const std::string& folder) {
   struct stat facts;
   if (lstat(folder.c_str(), &facts) != 0) return "";
@@ -137,8 +137,7 @@ struct Entry {
   fs::path path;
 };
 
-/// The entries, and the workshops that no process uses any more. Only what bears a name that a cache gives; no link is
-/// followed.
+/// The entries and the abandoned workshops: only files whose names a cache gives; links are not followed.
 struct Listing {
   explicit Listing(const std::string& folder) {
     const fs::file_time_type now = fs::file_time_type::clock::now();
@@ -175,7 +174,7 @@ void remove_abandoned(const Listing& listing) {
   for (const fs::path& path : listing.abandoned) fs::remove_all(path, ignored);
 }
 
-/// Losing an entry is harmless.
+/// Errors are ignored: losing an entry is harmless.
 void tidy(const std::string& folder, const CacheLimit& limit) {
   Listing listing(folder);
   remove_abandoned(listing);
@@ -194,7 +193,7 @@ void tidy(const std::string& folder, const CacheLimit& limit) {
 }  // namespace
 
 std::string Cache::usual_folder() {
-  // The XDG base directory specification: a relative path is to be ignored.
+  // The XDG base directory specification says that a relative path must be ignored.
   const std::string caches = variable("XDG_CACHE_HOME");
   if (caches.starts_with('/')) return caches + "/isoshade";
   const std::string home = variable("HOME");
@@ -241,7 +240,7 @@ CacheContents Cache::clear() const {
 
 namespace {
 
-/// The name is in it, so that an entry which stands under another one's name is none.
+/// The checksum includes the name, so that an entry under another entry's name is damaged.
 std::string seal_of(const std::string& name, std::string_view contents) {
   std::string sealed = name + "\n";
   sealed += contents;
@@ -259,7 +258,7 @@ std::optional<std::string> Cache::find(const std::string& name) const {
     const std::string_view contents = std::string_view(text).substr(0, text.size() - seal_bytes);
     const std::string_view seal = std::string_view(text).substr(contents.size());
     if (seal == seal_of(name, contents)) {
-      utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used just now
+      utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // marks it as just used
       return path;
     }
   }
@@ -288,7 +287,7 @@ bool Cache::store(const std::string& name, const std::string& path, Diagnostics&
   }
   const std::string entry = folder_ + "/" + name;
   if (rename(path.c_str(), entry.c_str()) == 0) return true;
-  // A folder in its place goes the way of the workshop.
+  // If a folder is in its place, it becomes an abandoned workshop.
   if (errno == EISDIR && rename(entry.c_str(), (path + ".replaced").c_str()) == 0 &&
       rename(path.c_str(), entry.c_str()) == 0)
     return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A private folder of files that are whole or not there, whoever else writes to it and whenever a write is
-// cut short.
+// A private folder of files. Each file is complete or absent, even if other processes write to the folder or a write is
+// interrupted.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace isoshade::cpu {
 
-/// How much of it is kept; beyond that the entries used least recently are deleted, down to half of it.
+/// The size limit; when it is exceeded, the least recently used entries are deleted until half of it is left.
 struct CacheLimit {
   size_t entries = 1000;
   uint64_t bytes = uint64_t{256} << 20;
 };
 
-/// What a cache holds.
+/// The contents of a cache.
 struct CacheContents {
   size_t entries = 0;
   uint64_t bytes = 0;
@@ -28,33 +28,32 @@ struct CacheContents {
 
 class Cache {
  public:
-  /// Opens `folder`, or where that is empty the usual one, making what is missing of it. Where the usual one cannot be
-  /// had, a temporary folder serves until the end of this cache; if that is because others could put code into it,
-  /// there is a warning.
+  /// Opens `folder`, or the default folder if it is empty, and creates missing parts of the path. If the default folder
+  /// is unusable, a temporary folder takes its place for the lifetime of this cache; if the reason is that other users
+  /// could write code to it, a warning is reported.
   static std::optional<Cache> open(const std::string& folder, support::Diagnostics& diagnostics);
 
-  /// $XDG_CACHE_HOME/isoshade or $HOME/.cache/isoshade; empty where the user has no place of their own.
+  /// $XDG_CACHE_HOME/isoshade or $HOME/.cache/isoshade; empty if neither variable is set.
   static std::string usual_folder();
 
-  /// The name of the entry of a key, 64 hex digits. Files of other names are nobody's business.
+  /// The file name for a key, 64 hex digits. The cache ignores files with other names.
   static std::string entry_name(const std::string& key);
 
   const std::string& folder() const { return folder_; }
   CacheContents contents() const;
 
-  /// The path of the entry; nothing if it is not there or is damaged, in which case the next store replaces
-  /// it.
+  /// The path of the entry; nothing if it is missing or damaged. The next store() replaces a damaged entry.
   std::optional<std::string> find(const std::string& name) const;
 
-  /// A folder to make an entry in. Also clears away what others left behind, and entries beyond the limit.
+  /// A folder to make an entry in. Also deletes abandoned workshops, and entries beyond the size limit.
   std::optional<support::TemporaryFolder> workshop(support::Diagnostics& diagnostics,
                                                    const CacheLimit& limit = {}) const;
 
-  /// Makes the file, which lies in a workshop, the entry: it is on the disk before it appears under its name.
-  /// Appends a checksum of its name and contents, which neither ELF nor most other formats mind.
+  /// Turns a file of a workshop into the entry; it is on the disk before it appears under its name. Appends a checksum
+  /// of its name and contents, which ELF and most other formats ignore.
   bool store(const std::string& name, const std::string& file, support::Diagnostics& diagnostics) const;
 
-  /// Deletes all entries, and workshops that no process uses any more; returns what is left.
+  /// Deletes all entries and all abandoned workshops; returns what is left.
   CacheContents clear() const;
 
  private:
@@ -65,7 +64,7 @@ class Cache {
   std::optional<support::TemporaryFolder> temporary_;
 };
 
-/// Writes a file; reports a full disk and the like.
+/// Writes a file; reports errors such as a full disk.
 bool write_file(const std::string& path, std::string_view text, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::cpu

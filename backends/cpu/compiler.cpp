@@ -24,7 +24,7 @@ constexpr const char* way_out =
     "name it "
     "with --cxx or in ISOSHADE_CXX";
 
-/// What tells one file from another that replaced it.
+/// Differs between a file and another one that replaces it.
 std::string file_facts(const std::string& path) {
   struct stat facts;
   if (stat(path.c_str(), &facts) != 0) return "";
@@ -33,7 +33,7 @@ std::string file_facts(const std::string& path) {
          std::to_string(facts.st_mtim.tv_nsec);
 }
 
-/// The first lines of what a compiler said, each as a note.
+/// The first lines of a compiler's output, each as a note.
 void note_lines(std::string_view text, support::Diagnostic& report) {
   constexpr size_t most = 12;
   size_t count = 0;
@@ -48,15 +48,15 @@ void note_lines(std::string_view text, support::Diagnostic& report) {
   if (count == 0) report.note("it said nothing");
 }
 
-/// What to do where a compiler failed with these words.
+/// What the user can do about a compiler that failed with this output.
 std::string_view way_out_of(std::string_view words) {
-  // It speaks English here, and names these reasons as the system does.
+  // The compiler runs in the C locale, and spells these reasons as strerror does.
   for (const int failure : {ENOSPC, EDQUOT, EFBIG, EROFS})
     if (words.find(std::strerror(failure)) != std::string_view::npos) return support::way_to_write(failure);
   return way_out;
 }
 
-// Long for a program that only says what it is, also on a machine that is busy.
+// Enough for a program that only prints its version, even on a busy machine.
 constexpr support::Seconds longest_answer{20};
 
 }  // namespace

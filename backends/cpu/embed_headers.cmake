@@ -1,7 +1,7 @@
 # cmake -DOUTPUT=file -DROOT=folder -DHEADERS=a.h,b.h -P embed_headers.cmake
 # Writes a C++ file that defines lanes_headers() with the texts of the headers.
 string(REPLACE "," ";" headers "${HEADERS}")
-set(text "// Made by backends/cpu/embed_headers.cmake.\n#include \"backends/cpu/lanes_headers.h\"\n\n")
+set(text "// Made by backends/cpu/embed_headers.cmake.\n#include \"backends/cpu/compiler.h\"\n\n")
 string(APPEND text "namespace isoshade::cpu {\nnamespace {\n\nconstexpr Header headers[] = {\n")
 foreach(header IN LISTS headers)
   file(READ "${ROOT}/${header}" content)

@@ -7,8 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
-#include "backends/cpu/lanes_headers.h"
-#include "backends/timed.h"
+#include "backends/shared.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/sha256.h"
@@ -21,7 +20,7 @@ using support::Diagnostics;
 using support::Id;
 using support::quote;
 
-/// Adds a part so that no two lists of parts give the same bytes.
+/// Adds a part with its length, so that different lists of parts never give the same bytes.
 void add_part(support::Sha256& hash, std::string_view part) {
   hash.add(std::to_string(part.size())).add(":").add(part);
 }
@@ -33,7 +32,7 @@ bool write_headers(const std::string& folder, Diagnostics& diagnostics) {
   });
 }
 
-/// Names of documents are free text; file names are not.
+/// A file name for a program; names of documents are free text.
 std::string file_name(const driver::Program& program) {
   std::string name = program.name.empty() ? "program" : program.name;
   for (char& c : name)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled programs: from generated text to a function that can be called.
+// Compiled programs: from generated text to callable functions.
 #pragma once
 
 #include <functional>
@@ -16,9 +16,9 @@
 
 namespace isoshade::cpu {
 
-// What generated code exports; emit/stages.h. The caller holds an FpGuard.
+// The exports of generated code, see emit/stages.h. Callers hold an FpGuard.
 extern "C" {
-/// An array by its number in lower::FrameBuffer. Has at least one element.
+/// An array; its index is its number in lower::FrameBuffer. It has at least one element.
 struct BufferView {
   const void* data;
   int size;
@@ -31,10 +31,10 @@ using PostFunction = void(const BufferView* buffers, int first, int y, int count
 using EvalFunction = void(const BufferView* buffers, int first, int count, int* results);
 }
 
-/// One loaded shared object. Only the function of the program's stage is there.
+/// A loaded shared object. Only the function of the program's stage is not null.
 class Kernel {
  public:
-  /// Reports what the dynamic linker says.
+  /// Reports errors of the dynamic linker.
   static std::unique_ptr<Kernel> load(const std::string& path, driver::Stage stage,
                                       support::Diagnostics& diagnostics);
   ~Kernel();
@@ -57,15 +57,14 @@ using CppText = std::function<std::string(const driver::Program&)>;
 /// Compiles programs, or finds them in the cache, and keeps them loaded.
 class KernelStore {
  public:
-  /// `keep`: a folder that receives every text that is compiled or found, named as its document; or empty.
+  /// `keep`: a folder that receives the text of every program that is used, named after its document; empty: none.
   KernelStore(Compiler compiler, Cache cache, LaneCount lanes, CppText cpp, std::string keep);
 
-  /// The kernel of each program; several are compiled at once. Nothing if one failed. They live as long as
-  /// the store.
+  /// The kernel of each program; missing ones are compiled in parallel. Nothing if one fails. The store owns them.
   std::optional<std::vector<const Kernel*>> kernels(std::span<const driver::Program* const> programs,
                                                     support::Diagnostics& diagnostics);
 
-  /// What all calls of kernels() took.
+  /// The total duration of all calls of kernels().
   double seconds() const { return seconds_; }
   const Compiler& compiler() const { return compiler_; }
   LaneCount lanes() const { return lanes_; }
@@ -82,7 +81,7 @@ class KernelStore {
   LaneCount lanes_;
   CppText cpp_;
   std::string keep_;
-  std::string surroundings_;  ///< the hash of all that decides what a text compiles to
+  std::string surroundings_;  ///< a hash of everything but the text that decides the machine code
   std::map<std::string, std::unique_ptr<Kernel>> loaded_;
   double seconds_ = 0;
 };

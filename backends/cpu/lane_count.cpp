@@ -6,7 +6,7 @@
 namespace isoshade::cpu {
 namespace {
 
-// In the order of speed, but for "1".
+// Ordered by speed; "1", which is for tests, comes first.
 constexpr LaneCount all[] = {{"1", 1, 1},   {"4", 4, 1},   {"8", 8, 1},
                              {"8x2", 8, 2}, {"16", 16, 1}, {"16x2", 16, 2}};
 

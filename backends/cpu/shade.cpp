@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "backends/shared.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/raster/triangle.h"
 
@@ -14,9 +15,9 @@ namespace {
 using raster::tile_pixels;
 using raster::tile_size;
 
-constexpr int nothing = -1;  ///< where a triangle is expected
+constexpr int nothing = -1;  ///< no triangle
 
-/// Where a pixel of the frame lies in the image of the part that is drawn.
+/// The index in the image, which has the size of the window, of a pixel of the target.
 size_t place_in_image(const DrawJob& job, int x, int y) {
   const raster::Box& area = job.grid.area;
   return static_cast<size_t>(y - area.y0) * static_cast<size_t>(job.image.width) +
@@ -26,8 +27,10 @@ size_t place_in_image(const DrawJob& job, int x, int y) {
 void fill_background(DrawJob& job, int x, int y, int width, int height) {
   for (int row = 0; row < height; ++row) {
     const size_t first = place_in_image(job, x, y + row);
-    float* color = job.image.rgba.data() + 4 * first;
-    for (int i = 0; i < width; ++i) std::copy_n(job.frame.background, 4, color + 4 * i);
+    if (job.view.target.has_color) {
+      float* color = job.image.rgba.data() + 4 * first;
+      for (int i = 0; i < width; ++i) std::copy_n(job.view.background, 4, color + 4 * i);
+    }
     std::fill_n(job.image.depth.data() + first, width, 0.0f);
   }
 }
@@ -41,13 +44,15 @@ void TilePainter::paint(DrawJob& job, int tile) {
   const int height = std::min(tile_size, job.grid.area.y1 + 1 - y_);
   collect(job, tile);
   if (runs_.empty()) return fill_background(job, x_, y_, width, height);
+  write_depth(job, width, height);
+  if (!job.view.target.has_color) return;
   if (width < tile_size || height < tile_size)
     for (int i = 0; i < tile_pixels; ++i)
       if (raster::tile_x(i) >= width || raster::tile_y(i) >= height) tile_.triangles[i] = nothing;
   segment();
   list_pixels();
   shade(job);
-  write(job, width, height);
+  write_color(job, width, height);
 }
 
 void TilePainter::collect(const DrawJob& job, int tile) {
@@ -80,7 +85,7 @@ void TilePainter::segment() {
   };
   for (int i = 0; i < tile_pixels; ++i) {
     const int triangle = tile_.triangles[i];
-    if (triangle == last_triangle) continue;  // as most pixels and their neighbours
+    if (triangle == last_triangle) continue;  // the common case: neighbours mostly show one triangle
     last_triangle = triangle;
     const int next = triangle == nothing ? nothing : run_of(triangle);
     if (next == run) continue;
@@ -107,27 +112,36 @@ void TilePainter::list_pixels() {
   }
 }
 
-// Kernels take one object at a time, so that its parameters are uniform.
+// One call takes pixels of one object, so that its parameters are uniform.
 void TilePainter::shade(const DrawJob& job) {
   int begin = 0;
   for (const Run& run : runs_) {
     if (run.pixels == begin) continue;
-    const float program = job.frame.objects[static_cast<size_t>(run.object) + lower::object_word::program];
-    const Kernel& kernel = *job.kernels[static_cast<size_t>(program)];
+    const Kernel& kernel = *job.kernels[backends::pixel_program_of(job.frame, run.object)];
     kernel.pixel(job.buffers, run.object, job.frame.light_count, run.pixels - begin, pixel_x_ + begin,
                  pixel_y_ + begin, pixel_triangle_ + begin, color_ + 4 * begin);
     begin = run.pixels;
   }
 }
 
-void TilePainter::write(DrawJob& job, int width, int height) const {
+void TilePainter::write_depth(DrawJob& job, int width, int height) const {
+  for (int y = 0; y < height; ++y) {
+    float* depth = job.image.depth.data() + place_in_image(job, x_, y_ + y);
+    for (int x = 0; x < width; x += raster::block_size) {
+      // The pixels of a block's row are stored one after the other.
+      const int count = std::min(raster::block_size, width - x);
+      std::copy_n(tile_.depth + raster::tile_index(x, y), count, depth + x);
+    }
+  }
+}
+
+void TilePainter::write_color(DrawJob& job, int width, int height) const {
   for (int y = 0; y < height; ++y) {
     const size_t first = place_in_image(job, x_, y_ + y);
     for (int x = 0; x < width; ++x) {
       const int i = raster::tile_index(x, y);
-      const float* color = tile_.triangles[i] == nothing ? job.frame.background : color_ + 4 * place_[i];
+      const float* color = tile_.triangles[i] == nothing ? job.view.background : color_ + 4 * place_[i];
       std::memcpy(job.image.rgba.data() + 4 * (first + static_cast<size_t>(x)), color, 4 * sizeof(float));
-      job.image.depth[first + static_cast<size_t>(x)] = tile_.depth[i];
     }
   }
 }

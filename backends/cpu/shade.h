@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tile of a frame: visible surfaces, then their colours.
+// One tile of a view: which triangle each pixel shows, then its color.
 #pragma once
 
 #include <span>
@@ -12,31 +12,32 @@
 
 namespace isoshade::cpu {
 
-/// A frame while it is drawn.
+/// A window of a view while it is drawn.
 struct DrawJob {
   const backends::Frame& frame;
-  raster::TileGrid grid;  ///< over the part of the frame that is drawn
+  const backends::View& view;
+  raster::TileGrid grid;  ///< over the window
   std::span<const int32_t> triangles;
   const BufferView* buffers;
-  /// Of each program of the frame; null for those that no object has.
+  /// One for each program of the frame; null for those that no triangle needs.
   std::span<const Kernel* const> kernels;
-  std::vector<raster::Bins> bins;  ///< of consecutive parts of the triangles
+  std::vector<raster::Bins> bins;  ///< one for each part of the triangles, in their order
   backends::Image& image;
 };
 
-/// What a thread needs to draw tiles; several hundred kilobytes.
+/// Draws tiles one after the other. One for each thread: it holds several hundred kilobytes.
 class TilePainter {
  public:
   void paint(DrawJob& job, int tile);
 
  private:
-  /// Triangles of one object that follow each other in a tile's list.
+  /// Consecutive triangles of one object in a tile's list.
   struct Run {
     int first_triangle;
     int object;
-    int pixels;  ///< how many are visible; later where the next one goes
+    int pixels;  ///< the number of visible ones; list_pixels() turns it into the index of the next one
   };
-  /// Pixels [begin, end) of the tile's storage that show triangles of one run.
+  /// Pixels [begin, end) of the tile's storage, which show triangles of one run.
   struct Segment {
     int begin, end;
     int run;
@@ -46,7 +47,8 @@ class TilePainter {
   void segment();
   void list_pixels();
   void shade(const DrawJob& job);
-  void write(DrawJob& job, int width, int height) const;
+  void write_color(DrawJob& job, int width, int height) const;
+  void write_depth(DrawJob& job, int width, int height) const;
   int run_of(int triangle) const;
 
   int x_ = 0, y_ = 0;  ///< the tile's first pixel
@@ -54,10 +56,10 @@ class TilePainter {
   std::vector<Run> runs_;
   std::vector<Segment> segments_;
 
-  // Visible pixels, those of each run together.
+  // The visible pixels, ordered by run.
   int pixel_x_[raster::tile_pixels], pixel_y_[raster::tile_pixels], pixel_triangle_[raster::tile_pixels];
   alignas(64) float color_[4 * raster::tile_pixels];
-  /// Where the colour of each visible pixel of the tile is.
+  /// The index in color_ of each visible pixel of the tile.
   int place_[raster::tile_pixels];
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that compute floats as the contract says.
+// Threads whose float mode is the one that the contract requires.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +25,8 @@ class Workers {
 
   int count() const { return arena_.max_concurrency(); }
 
-  /// Runs body(i) for all i in [0, count), in any order and at the same time. The guard is made anew in each
-  /// task: TBB gives its threads the float mode that it found when it was first used.
+  /// Runs body(i) for all i in [0, count), in parallel and in any order. Each task sets the float mode: TBB's threads
+  /// have the mode of the thread that first used TBB.
   template <class Body>
   void for_each(size_t count, const Body& body) {
     arena_.execute([&] {

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "backends/shared.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/lower/frame_layout.h"
@@ -20,12 +21,13 @@ namespace {
 using backends::Draw;
 using backends::Frame;
 using backends::Image;
+using backends::ScreenPass;
+using backends::ViewPass;
 using driver::Program;
 using lower::FrameBuffer;
 using support::Diagnostics;
-namespace word = lower::triangle_word;
 
-/// The arrays of a call as words.
+/// The arrays of a call, as bits.
 class Buffers {
  public:
   template <class T>
@@ -34,15 +36,19 @@ class Buffers {
     words.resize(values.size());
     std::ranges::transform(values, words.begin(), [](T value) { return std::bit_cast<uint32_t>(value); });
   }
-  void bind_frame(const Frame& frame, std::span<const float> vertices) {
-    bind(FrameBuffer::vertices, vertices);
-    bind<float>(FrameBuffer::objects, frame.objects);
-    bind<float>(FrameBuffer::lights, frame.lights);
-    bind<float>(FrameBuffer::frame, frame.frame);
-    bind<float>(FrameBuffer::view, frame.view);
-    bind<float>(FrameBuffer::texels, frame.texels);
-    bind<uint32_t>(FrameBuffer::texel_bytes, frame.texel_bytes);
-    bind<int32_t>(FrameBuffer::textures, frame.textures);
+  void bind(const ViewPass& pass, std::span<const float> vertices) {
+    const auto use = [&]<class T>(FrameBuffer buffer, std::span<const T> values) {
+      bind(buffer, values);
+      return true;
+    };
+    backends::for_each_array(pass, vertices, use);
+    backends::for_each_texture_array(pass.frame, use);
+  }
+  void bind(const ScreenPass& pass) {
+    backends::for_each_array(pass, [&]<class T>(FrameBuffer buffer, std::span<const T> values) {
+      bind(buffer, values);
+      return true;
+    });
   }
   const std::vector<uint32_t>& operator[](size_t buffer) const { return words_[buffer]; }
 
@@ -63,7 +69,8 @@ class InterpretingMachine final : public Machine {
   ir::Interpreter interpreter_;
 };
 
-bool bears(const Program& program, Diagnostics& diagnostics) {
+/// Reports a program that is too large.
+bool is_within_limits(const Program& program, Diagnostics& diagnostics) {
   return driver::within_limits(program, driver::Target::interpreter, driver::Division::native, diagnostics);
 }
 
@@ -85,38 +92,39 @@ class StageRunner {
   uint32_t entry_;
 };
 
-class InterpreterDrawing final : public backends::Drawing {
+class InterpreterViewRenderer final : public backends::ViewRenderer {
  public:
-  InterpreterDrawing(const MakeMachine& make, const Frame& frame, std::span<const float> vertices)
-      : make_(make), frame_(frame) {
-    buffers_.bind_frame(frame, vertices);
+  InterpreterViewRenderer(const MakeMachine& make, const ViewPass& pass, std::span<const float> vertices)
+      : make_(make), pass_(pass) {
+    buffers_.bind(pass, vertices);
   }
 
   bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
             Diagnostics& diagnostics) override {
     buffers_.bind(FrameBuffer::triangles, triangles);
-    image.resize(window.width, window.height);
+    image.resize(window.width, window.height, pass_.view.target.has_color);
     std::vector<int32_t> visible(image.depth.size());
     raster::rasterize_reference(triangles, raster::box_at(window.x, window.y, window.width, window.height),
                                 visible, image.depth);
+    if (!pass_.view.target.has_color) return true;
 
+    const Frame& frame = pass_.frame;
     std::map<size_t, StageRunner> pixels;
     for (size_t i = 0; i < visible.size(); ++i) {
       float* color = image.rgba.data() + 4 * i;
       if (visible[i] < 0) {
-        std::ranges::copy(frame_.background, color);
+        std::ranges::copy(pass_.view.background, color);
         continue;
       }
       const int object = raster::triangle_at(triangles.data(), visible[i]).object();
-      const auto program =
-          static_cast<size_t>(frame_.objects[static_cast<size_t>(object) + lower::object_word::program]);
-      support::assert_that(program < frame_.programs.size(), "an object has a program that the frame lacks");
-      if (!pixels.contains(program) && !bears(*frame_.programs[program], diagnostics)) return false;
-      StageRunner& pixel = pixels.try_emplace(program, make_, *frame_.programs[program], buffers_).first->second;
+      const size_t program = backends::pixel_program_of(frame, object);
+      if (!pixels.contains(program) && !is_within_limits(*frame.programs[program], diagnostics)) return false;
+      StageRunner& pixel =
+          pixels.try_emplace(program, make_, *frame.programs[program], buffers_).first->second;
       const int x = window.x + static_cast<int>(i) % window.width;
       const int y = window.y + static_cast<int>(i) / window.width;
       std::array<uint32_t, 4> result;
-      pixel.run({x, y, visible[i], object, frame_.light_count}, result);
+      pixel.run({x, y, visible[i], object, frame.light_count}, result);
       std::ranges::transform(result, color, [](uint32_t bits) { return std::bit_cast<float>(bits); });
     }
     return true;
@@ -124,7 +132,7 @@ class InterpreterDrawing final : public backends::Drawing {
 
  private:
   const MakeMachine& make_;
-  const Frame& frame_;
+  const ViewPass pass_;
   Buffers buffers_;
 };
 
@@ -136,14 +144,15 @@ class InterpreterBackend final : public backends::Backend {
   std::string_view name() const override { return name_; }
   std::string description() const override { return description_; }
 
-  bool transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+  bool transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
                  Diagnostics& diagnostics) override {
+    const Frame& frame = pass.frame;
     Buffers buffers;
-    buffers.bind_frame(frame, frame.vertices);
-    clip.resize(frame.draws.size());
-    for (size_t d = 0; d < frame.draws.size(); ++d) {
-      const Draw& draw = frame.draws[d];
-      if (!bears(*frame.programs[draw.vertex_program], diagnostics)) return false;
+    buffers.bind(pass, frame.vertices);
+    clip.resize(pass.view.draws.size());
+    for (size_t d = 0; d < clip.size(); ++d) {
+      const Draw& draw = pass.view.draws[d];
+      if (!is_within_limits(*frame.programs[draw.vertex_program], diagnostics)) return false;
       StageRunner vertex(make_, *frame.programs[draw.vertex_program], buffers);
       clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
       for (uint32_t i = 0; i < draw.vertex_count; ++i) {
@@ -155,19 +164,15 @@ class InterpreterBackend final : public backends::Backend {
     return true;
   }
 
-  std::unique_ptr<backends::Drawing> begin(const Frame& frame, std::span<const float> vertices,
-                                           Diagnostics&) override {
-    return std::make_unique<InterpreterDrawing>(make_, frame, vertices);
+  std::unique_ptr<backends::ViewRenderer> begin(const ViewPass& pass, std::span<const float> vertices,
+                                                Diagnostics&) override {
+    return std::make_unique<InterpreterViewRenderer>(make_, pass, vertices);
   }
 
-  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
-    if (!bears(*pass.program, diagnostics)) return false;
+  bool post(const ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
+    if (!is_within_limits(*pass.program, diagnostics)) return false;
     Buffers buffers;
-    buffers.bind(FrameBuffer::frame, pass.frame);
-    buffers.bind(FrameBuffer::view, pass.view);
-    buffers.bind(FrameBuffer::objects, pass.record);
-    buffers.bind(FrameBuffer::layers, pass.images);
-    buffers.bind(FrameBuffer::layer_records, pass.image_records);
+    buffers.bind(pass);
     StageRunner runner(make_, *pass.program, buffers);
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
     size_t next = 0;
@@ -183,11 +188,10 @@ class InterpreterBackend final : public backends::Backend {
 
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override {
-    if (!bears(program, diagnostics)) return false;
+    if (!is_within_limits(program, diagnostics)) return false;
     Buffers buffers;
     buffers.bind(FrameBuffer::inputs, inputs);
-    size_t width = 0;
-    for (const driver::Field& field : program.results) width += static_cast<size_t>(field.words);
+    const size_t width = backends::word_count(program.results);
     outputs.resize(rows * width);
     StageRunner eval(make_, program, buffers);
     std::vector<uint32_t> results(width);

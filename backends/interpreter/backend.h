@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interpreter backend: the IR itself, a pixel at a time on one thread. It needs no compiler and no
-// device, shares no generated text and no fast rasteriser with the others, and so bears witness to both.
+// The interpreter backend runs the IR itself, one pixel at a time on one thread. It needs neither a compiler nor a
+// device, and shares neither generated text nor the fast rasteriser with the other backends: tests compare both with
+// it.
 #pragma once
 
 #include <functional>
@@ -13,7 +14,7 @@ namespace isoshade::interpreter {
 
 std::unique_ptr<backends::Backend> create();
 
-/// Runs one kernel of a module; what a float is, is its own affair. ir::Interpreter tells the rest.
+/// Runs one kernel of a module, with a number type of its own. See ir::Interpreter for the interface.
 class Machine {
  public:
   virtual ~Machine() = default;
@@ -25,7 +26,7 @@ using MakeMachine = std::function<std::unique_ptr<Machine>(const driver::Program
 /// The machine of this backend: ir::Interpreter.
 std::unique_ptr<Machine> make_machine(const driver::Program& program);
 
-/// The same steps on other machines.
+/// The same backend on other machines.
 std::unique_ptr<backends::Backend> create(std::string name, std::string description, MakeMachine make);
 
 }  // namespace isoshade::interpreter

@@ -36,7 +36,7 @@ class EvaluatingMachine final : public interpreter::Machine {
   std::vector<Cell> arguments_, results_;
 };
 
-/// Positions are floats, or another triangle might be seen.
+/// Positions are computed in floats: otherwise a pixel might show another triangle.
 std::unique_ptr<interpreter::Machine> make_machine(const driver::Program& program) {
   if (program.stage == driver::Stage::vertex) return interpreter::make_machine(program);
   return std::make_unique<EvaluatingMachine>(program.module);
@@ -47,22 +47,24 @@ class ReferenceBackend final : public backends::Backend {
   std::string_view name() const override { return inner_->name(); }
   std::string description() const override { return inner_->description(); }
 
-  bool transform(const backends::Frame& frame, std::vector<std::vector<float>>& clip,
+  bool transform(const backends::ViewPass& pass, std::vector<std::vector<float>>& clip,
                  Diagnostics& diagnostics) override {
-    if (frame.width > max_size || frame.height > max_size) {
+    const backends::Target& target = pass.view.target;
+    if (target.width > max_size || target.height > max_size) {
       const std::string most = std::to_string(max_size);
       diagnostics
           .report(support::Id::device_limit,
                   "the reference draws at most " + most + "x" + most + " samples, and this image has " +
-                      std::to_string(frame.width) + "x" + std::to_string(frame.height))
+                      std::to_string(target.width) + "x" + std::to_string(target.height))
           .suggest("ask for less by --size 128x128, or by --samples 1 if the scene has several a pixel");
       return false;
     }
-    return inner_->transform(frame, clip, diagnostics);
+    return inner_->transform(pass, clip, diagnostics);
   }
-  std::unique_ptr<backends::Drawing> begin(const backends::Frame& frame, std::span<const float> vertices,
-                                           Diagnostics& diagnostics) override {
-    return inner_->begin(frame, vertices, diagnostics);
+  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass& pass,
+                                                std::span<const float> vertices,
+                                                Diagnostics& diagnostics) override {
+    return inner_->begin(pass, vertices, diagnostics);
   }
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
     return inner_->post(pass, rgba, diagnostics);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference backend: graphs as their authors wrote them, in arithmetic of 57 digits. What all other backends agree
-// on is measured against it. It takes programs compiled with driver::CompileOptions::reference.
+// The reference backend computes graphs as their authors wrote them, with 57 digits. The error of all other backends,
+// which agree on every bit, is measured against it. Its programs are compiled with driver::CompileOptions::reference.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,12 @@
 
 namespace isoshade::reference {
 
-/// The most that it draws, each way: a pixel takes some ten thousand times as long as on the cpu.
+/// The largest side of an image: a pixel takes about ten thousand times as long as on the cpu.
 inline constexpr int max_size = 256;
 
-/// Positions and visibility are those of every backend, in floats: the same triangle is shaded at each pixel. From the
-/// loads of the pixel's kernel on, its interpolation too, every number is a Real; the color is rounded at the end.
-/// Images of more samples a side than max_size are reported.
+/// Positions and visibility are computed in floats, as by every backend, so each pixel shows the same triangle. In the
+/// pixel kernel every number from the loads on is a Real; only the color is rounded, at the end. Reports images with
+/// more than max_size samples a side.
 std::unique_ptr<backends::Backend> create();
 
 /// As Backend::evaluate, but floats are not rounded. Ints and bools are numbers too.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours as their standards define them, over any kind of number.
+// Color functions as their standards define them, over any number type.
 #pragma once
 
 #include "backends/reference/geometry.h"
 
 namespace isoshade::reference {
 
-/// IEC 61966-2-1; the pieces meet at the float nearest to 0.0031308. What lies outside of 0 and 1 counts as the end.
+/// IEC 61966-2-1; the pieces meet at the float nearest to 0.0031308. Values outside [0, 1] are clamped.
 template <class R>
 R srgb_encode(R x) {
   x = saturate(x);
@@ -25,7 +25,7 @@ R luminance(Vector<R, 3> c) {
   return (2126 * c[0] + 7152 * c[1] + 722 * c[2]) / 10000;
 }
 
-/// The textbook's six cases.
+/// The six cases of the textbook.
 template <class R>
 Vector<R, 3> hsv_to_rgb(Vector<R, 3> hsv) {
   const R h = 6 * (hsv[0] - floor(hsv[0])), s = hsv[1], v = hsv[2];

@@ -92,7 +92,7 @@ void Evaluator::block(CallFrame& frame, ir::BlockId id) {
 
 namespace {
 
-/// Copies the cells of values to those of others, one after the other.
+/// Copies the cells of some values to the cells of others, in order.
 template <class CallFrame>
 void copy(CallFrame& frame, std::span<const ir::ValueId> from, ir::ValueId to) {
   for (const ir::ValueId value : from) {
@@ -187,7 +187,7 @@ void Evaluator::loop(CallFrame& frame, const ir::Instruction& made) {
   const auto operands = frame.function->operands_of(made);
   const ir::Block& body = frame.function->blocks[made.blocks[0]];
   const uint32_t count = frame.cells[frame.first[operands[0]]].word;
-  // What the loop returns is carried from round to round.
+  // Each iteration passes its results to the next.
   copy(frame, operands.subspan(1), made.first_result);
   for (uint32_t index = 0; static_cast<int32_t>(index) < static_cast<int32_t>(count); ++index) {
     frame.cells[frame.first[body.parameters[0]]].word = index;

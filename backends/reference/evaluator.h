@@ -21,29 +21,29 @@ struct Cell {
 /// One component of the result of a primitive op, into `to`.
 void compute(ir::Opcode op, const Cell& a, const Cell& b, const Cell& c, Cell& to);
 
-/// For modules as lowering makes them: calls of functions.def are calls, and computed by the reference column of their
-/// rows. Every float is a Real: nothing is rounded, overflows or underflows. Literals are the floats of the module;
-/// what is loaded are the floats of the buffers. Comparisons decide on numbers, and so may decide otherwise than a
-/// backend does on rounded ones. Ints are 32 bits; to become one a number is cut, and held within the range. The bits
-/// of a number are those of the float that would be stored.
+/// For modules as lowering makes them: calls of functions.def are still calls, and the reference column of their rows
+/// computes them. Every float is a Real: nothing is rounded, overflows or underflows. Literals and loads give the
+/// floats of the module and of the buffers. Comparisons compare unrounded numbers, so their results may differ from
+/// those of other backends. Ints have 32 bits; conversion to int truncates and saturates. The bits of a number are
+/// those of the float that would be stored.
 ///
-/// Not for several threads at once. The module must be valid, without ddx and ddy, and outlive the evaluator.
+/// Not thread-safe. The module must be valid, have no ddx or ddy, and outlive the evaluator.
 class Evaluator {
  public:
   explicit Evaluator(const ir::Module& module);
 
-  /// The words of a buffer, as ir::Interpreter has them.
+  /// Sets the words of a buffer, see ir::Interpreter.
   void bind(uint32_t buffer, std::span<const uint32_t> words) { buffers_[buffer] = words; }
 
   /// Arguments and results are flattened.
   void run(uint32_t function, std::span<const Cell> arguments, std::span<Cell> results);
 
  private:
-  /// The values of a function. Calls are acyclic, so that each has only one at a time.
+  /// The values of a function. Calls are acyclic, so no function is active twice.
   struct CallFrame {
     const ir::Function* function = nullptr;
-    const functions::Variant* variant = nullptr;  ///< which declaration it is, if it is one
-    std::vector<uint32_t> first;                  ///< by value: its first cell
+    const functions::Variant* variant = nullptr;  ///< the library function that it declares, if any
+    std::vector<uint32_t> first;                  ///< the first cell of each value
     std::vector<Cell> cells;
   };
 

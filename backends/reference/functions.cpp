@@ -20,7 +20,7 @@ float stored(const Real& x) {
 
 namespace {
 
-// An argument from a list of numbers, and a result to one.
+// Reads an argument from a list of numbers, and writes a result to one.
 template <class T>
 struct Flat;
 template <>
@@ -53,7 +53,7 @@ using Function = void (*)(const Real* arguments, Real* results);
 
 template <class Row, class... T>
 void run(const Real* arguments, Real* results) {
-  const std::tuple taken{Flat<T>::take(arguments)...};  // braces take in order
+  const std::tuple taken{Flat<T>::take(arguments)...};  // braces evaluate in order
   give(std::apply([](const auto&... a) { return Row::exact(a...); }, taken), results);
 }
 

@@ -9,7 +9,7 @@
 
 namespace isoshade::reference {
 
-/// What a variant gives, by the reference column of its row. Arguments and results are flattened: vectors component by
+/// Evaluates a variant by the reference column of its row. Arguments and results are flattened: vectors component by
 /// component, matrices column by column.
 void evaluate(const functions::Variant& variant, std::span<const Real> arguments, std::span<Real> results);
 

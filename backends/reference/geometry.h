@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the reference column of functions.def is written in: vectors and matrices over any kind of number R. Tests that
-// measure every float take long double, which is 2^40 times finer than a float; the reference backend takes Real.
+// Vectors and matrices over any number type R, for the reference column of functions.def. Tests that measure every
+// float use long double, which is 2^40 times finer than a float; the reference backend uses Real.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace isoshade::reference {
 
-// Of built-in numbers; those of Real are beside it.
+// For built-in number types; real.h has them for Real.
 using std::abs, std::ceil, std::floor, std::fmod, std::sqrt;
 using std::acos, std::asin, std::atan, std::atan2, std::cos, std::sin, std::tan;
 using std::exp, std::exp2, std::log, std::log2, std::pow;
@@ -59,7 +59,7 @@ R smoothstep(R low, R high, R x) {
   return t * t * (3 - 2 * t);
 }
 
-/// Texture coordinates; what is not finite counts as 0.
+/// Texture coordinates; infinities and NaN count as 0.
 template <class R>
 R wrap(R x) {
   return x - x == 0 ? x - floor(x) : R(0);
@@ -75,7 +75,7 @@ R sign(R x) {
   return x > 0 ? R(1) : x < 0 ? R(-1) : x;
 }
 
-/// x^y; NaN for negative x but where y is 0.
+/// x^y; NaN for negative x, unless y is 0.
 template <class R>
 R power(R x, R y) {
   if (y == 0) return 1;
@@ -93,7 +93,7 @@ R modulo(R x, R y) {
   const R rest = fmod(x, y);
   return (rest < 0 && y > 0) || (rest > 0 && y < 0) ? rest + y : rest;
 }
-/// NaN, for "not defined", where the quotient is nearly whole: 0 and y are taken for each other there.
+/// NaN, for "not defined", where the quotient is nearly whole: rounding decides between 0 and y there.
 template <class R>
 R mod_magnitude(R x, R y) {
   const R quotient = x / y;
@@ -193,7 +193,7 @@ Vector<R, N> reflect_magnitude(Vector<R, N> i, Vector<R, N> n) {
   return abs(i) + abs(n) * (2 * dot(abs(n), abs(i)));
 }
 
-/// The square of the refracted ray's cosine; not positive where there is total reflection.
+/// The square of the refracted ray's cosine; not positive under total reflection.
 template <class R>
 R refract_square(R d, R eta) {
   return 1 - eta * eta * (1 - d * d);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noises as their sources define them, over any kind of number: hashes over words, sums over corners.
+// Noise functions as their sources define them, over any number type: hashes over words, sums over corners.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of the reference: MPFR's, of a fixed precision, with operators.
+// The reference's number type: MPFR numbers of a fixed precision, with operators.
 #pragma once
 
 #include <concepts>
@@ -11,9 +11,9 @@
 
 namespace isoshade::reference {
 
-/// A number of 192 bits, that is 57 decimal digits; every result is rounded to nearest. Exponents are those of MPFR:
-/// what overflows or underflows a float does not here. There are infinities, one NaN and signed zeros, and they
-/// behave as IEEE-754's: 1 / 0 is infinite, 0 / 0 is NaN, and every comparison with NaN but != is false.
+/// A number of 192 bits, that is 57 decimal digits; every result is rounded to nearest. The exponent range is MPFR's,
+/// so floats' overflow and underflow do not happen. Infinities, one NaN and signed zeros behave as in IEEE 754: 1 / 0
+/// is infinite, 0 / 0 is NaN, and every comparison with NaN but != is false.
 class Real {
  public:
   static constexpr mpfr_prec_t bits = 192;
@@ -32,7 +32,7 @@ class Real {
     else
       mpfr_set_ld(value_, x, MPFR_RNDN);
   }
-  /// Of a decimal number. What is none becomes NaN.
+  /// Parses a decimal number; anything else becomes NaN.
   explicit Real(const std::string& decimal) {
     initialize();
     if (mpfr_set_str(value_, decimal.c_str(), 10, MPFR_RNDN) != 0) mpfr_set_nan(value_);
@@ -46,10 +46,10 @@ class Real {
     return *this;
   }
 
-  /// Towards zero, to the nearest that there is. NaN becomes 0.
+  /// Truncates and saturates. NaN becomes 0.
   explicit operator int64_t() const { return mpfr_get_si(value_, MPFR_RNDZ); }
   explicit operator double() const { return mpfr_get_d(value_, MPFR_RNDN); }
-  /// The nearest, which may be infinite or denormal.
+  /// Rounds to nearest; the result may be infinite or denormal.
   explicit operator float() const { return mpfr_get_flt(value_, MPFR_RNDN); }
 
   bool is_nan() const { return mpfr_nan_p(value_) != 0; }
@@ -71,7 +71,7 @@ class Real {
     mpfr_custom_init_set(value_, MPFR_ZERO_KIND, 0, bits, limbs_);
   }
 
-  mp_limb_t limbs_[bits / (8 * sizeof(mp_limb_t))];  // here, not on the heap: numbers are made by the million
+  mp_limb_t limbs_[bits / (8 * sizeof(mp_limb_t))];  // not on the heap: millions of numbers are made
   mpfr_t value_;
 };
 
@@ -135,7 +135,7 @@ inline Real& operator-=(Real& a, const Real& b) { return a = a - b; }
 inline Real& operator*=(Real& a, const Real& b) { return a = a * b; }
 inline Real& operator/=(Real& a, const Real& b) { return a = a / b; }
 
-/// The float that a backend would store: the nearest, but no denormal, and NaN as 0x7fc00000.
+/// The float that a backend would store: rounded to nearest, denormals flushed, NaN as 0x7fc00000.
 float stored(const Real& x);
 
 }  // namespace isoshade::reference

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference column of functions.def, for any kind of number. The one definition of what a function of the library
-// is: its error is measured against this, and the reference backend computes with it.
+// The reference column of functions.def, for any number type. It is the definition of each library function: errors are
+// measured against it, and the reference backend computes with it.
 #pragma once
 
 #include "backends/reference/color.h"
@@ -8,10 +8,10 @@
 
 namespace isoshade::reference::rows {
 
-/// An argument that a row does not have: rows speak of x, y, z, u and v.
+/// Stands for an argument that a row does not have: rows name x, y, z, u and v.
 struct Absent {};
 
-// Whole numbers, which a row may give too, become numbers.
+// Converts integers, which a row may also give.
 template <class R>
 R promoted(std::type_identity_t<R> x) {
   return x;

@@ -6,10 +6,9 @@
 #include <cstring>
 #include <exception>
 
-#include "backends/array_limit.h"
+#include "backends/shared.h"
 #include "backends/vulkan/device.h"
 #include "backends/vulkan/limits.h"
-#include "backends/vulkan/shaders.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/support/assert.h"
@@ -21,21 +20,16 @@ namespace {
 
 using backends::Draw;
 using backends::Frame;
+using backends::ViewPass;
 using driver::Program;
 using driver::Stage;
 using lower::FrameBuffer;
 using support::Diagnostics;
 
-size_t words(const std::vector<driver::Field>& fields) {
-  size_t sum = 0;
-  for (const driver::Field& field : fields) sum += static_cast<size_t>(field.words);
-  return sum;
-}
-
-/// Uploads an array, of `frame` if it is of one, or reports that it is larger than the device allows.
+/// Uploads an array or reports that it is larger than the device allows. `frame`: the frame that owns it, or null.
 template <class T>
-bool upload(Device& device, FrameBuffer buffer, std::span<const T> data, const Frame* frame,
-            Diagnostics& diagnostics) {
+bool upload_array(Device& device, FrameBuffer buffer, std::span<const T> data, const Frame* frame,
+                  Diagnostics& diagnostics) {
   if (data.size_bytes() > device.max_buffer_bytes()) {
     const backends::ArrayLimit limit{device.info().name, device.max_buffer_bytes()};
     backends::report_too_large(buffer, data.size_bytes(), limit, frame, diagnostics);
@@ -53,27 +47,27 @@ bool reads_textures(const Program& program) {
   });
 }
 
-/// The vertices [first, first + count) of draw `draw`, and where their positions come to lie.
+/// The vertices [first, first + count) of a draw.
 struct VertexChunk {
   size_t draw;
   uint32_t first;
   uint32_t count;
-  size_t output;  ///< in vertices
+  size_t output;  ///< where their positions go, in vertices
 };
 
 /// Cuts the draws into runs of at most `capacity` vertices.
-std::vector<std::vector<VertexChunk>> vertex_runs(const Frame& frame, size_t capacity) {
+std::vector<std::vector<VertexChunk>> vertex_runs(const std::vector<Draw>& draws, size_t capacity) {
   std::vector<std::vector<VertexChunk>> runs;
   size_t used = capacity;
-  for (size_t d = 0; d < frame.draws.size(); ++d) {
+  for (size_t d = 0; d < draws.size(); ++d) {
     uint32_t done = 0;
-    while (done < frame.draws[d].vertex_count) {
+    while (done < draws[d].vertex_count) {
       if (used == capacity) {
         runs.emplace_back();
         used = 0;
       }
       const auto count =
-          static_cast<uint32_t>(std::min<size_t>(frame.draws[d].vertex_count - done, capacity - used));
+          static_cast<uint32_t>(std::min<size_t>(draws[d].vertex_count - done, capacity - used));
       runs.back().push_back({d, done, count, used});
       done += count;
       used += count;
@@ -107,7 +101,6 @@ std::optional<std::string> VulkanBackend::text_of(const Program& program, Diagno
   return options_.glsl(program, division_);
 }
 
-/// Runs `work`; what Vulkan threw or the validation layers said becomes a diagnostic.
 bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()>& work) {
   bool succeeded = false;
   try {
@@ -122,42 +115,41 @@ bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()
   return succeeded;
 }
 
-bool VulkanBackend::upload_frame(const Frame& frame, std::span<const float> vertices,
-                                 Diagnostics& diagnostics) {
-  return upload(*device_, FrameBuffer::vertices, vertices, &frame, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::objects, frame.objects, &frame, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::lights, frame.lights, &frame, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::frame, frame.frame, &frame, diagnostics) &&
-         upload<float>(*device_, FrameBuffer::view, frame.view, &frame, diagnostics);
+bool VulkanBackend::upload(const ViewPass& pass, std::span<const float> vertices, Diagnostics& diagnostics) {
+  return backends::for_each_array(pass, vertices, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+    return upload_array(*device_, buffer, words, &pass.frame, diagnostics);
+  });
 }
 
 bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics) {
-  return upload<float>(*device_, FrameBuffer::texels, frame.texels, &frame, diagnostics) &&
-         upload<uint32_t>(*device_, FrameBuffer::texel_bytes, frame.texel_bytes, &frame, diagnostics) &&
-         upload<int32_t>(*device_, FrameBuffer::textures, frame.textures, &frame, diagnostics);
+  return backends::for_each_texture_array(frame, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+    return upload_array(*device_, buffer, words, &frame, diagnostics);
+  });
 }
 
 bool VulkanBackend::upload_triangles(const Frame& frame, std::span<const int32_t> triangles,
                                      Diagnostics& diagnostics) {
-  return upload(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics);
+  return upload_array(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics);
 }
 
-bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>>& clip,
+bool VulkanBackend::transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
                               Diagnostics& diagnostics) {
+  const Frame& frame = pass.frame;
+  const std::vector<Draw>& draws = pass.view.draws;
   return guarded(diagnostics, [&] {
-    if (!upload_frame(frame, frame.vertices, diagnostics)) return false;
+    if (!upload(pass, frame.vertices, diagnostics)) return false;
     const auto reads = [&](const Draw& draw) { return reads_textures(*frame.programs[draw.vertex_program]); };
-    if (std::ranges::any_of(frame.draws, reads) && !upload_textures(frame, diagnostics)) return false;
+    if (std::ranges::any_of(draws, reads) && !upload_textures(frame, diagnostics)) return false;
     std::vector<std::optional<PipelineIndex>> pipelines(frame.programs.size());
-    clip.resize(frame.draws.size());
-    for (size_t d = 0; d < frame.draws.size(); ++d) {
-      clip[d].resize(size_t{4} * frame.draws[d].vertex_count);
-      std::optional<PipelineIndex>& pipeline = pipelines[frame.draws[d].vertex_program];
+    clip.resize(draws.size());
+    for (size_t d = 0; d < draws.size(); ++d) {
+      clip[d].resize(size_t{4} * draws[d].vertex_count);
+      std::optional<PipelineIndex>& pipeline = pipelines[draws[d].vertex_program];
       if (pipeline) continue;
-      const Program& program = *frame.programs[frame.draws[d].vertex_program];
+      const Program& program = *frame.programs[draws[d].vertex_program];
       auto text = text_of(program, diagnostics);
       if (!text) return false;
-      PipelineSource source{Target::buffer, 0, std::move(*text), {}};
+      PipelineSource source{Output::buffer, 0, std::move(*text), {}};
       source.what = driver::description(program);
       pipeline = device_->pipeline(source, diagnostics);
       if (!pipeline) return false;
@@ -165,10 +157,10 @@ bool VulkanBackend::transform(const Frame& frame, std::vector<std::vector<float>
 
     const size_t capacity = std::min(max_output_words, device_->max_buffer_bytes() / sizeof(int32_t)) / 4;
     std::vector<int32_t> output;
-    for (const std::vector<VertexChunk>& run : vertex_runs(frame, capacity)) {
+    for (const std::vector<VertexChunk>& run : vertex_runs(draws, capacity)) {
       std::vector<Call> calls;
       for (const VertexChunk& chunk : run) {
-        const Draw& draw = frame.draws[chunk.draw];
+        const Draw& draw = draws[chunk.draw];
         const uint32_t first = draw.first_vertex + chunk.first;
         calls.push_back({.pipeline = *pipelines[draw.vertex_program],
                          .push = {.object = draw.object,
@@ -204,16 +196,14 @@ bool VulkanBackend::check_size(int width, int height, Diagnostics& diagnostics) 
 bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba,
                          Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
-    if (!check_size(pass.width, pass.height, diagnostics) ||
-        !upload(*device_, FrameBuffer::frame, pass.frame, nullptr, diagnostics) ||
-        !upload(*device_, FrameBuffer::view, pass.view, nullptr, diagnostics) ||
-        !upload(*device_, FrameBuffer::objects, pass.record, nullptr, diagnostics) ||
-        !upload(*device_, FrameBuffer::layers, pass.images, nullptr, diagnostics) ||
-        !upload(*device_, FrameBuffer::layer_records, pass.image_records, nullptr, diagnostics))
+    const auto upload = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+      return upload_array(*device_, buffer, words, nullptr, diagnostics);
+    };
+    if (!check_size(pass.width, pass.height, diagnostics) || !backends::for_each_array(pass, upload))
       return false;
     auto text = text_of(*pass.program, diagnostics);
     if (!text) return false;
-    PipelineSource source{Target::color, 1, full_screen_vertex(), std::move(*text)};
+    PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
     source.what = driver::description(*pass.program);
     const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;
@@ -225,7 +215,8 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
 
 bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                              std::vector<int32_t>& outputs, Diagnostics& diagnostics) {
-  const size_t input_words = words(program.inputs), result_words = words(program.results);
+  const size_t input_words = backends::word_count(program.inputs);
+  const size_t result_words = backends::word_count(program.results);
   support::assert_that(inputs.size() == rows * input_words, "an eval table of a wrong size");
   const bool in_vertex = options_.eval_stage == EvalStage::vertex;
   if (result_words > max_result_words && !in_vertex) {
@@ -244,8 +235,8 @@ bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> in
     auto text = text_of(program, diagnostics);
     if (!text) return false;
     PipelineSource source =
-        in_vertex ? PipelineSource{Target::buffer, 0, std::move(*text), {}}
-                  : PipelineSource{Target::words, attachments, full_screen_vertex(), std::move(*text)};
+        in_vertex ? PipelineSource{Output::buffer, 0, std::move(*text), {}}
+                  : PipelineSource{Output::words, attachments, full_screen_vertex(), std::move(*text)};
     source.what = driver::description(program);
     const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;

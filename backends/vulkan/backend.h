@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "backends/backend.h"
-#include "backends/vulkan/device_info.h"
 #include "backends/vulkan/probe.h"
 #include "compiler/driver/program.h"
 #include "compiler/support/diagnostics.h"
@@ -20,6 +19,24 @@ namespace isoshade::vulkan {
 
 class Device;
 
+/// A Vulkan device, as the `devices` command lists it.
+struct DeviceInfo {
+  int index = 0;       ///< `--device` takes it, or a part of the name
+  std::string name;    ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver;  ///< "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)"
+  std::string api;     ///< "1.3.230"
+  bool cpu = false;    ///< a software device
+};
+
+/// The devices of this machine in the order of their index; empty, with a diagnostic, if there is no Vulkan.
+std::vector<DeviceInfo> list_devices(support::Diagnostics& diagnostics);
+
+/// Whether `--device` names this device: by its number, or by a part of its name in any case.
+bool matches(const DeviceInfo& info, std::string_view selector);
+
+/// Reports no-device, with what to install.
+support::Diagnostic& report_unusable(std::string_view why, support::Diagnostics& diagnostics);
+
 /// Where eval programs run. Pixels are computed in fragment shaders, positions in vertex shaders.
 enum class EvalStage : uint8_t { fragment, vertex };
 
@@ -27,9 +44,9 @@ struct VulkanOptions {
   /// A device's index or a part of its name, case ignored. Empty: the first software device (lavapipe), else
   /// the first device.
   std::string device;
-  /// Use a device that fails the probe; its images may differ.
+  /// Accept a device that fails the probe; its images may differ.
   bool allow_unproven = false;
-  /// Instead of what the probe finds.
+  /// Overrides the probe's choice.
   std::optional<driver::Division> division;
   /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
   /// one record after another, to `layout(std430, set = 0, binding = N) writeonly buffer { int words[]; }` with
@@ -47,10 +64,11 @@ class VulkanBackend : public backends::Backend {
   std::string description() const override;
   double build_seconds() const override;
 
-  bool transform(const backends::Frame& frame, std::vector<std::vector<float>>& clip,
+  bool transform(const backends::ViewPass& pass, std::vector<std::vector<float>>& clip,
                  support::Diagnostics& diagnostics) override;
-  std::unique_ptr<backends::Drawing> begin(const backends::Frame& frame, std::span<const float> vertices,
-                                           support::Diagnostics& diagnostics) override;
+  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass& pass,
+                                                std::span<const float> vertices,
+                                                support::Diagnostics& diagnostics) override;
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba,
             support::Diagnostics& diagnostics) override;
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
@@ -64,15 +82,17 @@ class VulkanBackend : public backends::Backend {
   friend std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, support::Diagnostics& diagnostics);
   VulkanBackend(VulkanOptions options, std::unique_ptr<Device> device);
 
-  friend class VulkanDrawing;
+  friend class VulkanViewRenderer;
 
+  /// Runs `work`; reports what Vulkan throws and what the validation layers say.
   bool guarded(support::Diagnostics& diagnostics, const std::function<bool()>& work);
-  /// The text of a program; nothing where it is larger than a driver bears, which is reported.
+  /// The text of a program; nothing if it is too large for drivers, which is reported.
   std::optional<std::string> text_of(const driver::Program& program, support::Diagnostics& diagnostics) const;
-  bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
-  bool upload_frame(const backends::Frame& frame, std::span<const float> vertices,
-                    support::Diagnostics& diagnostics);
+  /// Uploads what the programs of a view read, except textures and triangles.
+  bool upload(const backends::ViewPass& pass, std::span<const float> vertices,
+              support::Diagnostics& diagnostics);
+  bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
                         support::Diagnostics& diagnostics);
 
@@ -82,8 +102,8 @@ class VulkanBackend : public backends::Backend {
   driver::Division division_ = driver::Division::exact;
 };
 
-/// Opens a device and probes it. Null, with a diagnostic, where there is no such device, or where it fails a
-/// check and the options do not allow that. Not thread-safe: one thread at a time uses a backend.
+/// Opens a device and probes it. Null, with a diagnostic, if there is no such device, or if it fails a check and the
+/// options do not allow that. Not thread-safe.
 std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::vulkan

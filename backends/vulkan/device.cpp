@@ -92,9 +92,9 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index)
   for (Buffer& buffer : buffers) reserve(buffer, smallest_buffer, {});
   reserve(zero, smallest_buffer, {});
   std::memset(zero.data, 0, smallest_buffer);
-  prepare_frame(1, 1);
+  prepare_attachments(1, 1, true);
   no_target = vk::raii::Framebuffer(
-      device, {.renderPass = *render_pass(Target::buffer, 0), .width = 1, .height = 1, .layers = 1});
+      device, {.renderPass = *render_pass(Output::buffer, 0), .width = 1, .height = 1, .layers = 1});
 }
 
 Buffer Device::Impl::make_buffer(size_t bytes, vk::MemoryPropertyFlags preferred) {
@@ -141,7 +141,7 @@ vk::raii::DeviceMemory Device::Impl::allocate(const vk::MemoryRequirements& need
         return {device, {.allocationSize = needs.size, .memoryTypeIndex = i}};
     return nullptr;
   };
-  // What is preferred is scarce on some devices (memory that both sides see), so it may be full.
+  // The preferred memory is scarce on some devices (memory that host and device share), so it may be full.
   try {
     vk::raii::DeviceMemory made = allocate_from(required | preferred);
     if (*made) return made;
@@ -155,7 +155,7 @@ vk::raii::DeviceMemory Device::Impl::allocate(const vk::MemoryRequirements& need
 
 void Device::Impl::reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags preferred) {
   if (buffer.bytes >= bytes) return;
-  buffer = {};  // before the new one: both might not fit
+  buffer = {};  // first, because both might not fit
   buffer = make_buffer(bytes, preferred);
 }
 
@@ -173,7 +173,7 @@ void Device::Impl::write_descriptors() {
   for (uint32_t i = 0; i < storage_bindings; ++i) write_buffer(i, buffers[i]);
   write_buffer(zero_binding, zero);
   const vk::DescriptorImageInfo ids{.sampler = *sampler,
-                                    .imageView = *frame.ids.view,
+                                    .imageView = *attachments.ids.view,
                                     .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
   writes[ids_binding] = vk::WriteDescriptorSet{.dstSet = *set,
                                                .dstBinding = ids_binding,
@@ -187,7 +187,7 @@ Device::Device(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Device::~Device() {
   if (!impl_->instance->validates) return;
-  // Objects left behind are reported when the device goes, when nobody is left to hear a diagnostic.
+  // The layers report leaked objects when the device is destroyed, too late for a diagnostic.
   const std::unique_ptr<Instance> instance = std::move(impl_->instance);
   impl_.reset();
   for (const std::string& message : instance->messages->take()) support::bug(message);
@@ -222,9 +222,9 @@ int Device::max_frame_side() const {
 
 void Device::upload(lower::FrameBuffer buffer, const void* data, size_t bytes) {
   if (bytes == 0) return;
-  Buffer& target = impl_->buffers[static_cast<size_t>(buffer)];
-  impl_->reserve(target, bytes, Memory::eDeviceLocal);
-  std::memcpy(target.data, data, bytes);
+  Buffer& destination = impl_->buffers[static_cast<size_t>(buffer)];
+  impl_->reserve(destination, bytes, Memory::eDeviceLocal);
+  std::memcpy(destination.data, data, bytes);
 }
 
 }  // namespace isoshade::vulkan

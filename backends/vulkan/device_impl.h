@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is behind Device. Internal: reads Vulkan-Hpp.
+// The implementation of Device. Internal: includes Vulkan-Hpp.
 #pragma once
 
 #include <array>
@@ -26,12 +26,12 @@ inline vk::ImageSubresourceRange whole(vk::Format format) {
           .layerCount = 1};
 }
 
-// Members that own memory stand before what lies in it: they are destroyed in reverse.
+// Members that own memory stand before the objects in it, because members are destroyed in reverse order.
 
 struct Buffer {
   vk::raii::DeviceMemory memory{nullptr};
   vk::raii::Buffer buffer{nullptr};
-  void* data = nullptr;  ///< mapped for good
+  void* data = nullptr;  ///< mapped as long as the buffer exists
   size_t bytes = 0;
 };
 
@@ -41,24 +41,25 @@ struct Attachment {
   vk::raii::ImageView view{nullptr};
 };
 
-/// The attachments of a frame; made anew when its size changes.
-struct FrameTarget {
+/// The attachments of a window; made again when its size changes.
+struct WindowAttachments {
   int width = 0;
   int height = 0;
+  bool has_color = false;  ///< otherwise `color` and `shading` are empty
   Attachment ids, depth, color;
   vk::raii::Framebuffer visibility{nullptr};
   vk::raii::Framebuffer shading{nullptr};
 };
 
-/// The attachments of tables with as many result words; grows with the rows.
-struct TableTarget {
+/// The attachments of tables of one record size; grows with the rows.
+struct TableAttachments {
   int height = 0;
   std::vector<Attachment> attachments;
   vk::raii::Framebuffer framebuffer{nullptr};
 };
 
 struct Device::Impl {
-  /// The device of this index, which has no shortcomings.
+  /// Opens the device of this index, which must have no shortcomings().
   Impl(std::unique_ptr<Instance> instance, int index);
 
   vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags required,
@@ -68,20 +69,20 @@ struct Device::Impl {
   /// A buffer that only grows, at least `bytes` long.
   void reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags preferred);
 
-  /// The render pass of a target; it clears every attachment and keeps it. Made once.
-  const vk::raii::RenderPass& render_pass(Target target, uint32_t attachments);
+  /// The render pass of an output; it clears every attachment and stores it. Made once.
+  const vk::raii::RenderPass& render_pass(Output output, uint32_t attachments);
   vk::raii::Pipeline make_pipeline(const PipelineSource& source, std::span<const uint32_t> vertex,
                                    std::span<const uint32_t> fragment);
 
-  void prepare_frame(int width, int height);
-  TableTarget& prepare_table(uint32_t attachments, int height);
+  void prepare_attachments(int width, int height, bool has_color);
+  TableAttachments& prepare_table(uint32_t attachments, int height);
 
-  /// Points the descriptor set at the buffers as they are now. Every descriptor is always written: lavapipe
-  /// crashes on one that is not, even if no shader uses it.
+  /// Points the descriptor set at the current buffers. It always writes every descriptor: lavapipe crashes on one that
+  /// is not written, even if no shader uses it.
   void write_descriptors();
   void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
 
-  /// Records, submits and waits. What the device wrote is then visible to the host.
+  /// Records, submits and waits. Afterwards the host sees what the device wrote.
   template <class Record>
   void submit(Record record);
 
@@ -106,11 +107,11 @@ struct Device::Impl {
   std::array<Buffer, storage_bindings> buffers;
   Buffer zero;  ///< always 0
   Buffer readback;
-  FrameTarget frame;
+  WindowAttachments attachments;
   vk::raii::Framebuffer no_target{nullptr};
-  std::map<uint32_t, TableTarget> tables;  ///< by attachments
+  std::map<uint32_t, TableAttachments> tables;  ///< by the number of attachments
 
-  std::map<std::pair<Target, uint32_t>, vk::raii::RenderPass> render_passes;
+  std::map<std::pair<Output, uint32_t>, vk::raii::RenderPass> render_passes;
   std::vector<vk::raii::Pipeline> pipelines;
   std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
   double build_seconds = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Vulkan loader, one instance, and its devices. Internal: reads Vulkan-Hpp.
+// The Vulkan loader, one instance, and its devices. Internal: includes Vulkan-Hpp.
 #pragma once
 
 #include <memory>
@@ -8,13 +8,20 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/vulkan/device_info.h"
-#include "backends/vulkan/vulkan_hpp.h"
+// Vulkan-Hpp without the parts that only cost compile time. It takes seconds to compile: include this header in as few
+// files as possible.
+#define VULKAN_HPP_NO_STRUCT_CONSTRUCTORS  // structs are aggregates: .member = value
+#define VULKAN_HPP_NO_STRUCT_SETTERS
+#define VULKAN_HPP_NO_SPACESHIP_OPERATOR
+#define VULKAN_HPP_NO_SMART_HANDLE
+#include <vulkan/vulkan_raii.hpp>
+
+#include "backends/vulkan/backend.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::vulkan {
 
-/// What the validation layers said since it was last asked. Drivers may call from any thread.
+/// Collects messages of the validation layers. Drivers may call from any thread.
 class Messages {
  public:
   void add(std::string text);
@@ -25,8 +32,8 @@ class Messages {
   std::vector<std::string> texts_;
 };
 
-/// Vulkan 1.1. With ISOSHADE_VALIDATION=1 in the environment the Khronos validation layer is loaded where it
-/// is installed. Throws std::exception where there is no loader or no driver.
+/// Vulkan 1.1. ISOSHADE_VALIDATION=1 in the environment loads the Khronos validation layer if it is installed. Throws
+/// std::exception if there is no loader or no driver.
 struct Instance {
   Instance();
 
@@ -42,11 +49,11 @@ bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, int index);
 
-/// The index of the device that `selector` means, see VulkanOptions::device; -1 if none, with a diagnostic that lists
-/// what there is.
+/// The index of the device that `selector` selects, see VulkanOptions::device; -1 if there is none, with a diagnostic
+/// that lists the devices.
 int choose(const Instance& instance, std::string_view selector, support::Diagnostics& diagnostics);
 
-/// What the device lacks for the shaders of this project, one sentence each; empty if it will do.
+/// The features that the device lacks for the shaders of this project, one sentence each; empty if it has them all.
 std::vector<std::string> shortcomings(const vk::raii::PhysicalDevice& device);
 
 /// The index of a queue family that draws, or -1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is recorded: vertex kernels, the passes of a frame, a table; and what comes back.
+// Recording and reading back: vertex kernels, the passes of a view, full-screen passes, tables.
 #include <algorithm>
 #include <cstring>
 
@@ -17,16 +17,16 @@ vk::Rect2D area(int width, int height) {
   return {.extent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height)}};
 }
 
-vk::Rect2D area(const Rect& rect) {
+vk::Rect2D area(const Window& rect) {
   return {.offset = {rect.x, rect.y}, .extent = area(rect.width, rect.height).extent};
 }
 
-/// From pixels of a frame to those of a target whose first pixel is (x, y) there.
-Rect moved(const Rect& rect, int x, int y) { return {rect.x - x, rect.y - y, rect.width, rect.height}; }
+/// From pixels of a view to pixels of attachments that begin at (x, y).
+Window moved(const Window& rect, int x, int y) { return {rect.x - x, rect.y - y, rect.width, rect.height}; }
 
-/// A rectangle of an image to a place in a buffer.
+/// Copies a rectangle of an image to an offset in a buffer.
 void copy(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format,
-          const Rect& from, const Buffer& to, size_t offset) {
+          const Window& from, const Buffer& to, size_t offset) {
   const vk::ImageSubresourceRange range = whole(format);
   const vk::BufferImageCopy copy{
       .bufferOffset = offset,
@@ -39,8 +39,8 @@ void copy(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image,
 class PassEncoder {
  public:
   PassEncoder(const vk::raii::CommandBuffer& commands, const vk::raii::RenderPass& pass,
-       const vk::raii::Framebuffer& framebuffer, const vk::Rect2D& whole_area,
-       std::span<const vk::ClearValue> clear)
+              const vk::raii::Framebuffer& framebuffer, const vk::Rect2D& whole_area,
+              std::span<const vk::ClearValue> clear)
       : commands_(commands) {
     commands.beginRenderPass({.renderPass = *pass,
                               .framebuffer = *framebuffer,
@@ -64,7 +64,7 @@ void Device::Impl::record(const vk::raii::CommandBuffer& to, const Call& call) c
   to.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, *set, {});
   to.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                          call.push);
-  // The natural viewport of a frame does not map clip space exactly to 1/256 pixel; a power of two does.
+  // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
   constexpr float edge = guard_band;
   const auto x = static_cast<float>(call.push.origin_x), y = static_cast<float>(call.push.origin_y);
   to.setViewport(0, vk::Viewport{.x = -edge - x,
@@ -81,50 +81,57 @@ void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output
   Buffer& results = impl_->buffers[output_binding];
   impl_->reserve(results, output.size_bytes(), vk::MemoryPropertyFlagBits::eHostCached);
   impl_->submit([&](const vk::raii::CommandBuffer& commands) {
-    const PassEncoder pass(commands, impl_->render_pass(Target::buffer, 0), impl_->no_target, area(1, 1), {});
+    const PassEncoder pass(commands, impl_->render_pass(Output::buffer, 0), impl_->no_target, area(1, 1), {});
     for (const Call& call : calls) impl_->record(commands, call);
   });
   std::memcpy(output.data(), results.data, output.size_bytes());
 }
 
-void Device::Impl::prepare_frame(int width, int height) {
-  if (frame.width == width && frame.height == height) return;
+void Device::Impl::prepare_attachments(int width, int height, bool has_color) {
+  WindowAttachments& made = attachments;
+  if (made.width == width && made.height == height && (made.has_color || !has_color)) return;
   using Usage = vk::ImageUsageFlagBits;
-  frame = {};  // before the new one: both might not fit
-  frame.ids = make_attachment(ids_format, width, height, Usage::eSampled);
-  frame.depth = make_attachment(depth_format, width, height, Usage::eTransferSrc);
-  frame.color = make_attachment(color_format, width, height, Usage::eTransferSrc);
-  const auto framebuffer = [&](Target target, std::span<const vk::ImageView> views) {
-    return vk::raii::Framebuffer(device, {.renderPass = *render_pass(target, 1),
+  made = {};  // first, because both might not fit
+  made.ids = make_attachment(ids_format, width, height, Usage::eSampled);
+  made.depth = make_attachment(depth_format, width, height, Usage::eTransferSrc);
+  const auto framebuffer = [&](Output output, std::span<const vk::ImageView> views) {
+    return vk::raii::Framebuffer(device, {.renderPass = *render_pass(output, 1),
                                           .attachmentCount = static_cast<uint32_t>(views.size()),
                                           .pAttachments = views.data(),
                                           .width = static_cast<uint32_t>(width),
                                           .height = static_cast<uint32_t>(height),
                                           .layers = 1});
   };
-  frame.visibility = framebuffer(Target::visibility, std::array{*frame.ids.view, *frame.depth.view});
-  frame.shading = framebuffer(Target::color, std::array{*frame.color.view});
-  frame.width = width;
-  frame.height = height;
+  made.visibility = framebuffer(Output::visibility, std::array{*made.ids.view, *made.depth.view});
+  if (has_color) {
+    made.color = make_attachment(color_format, width, height, Usage::eTransferSrc);
+    made.shading = framebuffer(Output::color, std::array{*made.color.view});
+  }
+  made.has_color = has_color;
+  made.width = width;
+  made.height = height;
 }
 
 void Device::render(std::span<const Call> visibility, std::span<const Call> color,
-                    const float (&background)[4], const Rect& part, backends::Image& image) {
-  const int width = part.width, height = part.height;
-  const int margin = part.x > 0 || part.y > 0 ? margin_of_parts : 0;
-  const int origin_x = part.x - margin, origin_y = part.y - margin;
-  impl_->prepare_frame(width + margin, height + margin);
-  const FrameTarget& frame = impl_->frame;
+                    const float (&background)[4], const Window& window, backends::Image& image) {
+  const int width = window.width, height = window.height;
+  const bool has_color = !image.rgba.empty();
+  const int margin = window.x > 0 || window.y > 0 ? margin_of_windows : 0;
+  const int origin_x = window.x - margin, origin_y = window.y - margin;
+  impl_->prepare_attachments(width + margin, height + margin, has_color);
+  const WindowAttachments& attachments = impl_->attachments;
+  const vk::Rect2D all = area(attachments.width, attachments.height);
   const auto record = [&](const vk::raii::CommandBuffer& commands, Call call) {
     call.push.origin_x = origin_x;
     call.push.origin_y = origin_y;
     impl_->record(commands, call);
   };
 
-  const size_t row_bytes = static_cast<size_t>(width) * (pixel_bytes + depth_bytes);
+  const size_t row_bytes = static_cast<size_t>(width) * ((has_color ? pixel_bytes : 0) + depth_bytes);
   const int band =
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
-  const size_t depth_at = static_cast<size_t>(band) * static_cast<size_t>(width) * pixel_bytes;
+  const size_t depth_at =
+      has_color ? static_cast<size_t>(band) * static_cast<size_t>(width) * pixel_bytes : 0;
   impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
                  vk::MemoryPropertyFlagBits::eHostCached);
 
@@ -133,32 +140,32 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
     impl_->submit([&](const vk::raii::CommandBuffer& commands) {
       if (first == 0) {
         const std::array<vk::ClearValue, 2> nothing{};
+        const PassEncoder pass(commands, impl_->render_pass(Output::visibility, 1), attachments.visibility,
+                               all, nothing);
+        for (const Call& call : visibility) record(commands, call);
+      }
+      if (first == 0 && has_color) {
         const vk::ClearValue backdrop{
             vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
-        {
-          const PassEncoder pass(commands, impl_->render_pass(Target::visibility, 1), frame.visibility,
-                          area(frame.width, frame.height), nothing);
-          for (const Call& call : visibility) record(commands, call);
-        }
-        const PassEncoder pass(commands, impl_->render_pass(Target::color, 1), frame.shading,
-                        area(frame.width, frame.height), {&backdrop, 1});
+        const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading, all,
+                               {&backdrop, 1});
         for (const Call& call : color) record(commands, call);
       }
-      const Rect lines{margin, margin + first, width, rows};
-      copy(commands, frame.color.image, color_format, lines, impl_->readback, 0);
-      copy(commands, frame.depth.image, depth_format, lines, impl_->readback, depth_at);
+      const Window lines{margin, margin + first, width, rows};
+      if (has_color) copy(commands, attachments.color.image, color_format, lines, impl_->readback, 0);
+      copy(commands, attachments.depth.image, depth_format, lines, impl_->readback, depth_at);
     });
     const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
     const size_t pixels = static_cast<size_t>(rows) * static_cast<size_t>(width);
     const char* data = static_cast<const char*>(impl_->readback.data);
-    std::memcpy(image.rgba.data() + 4 * pixel, data, pixels * pixel_bytes);
+    if (has_color) std::memcpy(image.rgba.data() + 4 * pixel, data, pixels * pixel_bytes);
     std::memcpy(image.depth.data() + pixel, data + depth_at, pixels * depth_bytes);
   }
 }
 
 void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span<float> rgba) {
-  impl_->prepare_frame(width, height);
-  const FrameTarget& frame = impl_->frame;
+  impl_->prepare_attachments(width, height, true);
+  const WindowAttachments& attachments = impl_->attachments;
   const size_t row_bytes = static_cast<size_t>(width) * pixel_bytes;
   const int band =
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
@@ -170,19 +177,19 @@ void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span
     impl_->submit([&](const vk::raii::CommandBuffer& commands) {
       if (first == 0) {
         const vk::ClearValue nothing{};
-        const PassEncoder pass(commands, impl_->render_pass(Target::color, 1), frame.shading, area(width, height),
-                        {&nothing, 1});
+        const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading,
+                               area(width, height), {&nothing, 1});
         impl_->record(commands, call);
       }
-      copy(commands, frame.color.image, color_format, {0, first, width, rows}, impl_->readback, 0);
+      copy(commands, attachments.color.image, color_format, {0, first, width, rows}, impl_->readback, 0);
     });
     std::memcpy(rgba.data() + static_cast<size_t>(first) * static_cast<size_t>(width) * 4,
                 impl_->readback.data, static_cast<size_t>(rows) * row_bytes);
   }
 }
 
-TableTarget& Device::Impl::prepare_table(uint32_t attachments, int height) {
-  TableTarget& table = tables[attachments];
+TableAttachments& Device::Impl::prepare_table(uint32_t attachments, int height) {
+  TableAttachments& table = tables[attachments];
   if (table.height >= height) return table;
   table = {};
   std::vector<vk::ImageView> views;
@@ -191,7 +198,7 @@ TableTarget& Device::Impl::prepare_table(uint32_t attachments, int height) {
         make_attachment(words_format, table_width, height, vk::ImageUsageFlagBits::eTransferSrc));
     views.push_back(*table.attachments.back().view);
   }
-  table.framebuffer = vk::raii::Framebuffer(device, {.renderPass = *render_pass(Target::words, attachments),
+  table.framebuffer = vk::raii::Framebuffer(device, {.renderPass = *render_pass(Output::words, attachments),
                                                      .attachmentCount = attachments,
                                                      .pAttachments = views.data(),
                                                      .width = table_width,
@@ -206,7 +213,7 @@ void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows
   support::assert_that(rows > 0 && rows <= max_table_rows && output.size() == rows * record_words,
                  "a table chunk of a wrong size");
   const int height = static_cast<int>((rows + table_width - 1) / table_width);
-  const TableTarget& table = impl_->prepare_table(attachments, height);
+  const TableAttachments& table = impl_->prepare_table(attachments, height);
   const size_t attachment_bytes = static_cast<size_t>(height) * table_width * pixel_bytes;
   impl_->reserve(impl_->readback, attachments * attachment_bytes, vk::MemoryPropertyFlagBits::eHostCached);
 
@@ -216,8 +223,8 @@ void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows
   impl_->submit([&](const vk::raii::CommandBuffer& commands) {
     {
       const std::vector<vk::ClearValue> nothing(attachments, vk::ClearValue{});
-      const PassEncoder pass(commands, impl_->render_pass(Target::words, attachments), table.framebuffer,
-                      area(table_width, height), nothing);
+      const PassEncoder pass(commands, impl_->render_pass(Output::words, attachments), table.framebuffer,
+                             area(table_width, height), nothing);
       impl_->record(commands, call);
     }
     for (uint32_t i = 0; i < attachments; ++i)

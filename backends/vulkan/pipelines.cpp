@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Render passes and pipelines: the fixed state that each kind of target implies.
+// Render passes, pipelines with the fixed state of each kind of output, and the vertex shaders that are not generated.
 #include <stdexcept>
 
-#include "backends/timed.h"
+#include "backends/shared.h"
 #include "backends/vulkan/device_impl.h"
+#include "compiler/emit/glsl.h"
 #include "compiler/emit/spirv.h"
 #include "compiler/support/assert.h"
 
@@ -11,7 +12,7 @@ namespace isoshade::vulkan {
 
 namespace {
 
-/// Device work is submitted and awaited piece by piece, so dependencies that order everything cost nothing.
+/// The host waits for each submission, so dependencies that order everything cost nothing.
 std::array<vk::SubpassDependency, 2> order_everything() {
   using Stage = vk::PipelineStageFlagBits;
   constexpr auto any_access = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
@@ -62,38 +63,69 @@ vk::raii::ShaderModule make_module(const vk::raii::Device& device, std::span<con
   return {device, vk::ShaderModuleCreateInfo{.codeSize = spirv.size_bytes(), .pCode = spirv.data()}};
 }
 
-/// Texts hold no NUL, so parts cannot run into each other.
+/// The key is unambiguous because texts contain no NUL.
 std::string key(const PipelineSource& source) {
-  std::string text{static_cast<char>('0' + static_cast<int>(source.target)),
+  std::string text{static_cast<char>('0' + static_cast<int>(source.output)),
                    static_cast<char>('0' + source.attachments), source.over ? '1' : '0'};
   return text + source.vertex_glsl + '\0' + source.fragment_glsl;
 }
 
 }  // namespace
 
-const vk::raii::RenderPass& Device::Impl::render_pass(Target target, uint32_t attachments) {
-  const std::pair which{target, attachments};
+const std::string& full_screen_vertex() {
+  // Half of clip space is the image (see limits.h): from pixel 0 to the edge of the guard band.
+  static const std::string text = emit::glsl_head() + R"(
+void main() {
+  vec2 corner = vec2(gl_VertexIndex == 1 ? 2.0 : 0.0, gl_VertexIndex == 2 ? 2.0 : 0.0);
+  gl_Position = vec4(corner, 0.0, 1.0);
+}
+)";
+  return text;
+}
+
+const std::string& triangle_vertex() {
+  static_assert(guard_band * 256 == 2097152);
+  using namespace lower;
+  static const std::string text = emit::glsl_head() + "layout(std430, set = 0, binding = " +
+                                  std::to_string(static_cast<int>(FrameBuffer::triangles)) +
+                                  ") readonly buffer triangles_block { int triangles[]; };" + R"(
+layout(location = 0) flat out int triangle;
+
+void main() {
+  triangle = gl_VertexIndex / 3;
+  int corner = gl_VertexIndex - 3 * triangle;
+  int word = triangle * )" + std::to_string(triangle_word::stride) +
+                                  " + " + std::to_string(triangle_word::position) + R"( + 2 * corner;
+  vec2 position = vec2(float(triangles[word]), float(triangles[word + 1]));
+  gl_Position = vec4(position * (1.0 / 2097152.0), 0.0, 1.0);
+}
+)";
+  return text;
+}
+
+const vk::raii::RenderPass& Device::Impl::render_pass(Output output, uint32_t attachments) {
+  const std::pair which{output, attachments};
   if (const auto found = render_passes.find(which); found != render_passes.end()) return found->second;
 
   using Layout = vk::ImageLayout;
   std::vector<vk::Format> colors;
   Layout ends_as = Layout::eTransferSrcOptimal;
-  switch (target) {
-    case Target::buffer: break;
-    case Target::visibility:
+  switch (output) {
+    case Output::buffer: break;
+    case Output::visibility:
       colors = {ids_format};
       ends_as = Layout::eShaderReadOnlyOptimal;
       break;
-    case Target::color: colors = {color_format}; break;
-    case Target::words: colors.assign(attachments, words_format); break;
+    case Output::color: colors = {color_format}; break;
+    case Output::words: colors.assign(attachments, words_format); break;
   }
-  auto made = make_render_pass(device, colors, ends_as, target == Target::visibility);
+  auto made = make_render_pass(device, colors, ends_as, output == Output::visibility);
   return render_passes.emplace(which, std::move(made)).first->second;
 }
 
 vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std::span<const uint32_t> vertex,
                                                std::span<const uint32_t> fragment) {
-  const bool rasterises = source.target != Target::buffer;
+  const bool rasterises = source.output != Output::buffer;
   const vk::raii::ShaderModule vertex_module = make_module(device, vertex);
   vk::raii::ShaderModule fragment_module{nullptr};
   std::vector<vk::PipelineShaderStageCreateInfo> stages{
@@ -113,7 +145,7 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
                                                         .cullMode = vk::CullModeFlagBits::eNone,
                                                         .lineWidth = 1};
   const vk::PipelineMultisampleStateCreateInfo samples{.rasterizationSamples = vk::SampleCountFlagBits::e1};
-  const vk::Bool32 depth = source.target == Target::visibility;
+  const vk::Bool32 depth = source.output == Output::visibility;
   const vk::PipelineDepthStencilStateCreateInfo depth_test{
       .depthTestEnable = depth,
       .depthWriteEnable = depth,
@@ -140,7 +172,7 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
                                          .pColorBlendState = &blend,
                                          .pDynamicState = &dynamic,
                                          .layout = *layout,
-                                         .renderPass = *render_pass(source.target, source.attachments)}};
+                                         .renderPass = *render_pass(source.output, source.attachments)}};
 }
 
 double Device::build_seconds() const { return impl_->build_seconds; }
@@ -156,7 +188,7 @@ std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
       emit::compile_spirv(source.vertex_glsl, emit::ShaderKind::vertex, diagnostics, source.what);
   if (!vertex) return std::nullopt;
   std::optional<std::vector<uint32_t>> fragment{std::in_place};
-  if (source.target != Target::buffer)
+  if (source.output != Output::buffer)
     fragment =
         emit::compile_spirv(source.fragment_glsl, emit::ShaderKind::fragment, diagnostics, source.what);
   if (!fragment) return std::nullopt;

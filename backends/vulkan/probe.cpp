@@ -8,9 +8,7 @@
 
 #include "backends/vulkan/device.h"
 #include "backends/vulkan/limits.h"
-#include "backends/vulkan/probe_arithmetic.h"
-#include "backends/vulkan/probe_coverage.h"
-#include "backends/vulkan/shaders.h"
+#include "backends/vulkan/probe_parts.h"
 
 namespace isoshade::vulkan {
 
@@ -64,8 +62,8 @@ bool probe_arithmetic(Device& device, Probe& probe, support::Diagnostics& diagno
   const size_t words = word_topics().size();
   const auto attachments = static_cast<uint32_t>((words + 3) / 4);
   const auto fragment =
-      device.pipeline({Target::words, attachments, full_screen_vertex(), probe_fragment_glsl()}, diagnostics);
-  const auto vertex = device.pipeline({Target::buffer, 0, probe_vertex_glsl(), {}}, diagnostics);
+      device.pipeline({Output::words, attachments, full_screen_vertex(), probe_fragment_glsl()}, diagnostics);
+  const auto vertex = device.pipeline({Output::buffer, 0, probe_vertex_glsl(), {}}, diagnostics);
   if (!fragment || !vertex) return false;
 
   const std::vector<int32_t> expected = expected_words(rows);
@@ -104,22 +102,22 @@ void compare_images(const backends::Image& expected, const backends::Image& seen
 }
 
 /// All of the frame; and its further half, as frames of several samples a pixel are drawn part by part.
-std::vector<Rect> probed_parts(const CoverageScene& scene) {
-  const Rect whole{0, 0, scene.width, scene.height};
+std::vector<Window> probed_parts(const CoverageScene& scene) {
+  const Window whole{0, 0, scene.width, scene.height};
   const bool along_y = scene.height > scene.width;
   const int length = (along_y ? scene.height : scene.width) / (2 * cell_size) * cell_size;
-  Rect half = whole;
+  Window half = whole;
   (along_y ? half.y : half.x) = length;
   (along_y ? half.height : half.width) -= length;
   return {whole, half};
 }
 
-bool lies_in(const Rect& rect, const Rect& part) {
+bool lies_in(const Window& rect, const Window& part) {
   return rect.x >= part.x && rect.y >= part.y && rect.x + rect.width <= part.x + part.width &&
          rect.y + rect.height <= part.y + part.height;
 }
 
-backends::Image cut(const backends::Image& image, const Rect& part) {
+backends::Image cut(const backends::Image& image, const Window& part) {
   backends::Image result;
   result.resize(part.width, part.height);
   for (int y = 0; y < part.height; ++y) {
@@ -133,9 +131,9 @@ backends::Image cut(const backends::Image& image, const Rect& part) {
 
 bool probe_coverage(Device& device, Probe& probe, support::Diagnostics& diagnostics) {
   const auto visibility =
-      device.pipeline({Target::visibility, 1, triangle_vertex(), coverage_visibility_glsl()}, diagnostics);
+      device.pipeline({Output::visibility, 1, triangle_vertex(), coverage_visibility_glsl()}, diagnostics);
   const auto color =
-      device.pipeline({Target::color, 1, full_screen_vertex(), coverage_color_glsl()}, diagnostics);
+      device.pipeline({Output::color, 1, full_screen_vertex(), coverage_color_glsl()}, diagnostics);
   if (!visibility || !color) return false;
 
   const float background[4] = {-0.0f, 0.1f, -65504.0f, 1e-30f};
@@ -145,7 +143,7 @@ bool probe_coverage(Device& device, Probe& probe, support::Diagnostics& diagnost
     device.upload(lower::FrameBuffer::triangles, scene.triangles.data(),
                   scene.triangles.size() * sizeof(int32_t));
     device.upload(lower::FrameBuffer::inputs, scene.values.data(), scene.values.size() * sizeof(int32_t));
-    for (const Rect& part : probed_parts(scene)) {
+    for (const Window& part : probed_parts(scene)) {
       std::vector<Call> calls;
       size_t triangles = 0;
       for (const Cell& cell : scene.cells) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a device computes what the contract says: small shaders run on it, and the host compares every bit.
+// Tests whether a device computes what the contract requires: small shaders run on it, and the host compares every bit.
 #pragma once
 
 #include <algorithm>
@@ -17,24 +17,24 @@ class Device;
 struct Check {
   std::string name;  ///< "comparisons (fragment)"
   bool passed = false;
-  std::string detail;  ///< what was seen
+  std::string detail;  ///< the observed result
 };
 
 struct Probe {
-  /// Native where the device rounds every probed quotient and root correctly.
+  /// Native if the device rounds every probed quotient and root correctly.
   driver::Division division = driver::Division::exact;
   std::vector<Check> checks;
 
-  /// Whether images of the device are those of every other.
+  /// Whether images of the device have the bits of every other device.
   bool passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed; });
   }
 };
 
-/// Throws std::exception where Vulkan fails; nothing, with a diagnostic, where a shader does not compile.
+/// Throws std::exception if Vulkan fails; returns nothing, with a diagnostic, if a shader does not compile.
 std::optional<Probe> run_probe(Device& device, support::Diagnostics& diagnostics);
 
-/// Reports unproven-device with the checks that a probe did not pass.
+/// Reports unproven-device with the checks that failed.
 void report_unproven(const Probe& probe, const std::string& device, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::vulkan

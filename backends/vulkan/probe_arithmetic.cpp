@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "backends/vulkan/probe_arithmetic.h"
-
 #include "backends/vulkan/limits.h"
+#include "backends/vulkan/probe_parts.h"
 #include "compiler/emit/glsl.h"
 #include "compiler/support/assert.h"
 #include "runtime/lanes/scalar.h"

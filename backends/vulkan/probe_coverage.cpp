@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "backends/vulkan/probe_coverage.h"
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
 
 #include "backends/vulkan/limits.h"
-#include "backends/vulkan/probe_random.h"
+#include "backends/vulkan/probe_parts.h"
 #include "compiler/emit/glsl.h"
 #include "runtime/raster/clip.h"
 
@@ -37,7 +35,7 @@ int64_t doubled_area(const Corners& t) {
 /// One triangle of a cell, of one of several kinds that rasterisers find hard.
 class Shapes {
  public:
-  Corners make(const Rect& cell, int kind) {
+  Corners make(const Window& cell, int kind) {
     origin_ = {cell.x * subpixels, cell.y * subpixels};
     for (;;) {
       Corners corners = shape(kind);
@@ -149,7 +147,7 @@ CoverageScene coverage_scene(int length, bool along_y) {
   uint32_t triangles = 0;
   for (int y = 0; y + cell_size <= scene.height; y += cell_size) {
     for (int x = 0; x + cell_size <= scene.width; x += cell_size) {
-      const Rect area{x, y, cell_size, cell_size};
+      const Window area{x, y, cell_size, cell_size};
       const auto number = static_cast<int>(scene.cells.size());
       const uint32_t count = number % 3 == 2 ? 2 : 1;
       scene.cells.push_back({area, triangles, count});

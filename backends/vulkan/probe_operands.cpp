@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 
-#include "backends/vulkan/probe_arithmetic.h"
-#include "backends/vulkan/probe_random.h"
+#include "backends/vulkan/probe_parts.h"
 
 namespace isoshade::vulkan {
 

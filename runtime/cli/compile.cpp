@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "backends/cpu/lanes_headers.h"
+#include "backends/cpu/compiler.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/emit/spirv.h"

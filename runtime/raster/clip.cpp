@@ -15,10 +15,10 @@ namespace {
 constexpr int vertex_stride = lower::vertex_word::stride;
 constexpr uint32_t not_yet_stored = ~0u;
 constexpr float units = 256.0f;         // a pixel
-constexpr float farthest = 2097152.0f;  // 2^21: what a record holds, in units
-// The guard band in pixels. Before the first pixel it is narrower: lavapipe keeps edge functions of triangles
-// that end in the first 64 x 64 pixels to 39 bits, which some that begin beyond -2832 exceed. (Parts of a frame that
-// begin elsewhere have a margin for that, see backends/vulkan/limits.h.)
+constexpr float farthest = 2097152.0f;  // 2^21: the largest position in a record, in units
+// The guard band in pixels. It is narrower before the first pixel: lavapipe computes the edge functions of triangles
+// that end in the first 64 x 64 pixels with 39 bits, too few for some that begin beyond -2832. (Windows that begin
+// elsewhere have a margin for that, see backends/vulkan/limits.h.)
 constexpr float guard_before = max_before_image;
 constexpr float guard = 8190.0f;
 
@@ -26,22 +26,21 @@ struct Point {
   float x, y, z, w;
 };
 
-/// A vertex as records have it.
+/// A vertex as it stands in a record.
 struct Corner {
   int32_t x, y;
   int32_t depth, inverse_w;  ///< float bits
 };
 
-/// Bits of the planes that a vertex lies outside of.
+/// A bit for each plane that a vertex lies outside of.
 using Outside = uint8_t;
 enum Plane : Outside { near_plane = 1, right_plane = 2, left_plane = 4, bottom_plane = 8, top_plane = 16 };
 constexpr Plane planes[] = {near_plane, right_plane, left_plane, bottom_plane, top_plane};
-constexpr Outside unusable = 32;  ///< not finite, or too near to the eye to be divided
+constexpr Outside unusable = 32;  ///< not finite, or too near to the eye for the division
 
 bool finite(float x) { return (lanes::bits_nonnan(x) & lanes::exponent_bits) != lanes::exponent_bits; }
 
-/// In double, so that an end a million times farther away does not drown the other; equal values stay what
-/// they are.
+/// In double, so that a far end does not cancel a near one a million times smaller; equal values give that value.
 float mix(float a, float b, double t) { return static_cast<float>(a * (1.0 - t) + b * t); }
 
 /// To nearest, ties to even; |x| <= 2^21.
@@ -87,7 +86,7 @@ class Viewport {
 
   static bool divisible(const Point& p) { return p.w > 0.0f && finite(1.0f / p.w); }
 
-  /// Of a point inside all planes; otherwise some corner.
+  /// For a point inside all planes; otherwise the result has no meaning.
   Corner project(const Point& p) const {
     const float x = p.x / p.w * half_width_ + half_width_;
     const float y = half_height_ - p.y / p.w * half_height_;
@@ -99,7 +98,7 @@ class Viewport {
 
  private:
   static double beyond(float pixels, float half) { return static_cast<double>(pixels) / half; }
-  /// What clipping left a rounding too far out, and what is no number.
+  /// Limits positions that rounding left slightly outside, and NaN.
   static float limit(float x) {
     const float above = x > -farthest ? x : -farthest;
     return above < farthest ? above : farthest;
@@ -116,8 +115,8 @@ struct ClipVertex {
   std::array<float, vertex_stride> attributes;
 };
 
-/// A triangle cut by five planes has eight corners. Rounding can make an edge of it cross a plane twice,
-/// which at worst makes half as many more of them each time: 3, 4, 6, 9, 13, 19.
+/// A triangle cut by five planes has eight corners. Rounding can make one edge cross a plane twice; in the worst case
+/// each plane then adds half as many corners: 3, 4, 6, 9, 13, 19.
 constexpr int most_corners = 19;
 
 struct Polygon {
@@ -126,8 +125,8 @@ struct Polygon {
   void add(const ClipVertex& vertex) { vertices[count++] = vertex; }
 };
 
-/// Where the edge from `in` to `out` meets the plane. Always called in that direction, so that both triangles
-/// of an edge round alike.
+/// Where the edge from `in` to `out` meets the plane. Always called in that direction, so that both triangles at an
+/// edge get the same vertex.
 ClipVertex cut(Plane plane, const ClipVertex& in, double in_distance, const ClipVertex& out,
                double out_distance) {
   const double t = in_distance / (in_distance - out_distance);
@@ -135,7 +134,7 @@ ClipVertex cut(Plane plane, const ClipVertex& in, double in_distance, const Clip
   result.index = not_yet_stored;
   result.point = {mix(in.point.x, out.point.x, t), mix(in.point.y, out.point.y, t),
                   mix(in.point.z, out.point.z, t), mix(in.point.w, out.point.w, t)};
-  // On the near plane z = w to the bit: depth is 1 there. Whichever is constant along the edge knows best.
+  // On the near plane z equals w exactly, because depth is 1 there. The one that is constant along the edge is exact.
   if (plane == near_plane) {
     if (in.point.w == out.point.w)
       result.point.z = result.point.w;

@@ -16,8 +16,8 @@ struct Position {
   int x, y;
 };
 
-/// Whether the pixel centre lies to the inner side of the edge. Of two triangles that share an edge, the
-/// centres on it belong to the one whose left or top edge it is.
+/// Whether the pixel centre lies on the inner side of the edge. A centre on an edge belongs to the triangle whose left
+/// or top edge it is.
 bool inside(Position from, Position to, Position centre) {
   const int64_t dx = to.x - from.x;
   const int64_t dy = to.y - from.y;

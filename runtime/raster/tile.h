@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visibility of one tile of the image: for each pixel the nearest triangle and its depth.
+// Visibility in one tile of an image: for each pixel the nearest triangle and its depth.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ inline constexpr int tile_size = 64;  ///< pixels each way
 inline constexpr int block_size = 8;
 inline constexpr int tile_pixels = tile_size * tile_size;
 
-/// Stored block by block, so that neighbours in the image are neighbours in memory: blocks of 8x8 pixels row
-/// by row, pixels of a block row by row.
+/// Stored in blocks of 8x8 pixels, so that neighbours in the image are neighbours in memory: the blocks row by row, and
+/// the pixels of a block row by row.
 struct Tile {
   alignas(64) int32_t triangles[tile_pixels];  ///< indices of the triangles, -1 where there is none
   alignas(64) float depth[tile_pixels];        ///< 0 where there is none
@@ -28,12 +28,12 @@ constexpr int tile_index(int x, int y) {
          x % block_size;
 }
 
-/// Draws those of the triangles (records of lower/frame_layout.h) that `which` names, in this order, into the
-/// tile whose first pixel is (x, y). A pixel keeps the triangle with the greatest depth above 0, of equal
-/// ones the first drawn; but a triangle that is drawn over others (triangle_flag::over) takes every pixel it covers. Needs an FpGuard on the thread.
+/// Draws the triangles (records of lower/frame_layout.h) whose indices are in `which`, in this order, into the tile
+/// whose first pixel is (x, y). A pixel keeps the triangle with the greatest depth above 0 (of equal ones the first
+/// drawn); a triangle with triangle_flag::over takes every pixel that it covers. The caller holds an FpGuard.
 void rasterize_tile(const int32_t* triangles, std::span<const int32_t> which, int x, int y, Tile& tile);
 
-/// How many lanes `rasterize_tile` uses on this machine: 4, 8 or 16.
+/// The number of lanes that `rasterize_tile` uses on this machine: 4, 8 or 16.
 int rasterizer_lanes();
 
 namespace detail {

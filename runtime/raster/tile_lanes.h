@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rasteriser of a tile, for W lanes. Included by one file for each instruction set, and calling nothing
-// that is not inlined or a template over W: the linker must not share code between instruction sets.
+// The rasteriser of a tile, for W lanes. One file for each instruction set includes it. It calls only functions that
+// are inlined or templates over W, because the linker must not share code between instruction sets.
 #pragma once
 
 #include "compiler/functions/interpolation.h"
@@ -17,10 +17,10 @@ class TileRasterizer {
 
   static constexpr int blocks = tile_size / block_size;
   static constexpr int block_pixels = block_size * block_size;
-  // A register holds pixels that follow each other in a block: two rows of it, one, or half of one.
+  // A register holds consecutive pixels of a block: two rows of it, one row, or half a row.
   static constexpr int rows = W > block_size ? W / block_size : 1;
   static constexpr int columns = W < block_size ? W : block_size;
-  // An edge function that is this far inside is so all over the block: steps are below 2^23.
+  // Where an edge function is this large, the whole block is inside: steps are below 2^23.
   static constexpr int64_t far_inside = 1 << 30;
 
  public:
@@ -55,7 +55,7 @@ class TileRasterizer {
   }
 
  private:
-  /// Rows [begin, end) of the block whose first pixel is (x, y) in the image and `storage` in the tile.
+  /// Draws rows [begin, end) of the block whose first pixel is (x, y) in the image and `storage` in the tile.
   ISOSHADE_INLINE void block(int x, int y, int begin, int end, int storage) {
     int at_block[3];
     for (int k = 0; k < 3; ++k) {
@@ -81,7 +81,7 @@ class TileRasterizer {
     return Int(at_block[k] + edges_[k].step_x * column + edges_[k].step_y * row);
   }
 
-  /// The depth test of the lanes that are covered.
+  /// The depth test for the covered lanes.
   ISOSHADE_INLINE void test(Bool covered, int x, int y, int storage) {
     const Int px = shift_left(column_ + Int(x), 8) + Int(128);
     const Int py = shift_left(row_ + Int(y), 8) + Int(128);

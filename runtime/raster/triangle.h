@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading the triangle records of lower/frame_layout.h, and the pixel grid that they lie on.
+// Reads the triangle records of lower/frame_layout.h; their pixel grid.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace isoshade::raster {
 
-/// One record. Always inlined, for it is read by code for several instruction sets.
+/// One record. Always inlined, because code for several instruction sets reads it.
 struct Triangle {
   const int32_t* words;
 
@@ -43,8 +43,7 @@ ISOSHADE_INLINE T greatest(T a, T b) {
   return a < b ? b : a;
 }
 
-/// The pixels whose centres lie within a triangle's bounds, ends included; empty if an end lies before its
-/// beginning.
+/// A rectangle of pixels, both ends included; empty if an end lies before its beginning.
 struct Box {
   int x0, y0, x1, y1;
   ISOSHADE_INLINE bool empty() const { return x1 < x0 || y1 < y0; }
@@ -53,7 +52,7 @@ struct Box {
   }
 };
 
-/// The pixels of a part of an image.
+/// The pixels of a window.
 ISOSHADE_INLINE Box box_at(int x, int y, int width, int height) {
   return {x, y, x + width - 1, y + height - 1};
 }
@@ -69,9 +68,9 @@ ISOSHADE_INLINE Box bounds(Triangle t) {
                          greatest(greatest(t.y(0), t.y(1)), t.y(2)));
 }
 
-/// The edge function of vertices `from` and `to` at pixel centre (x, y) as step_x * x + step_y * y +
-/// at_origin, divided by 256 and rounded down; every pixel step is a multiple of 256, so nothing is lost. Not
-/// negative where the pixel is on the inner side of the edge, or on an edge that is a top or a left one.
+/// The edge function of vertices `from` and `to` at pixel centre (x, y) is step_x * x + step_y * y + at_origin, divided
+/// by 256 and rounded down; every pixel step is a multiple of 256, so the division is exact. It is not negative where
+/// the pixel is on the inner side of the edge, or on the edge if that is a top or a left one.
 struct Edge {
   int64_t at_origin;
   int step_x, step_y;
@@ -86,7 +85,7 @@ ISOSHADE_INLINE Edge edge_between(Triangle t, int from, int to) {
   return {(exact - (top_or_left ? 0 : 1)) >> 8, -dy, dx};
 }
 
-/// The three edges of a triangle, to find out which parts of an image it misses.
+/// The three edges of a triangle, to decide which boxes it misses.
 struct Edges {
   Edge all[3];
 

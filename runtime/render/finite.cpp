@@ -32,7 +32,8 @@ constexpr std::string_view way_out = "`isoshade check` finds the operation that 
 
 /// "3 of 64 pixels are infinite or NaN"
 std::string count_of(const NonFinite& found, const Plan& plan) {
-  const int64_t pixels = int64_t{plan.frame.width} * plan.frame.height / plan.samples;
+  const backends::Target& target = plan.frame.picture().target;
+  const int64_t pixels = int64_t{target.width} * target.height / plan.samples;
   return fmt::format("{} of {} pixels {} infinite or NaN", found.count, pixels, found.count == 1 ? "is" : "are");
 }
 
@@ -42,14 +43,13 @@ support::Diagnostic& warn_drawn(const scene::Scene& scene, const Plan& plan, con
   const std::string found = count_of(drawn, plan) + fmt::format("; the first, at ({}, {}), ", drawn.x, drawn.y);
   // Finite samples may be so large that their mean is not.
   if (report.object < 0) return diagnostics.report(Id::not_finite, found + "is the mean of finite samples");
-  const std::vector<backends::Draw>& draws = plan.frame.draws;
-  const auto draw = std::ranges::lower_bound(draws, report.object, {}, &backends::Draw::object);
-  support::assert_that(draw != draws.end() && draw->object == report.object, "a triangle is of no draw");
-  const DrawOrigin& origin = plan.origins[static_cast<size_t>(draw - draws.begin())];
-  const scene::Object& object = scene.objects[origin.object];
+  const auto origin = std::ranges::lower_bound(plan.origins, report.object, {}, &RecordOrigin::record);
+  support::assert_that(origin != plan.origins.end() && origin->record == report.object,
+                       "a record of no object");
+  const scene::Object& object = scene.objects[origin->object];
   return diagnostics
       .report(Id::not_finite, object.name_where,
-              found + "shows object " + quote(object.name) + ", pass " + quote(origin.pass->name) + " of " +
+              found + "shows object " + quote(object.name) + ", pass " + quote(origin->pass->name) + " of " +
                   quote(object.effect))
       .suggest(std::string(way_out));
 }

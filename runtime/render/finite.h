@@ -22,7 +22,7 @@ struct NonFinite {
 /// `rgba`: 4 floats a pixel, `width` pixels a row.
 NonFinite find_non_finite(std::span<const float> rgba, int width);
 
-/// Where the pixels come from that are not finite.
+/// Where the pixels that are not finite come from.
 struct NonFiniteReport {
   NonFinite drawn;   ///< before the posts
   int object = -1;   ///< the first word of the record of the object that the first of `drawn` shows; -1: unknown
@@ -36,10 +36,10 @@ struct NonFiniteReport {
   bool none() const { return drawn.count == 0 && posts.empty() && result.count == 0; }
 };
 
-/// The first word of the record of the object that is seen at a sample of the frame; -1 where none is.
+/// The first word of the record of the object that a sample shows; -1 if it shows none.
 int object_at(std::span<const int32_t> triangles, int x, int y);
 
-/// Warns of what is not finite, at the object or post that made it. `plan`: the frame of `scene`.
+/// Warns of pixels that are not finite, at the object or post that made them. `plan`: the plan of `scene`.
 void warn_non_finite(const scene::Scene& scene, const Plan& plan, const NonFiniteReport& report,
                      support::Diagnostics& diagnostics);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/render/plan.h"
 
+#include <algorithm>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "compiler/ir/printer.h"
@@ -63,22 +65,32 @@ class Planner {
   bool resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
                      const FindTexture& find_texture);
   void place_object(size_t o);
-  /// One copy of an object and where it stands.
+  /// Adds a view. The camera and the size of a pixel are those of an image of this size.
+  void add_view(const scene::Camera& camera, int width, int height, backends::Target target);
+  /// One copy of an object in one view.
+  struct Appearance {
+    glm::mat4 projected;
+    bool outside;     ///< of the view: passes that do not move vertices draw nothing
+    int matrix = -1;  ///< the first word of `projected` in View::words, once a draw needs it
+  };
+  /// One copy of an object.
   struct Copy {
     Instance instance;
     ObjectTransforms place;
-    bool outside;  ///< of the view: passes that leave vertices in their place draw nothing
+    std::span<Appearance> views;  ///< one for each view
   };
   void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
-  /// The draw is the frame's until the next one is placed.
-  backends::Draw& place_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
-                             const std::vector<float>& parameters);
+  /// Appends the record of a draw.
+  backends::Draw make_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
+                           const std::vector<float>& parameters);
+  /// Adds the draw to a view.
+  void place_draw(backends::Draw draw, Appearance& appearance, backends::View& view);
 
   const Scene& scene_;
   const PlanOptions& options_;
   Diagnostics& diagnostics_;
   Plan plan_;
-  scene::View view_;
+  std::vector<scene::View> cameras_;  ///< of each view of the frame
   std::vector<size_t> effect_of_object_;
   std::vector<std::vector<PassPrograms>> programs_of_effect_;
   std::map<std::string, uint32_t> program_by_text_;
@@ -108,7 +120,7 @@ bool Planner::compile_effects() {
     plan_.effects.push_back(effect ? *std::move(effect) : driver::Effect{});
   }
   if (!good) return false;
-  // Only now, when no effect moves any more.
+  // Only now, because the effects no longer move.
   for (const driver::Effect& effect : plan_.effects) {
     std::vector<PassPrograms>& programs = programs_of_effect_.emplace_back();
     for (const driver::EffectPass& pass : effect.passes)
@@ -117,7 +129,7 @@ bool Planner::compile_effects() {
   return true;
 }
 
-/// Whether the text at `where` may name the file; what the user names stands nowhere, or in an argument.
+/// Whether the text at `where` may name the file. Files that the user names have no `where`, or one in an argument.
 bool Planner::may_read(const std::string& path, const support::Span& where) {
   const check::Library* library = options_.compiler.library;
   return library == nullptr || graph::may_read(path, where, library->files(), diagnostics_);
@@ -144,12 +156,12 @@ bool Planner::compile_posts() {
     good = good && compiled.has_value();
     plan_.post_documents.push_back(compiled ? *std::move(compiled) : driver::Post{});
   }
-  // Only now, when no document moves any more.
+  // Only now, because the documents no longer move.
   for (const size_t document : document_of_post) posts_.push_back(&plan_.post_documents[document]);
   return good;
 }
 
-/// Programs that do the same are run as one: the vertex programs of most effects are.
+/// Equal programs share an index: most effects have the same vertex program.
 uint32_t Planner::add_program(const driver::Program& program) {
   std::string text = std::to_string(static_cast<int>(program.stage)) + "\n" + std::to_string(program.entry) +
                      "\n" + ir::print(program.module);
@@ -174,7 +186,7 @@ void Planner::note_largest_mesh(const Object& object, const StoredMesh& mesh) {
       "the mesh of " + quote(object.name) + ": " + std::to_string(count) + " vertices", object.mesh_where};
 }
 
-/// What the next object and the materials of its mesh give to the effect.
+/// Resolves the parameters of the next object for each part of its mesh.
 bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
                             const FindTexture& find_texture) {
   std::vector<ParameterValues>& parameters = parameters_.emplace_back();
@@ -188,8 +200,7 @@ bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, 
   return true;
 }
 
-/// The mesh and the parameters of each object, one after the other, so that no more is made than fits the
-/// limits.
+/// Makes the mesh and the parameters of one object after the other, and stops when a limit is exceeded.
 bool Planner::make_objects() {
   struct Count {
     std::string_view what;
@@ -203,14 +214,14 @@ bool Planner::make_objects() {
   bool good = true;
   const FindTexture find_texture = [&](const ImageSource& source,
                                        const lower::ImageSlot& slot) -> std::optional<int> {
-    // What has no file of its own was read with that which has it.
+    // An image inside another file was read with that file.
     if (!good || (source.bytes == nullptr && !may_read(source.path, source.where))) return std::nullopt;
     return textures_.find(source, slot.decoding, slot.mips, diagnostics_);
   };
   for (size_t o = 0; o < scene_.objects.size(); ++o) {
     const Object& object = scene_.objects[o];
     const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
-    // After an error the rest is read for further ones, but nothing more is made.
+    // After an error the rest is only checked for further errors.
     const auto number = good ? find_mesh(object) : std::nullopt;
     const StoredMesh& mesh = number ? plan_.meshes[*number] : no_mesh;
     const bool resolved = resolve_parts(object, effect, mesh, find_texture);
@@ -241,7 +252,7 @@ bool Planner::make_objects() {
   return good;
 }
 
-/// One pass after the other, each over all parts.
+/// Places one pass after the other, each over all parts.
 void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped) {
   const Object& object = scene_.objects[o];
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
@@ -253,7 +264,8 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
   for (size_t p = 0; p < effect.passes.size(); ++p) {
     const driver::EffectPass& pass = effect.passes[p];
-    const bool unseen = copy.outside && !pass.moves_vertices;
+    const auto may_see = [&](const Appearance& view) { return !view.outside || pass.moves_vertices; };
+    const bool unseen = std::ranges::none_of(copy.views, may_see);
     bool left_out = false;
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
       if (effect.parameters.is_off(pass.enabled, parameters[part])) {
@@ -261,31 +273,39 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
       } else if (unseen) {
         left_out = true;
       } else {
-        backends::Draw& draw = place_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p],
-                                          mesh.parts[part], parameters[part]);
+        backends::Draw draw = make_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p],
+                                        mesh.parts[part], parameters[part]);
         draw.state = mirrored ? pass.state.mirrored() : pass.state;
-        plan_.origins.push_back({static_cast<uint32_t>(o), &pass});
+        plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
+        for (size_t v = 0; v < copy.views.size(); ++v)
+          if (may_see(copy.views[v])) place_draw(draw, copy.views[v], plan_.frame.views[v]);
       }
     }
     if (left_out) ++skipped[p].unseen;
   }
 }
 
-backends::Draw& Planner::place_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
-                                    const std::vector<float>& parameters) {
+backends::Draw Planner::make_draw(const ObjectTransforms& place, const PassPrograms& programs,
+                                  const MeshPart& part, const std::vector<float>& parameters) {
   const size_t first = plan_.frame.objects.size();
   append_object(place, programs.pixel, parameters, plan_.frame.objects);
   backends::Draw draw;
   draw.vertex_program = programs.vertex;
   draw.pixel_program = programs.pixel;
   draw.object = static_cast<int>(first);
-  draw.projected = append_matrix(place.projected, plan_.frame.view);
   draw.first_vertex = part.first_vertex;
   draw.vertex_count = part.vertex_count;
   draw.indices = part.indices;
+  return draw;
+}
+
+void Planner::place_draw(backends::Draw draw, Appearance& appearance, backends::View& view) {
+  if (appearance.matrix < 0) appearance.matrix = append_matrix(appearance.projected, view.words);
+  draw.projected = appearance.matrix;
+  view.draws.push_back(draw);
+  ++plan_.stats.draws;
   plan_.stats.vertices += draw.vertex_count;
-  plan_.stats.triangles += static_cast<int64_t>(part.indices.size() / 3);
-  return plan_.frame.draws.emplace_back(draw);
+  plan_.stats.triangles += static_cast<int64_t>(draw.indices.size() / 3);
 }
 
 void Planner::place_object(size_t o) {
@@ -294,15 +314,27 @@ void Planner::place_object(size_t o) {
   const int64_t count = scene::instance_count(object);
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   std::vector<PassSkips> skipped(effect.passes.size());
+  std::vector<Appearance> views(cameras_.size());
   for (int64_t i = 0; i < count; ++i) {
     const Instance instance = scene::instance(object, i);
-    const ObjectTransforms place = place_of(object, instance, view_);
-    const bool outside = options_.skip && outside_view(mesh.low, mesh.high, place.projected,
-                                                       plan_.frame.width, plan_.frame.height);
-    place_copy(o, {instance, place, outside}, skipped);
+    const ObjectTransforms place = place_of(object, instance);
+    for (size_t v = 0; v < views.size(); ++v) {
+      const backends::Target& target = plan_.frame.views[v].target;
+      const glm::mat4 projected = scene::multiply(cameras_[v].projection, place.model);
+      views[v] = {projected,
+                  options_.skip && outside_view(mesh.low, mesh.high, projected, target.width, target.height)};
+    }
+    place_copy(o, {instance, place, views}, skipped);
   }
   plan_.stats.copies += count;
   report_skips(object, effect, static_cast<int64_t>(mesh.parts.size()), skipped, plan_.stats.skips);
+}
+
+void Planner::add_view(const scene::Camera& camera, int width, int height, backends::Target target) {
+  cameras_.push_back(scene::make_view(camera, width, height));
+  backends::View& view = plan_.frame.views.emplace_back();
+  view.target = std::move(target);
+  view.words = view_words(camera, cameras_.back(), width, height);
 }
 
 std::optional<Plan> Planner::plan() {
@@ -319,20 +351,17 @@ std::optional<Plan> Planner::plan() {
 
   backends::Frame& frame = plan_.frame;
   plan_.samples = scene_.samples;
-  frame.width = width * samples_each_way(scene_.samples);
-  frame.height = height * samples_each_way(scene_.samples);
+  const int side = samples_each_way(scene_.samples);
   {
     const lanes::FpGuard guard;
-    // The camera and the size of a pixel are those of the image.
-    view_ = scene::make_view(scene_.camera, width, height);
     frame.frame = frame_words(scene_);
-    frame.view = view_words(scene_.camera, view_, width, height);
+    add_view(scene_.camera, width, height, {"the picture", side * width, side * height});
+    for (size_t i = 0; i < 4; ++i) frame.views.back().background[i] = scene::canonical(scene_.background[i]);
     for (const scene::Light& light : scene_.lights) {
       const auto record = scene::light_record(light);
       frame.lights.insert(frame.lights.end(), record.begin(), record.end());
     }
     for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
-    for (size_t i = 0; i < 4; ++i) frame.background[i] = scene::canonical(scene_.background[i]);
     auto posts = plan_posts(scene_, posts_, width, height, options_.skip, plan_.stats.skips, diagnostics_);
     if (!posts) return std::nullopt;
     plan_.posts = *std::move(posts);
@@ -340,7 +369,6 @@ std::optional<Plan> Planner::plan() {
   frame.light_count = static_cast<int>(scene_.lights.size());
 
   PlanStats& stats = plan_.stats;
-  stats.draws = static_cast<int64_t>(frame.draws.size());
   stats.meshes = static_cast<int64_t>(plan_.meshes.size());
   stats.mesh_vertices = static_cast<int64_t>(frame.vertices.size()) / lower::vertex_word::stride;
   stats.effects = static_cast<int64_t>(plan_.effects.size());

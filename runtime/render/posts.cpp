@@ -10,6 +10,7 @@
 #include "compiler/support/release.h"
 #include "compiler/support/visible.h"
 #include "runtime/render/parameters.h"
+#include "runtime/render/records.h"
 
 namespace isoshade::render {
 namespace {
@@ -225,38 +226,27 @@ void note_non_finite(const PostStep& step, const std::vector<Layer>& layers, Lay
   if (!made.finite && read_finite) report.posts.push_back({step.post_number, report.result});
 }
 
-/// The arrays that a step reads.
-struct Arrays {
-  std::vector<float> images;
-  std::vector<int32_t> records;
-
-  Arrays(const PostStep& step, const std::vector<Layer>& layers, const backends::Image& image) {
-    namespace word = lower::image_word;
-    records.resize(word::stride * (word::color + step.sources.size()));
-    const auto describe = [&](size_t record, size_t first, int width, int height) {
-      int32_t* const to = &records[record * word::stride];
-      to[word::first] = static_cast<int32_t>(first);
-      to[word::width] = width;
-      to[word::height] = height;
-      to[word::camera] = -1;
-    };
-    describe(word::made, 0, step.width, step.height);
-    describe(word::depth, 0, image.width, image.height);
-    if (step.post->reads_depth) images = image.depth;
-    for (size_t i = 0; i < step.sources.size(); ++i) {
-      if (step.sources[i] == PostStep::not_read) continue;
-      const Layer& layer = layers[static_cast<size_t>(step.sources[i])];
-      // One that is read under two names is there once.
-      const auto same =
-          std::find(step.sources.begin(), step.sources.begin() + static_cast<ptrdiff_t>(i), step.sources[i]);
-      const auto earlier = static_cast<size_t>(same - step.sources.begin());
-      const size_t first =
-          earlier < i ? static_cast<size_t>(records[(word::color + earlier) * word::stride]) : images.size();
-      describe(word::color + i, first, layer.width, layer.height);
-      if (earlier == i) images.insert(images.end(), layer.rgba.begin(), layer.rgba.end());
+/// The images that a step reads.
+Layers layers_of(const PostStep& step, const std::vector<Layer>& images, const backends::Image& image) {
+  Layers layers(step.width, step.height);
+  if (step.post->reads_depth)
+    layers.add(image.depth, image.width, image.height);
+  else
+    layers.add_unread(image.width, image.height);
+  for (size_t i = 0; i < step.sources.size(); ++i) {
+    const int source = step.sources[i];
+    const auto same = static_cast<size_t>(std::ranges::find(step.sources, source) - step.sources.begin());
+    if (source == PostStep::not_read) {
+      layers.add_unread();
+    } else if (same < i) {
+      layers.add_again(lower::image_record::color + same);
+    } else {
+      const Layer& read = images[static_cast<size_t>(source)];
+      layers.add(read.rgba, read.width, read.height);
     }
   }
-};
+  return layers;
+}
 
 }  // namespace
 
@@ -280,9 +270,16 @@ bool run_posts(const PostChain& chain, const backends::Frame& frame, backends::B
     made.height = step.height;
     stats.kept_images = std::max(stats.kept_images, ++kept);
     {
-      const Arrays arrays(step, layers, image);
-      const backends::ScreenPass pass{&step.post->program, step.width,  step.height,   frame.frame,
-                                      frame.view,          step.record, arrays.images, arrays.records};
+      const Layers arrays = layers_of(step, layers, image);
+      const backends::ScreenPass pass{
+          .program = &step.post->program,
+          .width = step.width,
+          .height = step.height,
+          .frame = frame.frame,
+          .view = std::span(frame.picture().words).first(lower::view_word::camera_words),
+          .record = step.record,
+          .layers = arrays.floats,
+          .layer_records = arrays.records};
       if (!backend.post(pass, made.rgba, diagnostics)) return false;
     }
     note_non_finite(step, layers, made, stats.non_finite);

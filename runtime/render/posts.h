@@ -47,7 +47,7 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
                                     const std::vector<const driver::Post*>& documents, int width, int height,
                                     bool skip, std::vector<Skip>& skips, support::Diagnostics& diagnostics);
 
-/// Runs the chain over an image of this view of the frame. Depth stays as it is.
+/// Runs the chain over the frame's picture. Depth stays as it is.
 bool run_posts(const PostChain& chain, const backends::Frame& frame, backends::Backend& backend,
                backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
 

@@ -16,10 +16,9 @@ void store_rows(const Matrix& matrix, int rows, float* words) {
 
 }  // namespace
 
-ObjectTransforms place_of(const scene::Object& object, const scene::Instance& instance, const scene::View& view) {
+ObjectTransforms place_of(const scene::Object& object, const scene::Instance& instance) {
   const glm::mat4 model = scene::model_matrix(object, instance);
-  return {model, scene::affine_inverse(model), scene::multiply(view.projection, model),
-          scene::normal_matrix(model)};
+  return {model, scene::affine_inverse(model), scene::normal_matrix(model)};
 }
 
 void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::span<const float> parameters,
@@ -59,6 +58,43 @@ int append_matrix(const glm::mat4& projected, std::vector<float>& view) {
   view.resize(first + lower::view_word::matrix);
   store_rows(projected, 4, &view[first]);
   return static_cast<int>(first);
+}
+
+Layers::Layers(int width, int height) { add_unread(width, height); }
+
+void Layers::add_record(size_t first, int width, int height, int camera) {
+  namespace word = lower::image_word;
+  const size_t begin = records.size();
+  records.resize(begin + word::stride);
+  int32_t* const record = &records[begin];
+  record[word::first] = static_cast<int32_t>(first);
+  record[word::width] = width;
+  record[word::height] = height;
+  record[word::camera] = camera;
+}
+
+void Layers::add(std::span<const float> pixels, int width, int height, int camera) {
+  add_record(floats.size(), width, height, camera);
+  floats.insert(floats.end(), pixels.begin(), pixels.end());
+}
+
+void Layers::add_again(size_t record) {
+  namespace word = lower::image_word;
+  const int32_t* const there = &records[record * word::stride];
+  add_record(static_cast<size_t>(there[word::first]), there[word::width], there[word::height],
+             there[word::camera]);
+}
+
+void Layers::add_unread(int width, int height) { add_record(0, width, height, no_camera); }
+
+void Layers::add_target(const backends::View& view, const backends::Image& drawn) {
+  const auto camera = static_cast<int>(floats.size());
+  floats.insert(floats.end(), view.words.begin(), view.words.begin() + lower::view_word::camera_words);
+  add(drawn.depth, drawn.width, drawn.height, camera);
+  if (view.target.has_color)
+    add(drawn.rgba, drawn.width, drawn.height, camera);
+  else
+    add_unread();
 }
 
 }  // namespace isoshade::render

@@ -10,66 +10,139 @@
 #include "compiler/support/release.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
+#include "runtime/render/records.h"
 #include "runtime/render/samples.h"
 
 namespace isoshade::render {
 namespace {
 
-/// What the images of a frame take at the least: those that are drawn and the ones that posts keep, beside the arrays
-/// that a post reads. The drawing itself takes more, which only the backend knows.
+/// The least memory that the images of a frame take: the targets, and the images that posts keep, beside the arrays
+/// that a post reads. Drawing takes more, which only the backend knows.
 uint64_t image_bytes(const Plan& plan) {
   constexpr uint64_t color = 4 * sizeof(float), depth = sizeof(float);
-  const auto each_way = static_cast<uint64_t>(samples_each_way(plan.samples));
-  const uint64_t pixels = static_cast<uint64_t>(plan.frame.width) * static_cast<uint64_t>(plan.frame.height) /
-                          (each_way * each_way);
+  const auto pixels = [](int width, int height) {
+    return static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+  };
+  uint64_t sum = 0;
+  for (const backends::View& view : plan.frame.views) {
+    const bool is_picture = &view == &plan.frame.picture();
+    const int side = is_picture ? samples_each_way(plan.samples) : 1;
+    sum += pixels(view.target.width / side, view.target.height / side) *
+           (view.target.has_color ? color + depth : depth);
+    if (is_picture && !plan.posts.steps.empty())
+      sum += pixels(view.target.width / side, view.target.height / side) * color;
+  }
   uint64_t of_posts = 0;
   for (const PostStep& step : plan.posts.steps)
-    of_posts =
-        std::max(of_posts, static_cast<uint64_t>(step.width) * static_cast<uint64_t>(step.height) * color);
-  return pixels * (color + depth) + (plan.posts.steps.empty() ? 0 : of_posts + pixels * color);
+    of_posts = std::max(of_posts, pixels(step.width, step.height) * color);
+  return sum + of_posts;
 }
+
+/// Draws a plan with one backend.
+class FrameRenderer {
+ public:
+  FrameRenderer(const Plan& plan, backends::Backend& backend, DrawStats& stats,
+                support::Diagnostics& diagnostics)
+      : plan_(plan),
+        frame_(plan.frame),
+        backend_(backend),
+        stats_(stats),
+        diagnostics_(diagnostics),
+        built_(backend.build_seconds()),
+        targets_(plan.frame.views.size()) {}
+
+  bool run(backends::Image& image) {
+    for (size_t v = 0; v < frame_.views.size(); ++v) {
+      if (!draw_view(v, v + 1 == frame_.views.size() ? image : targets_[v])) return false;
+      release_unread(v);
+    }
+    if (!run_posts(plan_.posts, frame_, backend_, image, stats_, diagnostics_)) return false;
+    stats_.post_seconds = lap();
+    return true;
+  }
+
+ private:
+  /// Seconds since the last call, without those that the backend built programs.
+  double lap() {
+    const double before = std::exchange(built_, backend_.build_seconds());
+    stats_.build_seconds += built_ - before;
+    return clock_.lap() - (built_ - before);
+  }
+
+  /// Runs the vertex programs of the view and makes triangles of their positions.
+  bool make_triangles(const backends::ViewPass& pass) {
+    std::vector<std::vector<float>> clip;
+    if (!backend_.transform(pass, clip, diagnostics_)) return false;
+    const std::vector<backends::Draw>& draws = pass.view.draws;
+    support::assert_that(clip.size() == draws.size(), "a backend transformed another number of draws");
+    stats_.transform_seconds += lap();
+    vertices_ = frame_.vertices;
+    triangles_.clear();
+    for (size_t d = 0; d < draws.size(); ++d) {
+      const backends::Draw& draw = draws[d];
+      support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
+      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object},
+                            pass.view.target.width, pass.view.target.height, vertices_, triangles_);
+      support::release(clip[d]);
+    }
+    stats_.triangles += static_cast<int64_t>(triangles_.size()) / lower::triangle_word::stride;
+    stats_.made_vertices +=
+        static_cast<int64_t>(vertices_.size() - frame_.vertices.size()) / lower::vertex_word::stride;
+    stats_.clip_seconds += lap();
+    return true;
+  }
+
+  bool draw_view(size_t v, backends::Image& image) {
+    const backends::View& view = frame_.views[v];
+    Layers layers(view.target.width, view.target.height);
+    for (const size_t read : view.reads) {
+      support::assert_that(read < v, "a view reads a target that is not drawn yet");
+      layers.add_target(frame_.views[read], targets_[read]);
+    }
+    const backends::ViewPass pass{frame_, view, layers.floats, layers.records};
+    if (!make_triangles(pass)) return false;
+    const int samples = v + 1 == frame_.views.size() ? plan_.samples : 1;
+    if (!draw(pass, samples, vertices_, triangles_, backend_, image, stats_, diagnostics_)) return false;
+    stats_.draw_seconds += lap();
+    return true;
+  }
+
+  /// Frees the targets that no view after `v` reads.
+  void release_unread(size_t v) {
+    for (size_t drawn = 0; drawn <= v; ++drawn) {
+      const auto reads_it = [&](const backends::View& view) {
+        return std::ranges::find(view.reads, drawn) != view.reads.end();
+      };
+      if (std::any_of(frame_.views.begin() + static_cast<ptrdiff_t>(v) + 1, frame_.views.end(), reads_it))
+        continue;
+      support::release(targets_[drawn].rgba);
+      support::release(targets_[drawn].depth);
+    }
+  }
+
+  const Plan& plan_;
+  const backends::Frame& frame_;
+  backends::Backend& backend_;
+  DrawStats& stats_;
+  support::Diagnostics& diagnostics_;
+  Clock clock_;
+  double built_;  ///< Backend::build_seconds() at the last lap
+  std::vector<backends::Image>
+      targets_;                  ///< of each view but the last, from when it is drawn until it was last read
+  std::vector<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
+  std::vector<int32_t> triangles_;
+};
 
 }  // namespace
 
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics) {
-  const backends::Frame& frame = plan.frame;
   if (!support::check_memory(image_bytes(plan), "the image", "choose a smaller --size, or fewer posts",
                              diagnostics))
     return false;
-  Clock clock;
-  double built = backend.build_seconds();
-  stats.build_seconds = 0;
-  const auto lap = [&] {
-    const double before = std::exchange(built, backend.build_seconds());
-    stats.build_seconds += built - before;
-    return clock.lap() - (built - before);
-  };
-  std::vector<std::vector<float>> clip;
-  if (!backend.transform(frame, clip, diagnostics)) return false;
-  support::assert_that(clip.size() == frame.draws.size(), "a backend transformed another number of draws");
-  stats.transform_seconds = lap();
-
-  std::vector<float> vertices = frame.vertices;
-  std::vector<int32_t> triangles;
-  for (size_t d = 0; d < frame.draws.size(); ++d) {
-    const backends::Draw& draw = frame.draws[d];
-    support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
-    raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object},
-                          frame.width, frame.height, vertices, triangles);
-    support::release(clip[d]);
-  }
-  stats.triangles = static_cast<int64_t>(triangles.size()) / lower::triangle_word::stride;
-  stats.made_vertices =
-      static_cast<int64_t>(vertices.size() - frame.vertices.size()) / lower::vertex_word::stride;
-  stats.clip_seconds = lap();
-
+  stats = {};
   stats.samples = plan.samples;
-  if (!draw(frame, plan.samples, vertices, triangles, backend, image, stats, diagnostics)) return false;
-  stats.draw_seconds = lap();
-  if (!run_posts(plan.posts, frame, backend, image, stats, diagnostics)) return false;
-  stats.post_seconds = lap();
-  return true;
+  return FrameRenderer(plan, backend, stats, diagnostics).run(image);
 }
 
 }  // namespace isoshade::render

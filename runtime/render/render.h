@@ -6,8 +6,9 @@
 
 namespace isoshade::render {
 
-/// The vertex stage, clipping and snapping, then drawing. Whatever the backend, the same steps on the same
-/// numbers. Reports what goes wrong on the device.
+/// Draws the views in their order (vertex programs, clipping and snapping, pixel programs), then runs the posts over
+/// the picture, which `image` receives. Every backend takes the same steps on the same numbers. Reports errors of the
+/// device.
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics);
 

@@ -6,6 +6,7 @@
 
 #include "compiler/functions/resolve.h"
 #include "compiler/lower/frame_layout.h"
+#include "compiler/support/assert.h"
 #include "runtime/raster/clip.h"
 #include "runtime/raster/triangle.h"
 
@@ -15,7 +16,7 @@ namespace {
 using backends::Image;
 using backends::Window;
 
-/// Those triangles that may cover a sample of the window.
+/// The triangles that may cover a sample of the window.
 void select_triangles(std::span<const int32_t> triangles, const Window& window,
                       std::vector<int32_t>& selected) {
   constexpr int stride = lower::triangle_word::stride;
@@ -29,11 +30,11 @@ void select_triangles(std::span<const int32_t> triangles, const Window& window,
   }
 }
 
-/// A part in which nothing is drawn, resolved.
-void fill_with_background(const backends::Frame& frame, int side, const Window& part, Image& resolved) {
+/// The resolved image of a window without triangles.
+void fill_with_background(const backends::View& view, int side, const Window& part, Image& resolved) {
   resolved.resize(side, side);
   for (size_t i = 0; i < resolved.depth.size(); ++i)
-    std::ranges::copy(frame.background, resolved.rgba.begin() + static_cast<ptrdiff_t>(4 * i));
+    std::ranges::copy(view.background, resolved.rgba.begin() + static_cast<ptrdiff_t>(4 * i));
   while (resolved.width > 1) halve(resolved);
   const std::array color{resolved.rgba[0], resolved.rgba[1], resolved.rgba[2], resolved.rgba[3]};
   resolved.resize(part.width, part.height);
@@ -42,7 +43,7 @@ void fill_with_background(const backends::Frame& frame, int side, const Window& 
   std::ranges::fill(resolved.depth, 0.0f);
 }
 
-/// Into the image, from (x, y) on.
+/// Copies the part into the image at (x, y).
 void copy_part(const Image& part, int x, int y, Image& image) {
   const auto width = static_cast<ptrdiff_t>(part.width);
   for (int row = 0; row < part.height; ++row) {
@@ -53,11 +54,11 @@ void copy_part(const Image& part, int x, int y, Image& image) {
   }
 }
 
-bool draw_parts(const backends::Frame& frame, int side, std::span<const int32_t> triangles,
-                backends::Drawing& drawing, Image& image, DrawStats& stats,
+bool draw_parts(const backends::View& view, int side, std::span<const int32_t> triangles,
+                backends::ViewRenderer& renderer, Image& image, DrawStats& stats,
                 support::Diagnostics& diagnostics) {
   const int size = max_part_size / side;  // of a part, in pixels
-  image.resize(frame.width / side, frame.height / side);
+  image.resize(view.target.width / side, view.target.height / side);
   std::vector<int32_t> selected;
   Image resolved;
   for (int y = 0; y < image.height; y += size) {
@@ -68,9 +69,9 @@ bool draw_parts(const backends::Frame& frame, int side, std::span<const int32_t>
       select_triangles(triangles, window, selected);
       if (selected.empty()) {
         ++stats.empty_parts;
-        fill_with_background(frame, side, part, resolved);
+        fill_with_background(view, side, part, resolved);
       } else {
-        if (!drawing.draw(window, selected, resolved, diagnostics)) return false;
+        if (!renderer.draw(window, selected, resolved, diagnostics)) return false;
         while (resolved.width > part.width) halve(resolved);
       }
       copy_part(resolved, x, y, image);
@@ -79,9 +80,9 @@ bool draw_parts(const backends::Frame& frame, int side, std::span<const int32_t>
   return true;
 }
 
-/// Counts the pixels of the image that are not finite, and finds the object that the first of them shows: one of its
-/// samples, drawn again.
-bool note_non_finite(int side, std::span<const int32_t> triangles, backends::Drawing& drawing,
+/// Counts the pixels of the image that are not finite, and finds the object that the first of them shows by drawing its
+/// samples again.
+bool note_non_finite(int side, std::span<const int32_t> triangles, backends::ViewRenderer& renderer,
                      const Image& image, NonFiniteReport& report, support::Diagnostics& diagnostics) {
   report.drawn = find_non_finite(image.rgba, image.width);
   if (report.drawn.count == 0) return true;
@@ -89,7 +90,7 @@ bool note_non_finite(int side, std::span<const int32_t> triangles, backends::Dra
   std::vector<int32_t> selected;
   select_triangles(triangles, pixel, selected);
   Image drawn;
-  if (!drawing.draw(pixel, selected, drawn, diagnostics)) return false;
+  if (!renderer.draw(pixel, selected, drawn, diagnostics)) return false;
   const NonFinite sample = find_non_finite(drawn.rgba, side);
   if (sample.count > 0) report.object = object_at(selected, pixel.x + sample.x, pixel.y + sample.y);
   return true;
@@ -114,7 +115,7 @@ void halve(Image& image) {
   using Color = lanes::Float<4, 1>;
   const auto wide = static_cast<size_t>(image.width);
   const size_t width = wide / 2, height = static_cast<size_t>(image.height) / 2;
-  // In place: a pixel is written where all samples have been read.
+  // In place: a pixel overwrites only samples that have been read.
   for (size_t y = 0; y < height; ++y) {
     for (size_t x = 0; x < width; ++x) {
       const size_t upper = 2 * y * wide + 2 * x, lower = upper + wide;
@@ -130,15 +131,20 @@ void halve(Image& image) {
   image.resize(static_cast<int>(width), static_cast<int>(height));
 }
 
-bool draw(const backends::Frame& frame, int samples, std::span<const float> vertices,
+bool draw(const backends::ViewPass& pass, int samples, std::span<const float> vertices,
           std::span<const int32_t> triangles, backends::Backend& backend, Image& image, DrawStats& stats,
           support::Diagnostics& diagnostics) {
-  const auto drawing = backend.begin(frame, vertices, diagnostics);
-  if (drawing == nullptr) return false;
+  const backends::Target& target = pass.view.target;
   const int side = samples_each_way(samples);
-  const bool drawn = side == 1 ? drawing->draw({0, 0, frame.width, frame.height}, triangles, image, diagnostics)
-                               : draw_parts(frame, side, triangles, *drawing, image, stats, diagnostics);
-  return drawn && note_non_finite(side, triangles, *drawing, image, stats.non_finite, diagnostics);
+  support::assert_that(target.has_color || side == 1, "several samples of a target without color");
+  const auto renderer = backend.begin(pass, vertices, diagnostics);
+  if (renderer == nullptr) return false;
+  const bool drawn = side == 1
+                         ? renderer->draw({0, 0, target.width, target.height}, triangles, image, diagnostics)
+                         : draw_parts(pass.view, side, triangles, *renderer, image, stats, diagnostics);
+  const bool is_picture = &pass.view == &pass.frame.picture();
+  return drawn &&
+         (!is_picture || note_non_finite(side, triangles, *renderer, image, stats.non_finite, diagnostics));
 }
 
 }  // namespace isoshade::render

@@ -10,7 +10,7 @@
 
 namespace isoshade::render {
 
-/// Something left out that would not have changed a bit of the image.
+/// Something that was left out because it could not change a bit of the image.
 struct Skip {
   std::string what;    ///< "12 of 50 copies of balls"
   std::string reason;  ///< "outside of the view"
@@ -18,7 +18,7 @@ struct Skip {
 
 struct PlanStats {
   int64_t copies = 0;                     ///< of all objects, those skipped too
-  int64_t draws = 0;                      ///< passes over parts of copies
+  int64_t draws = 0;                      ///< passes over parts of copies, of all views
   int64_t vertices = 0, triangles = 0;    ///< of all draws
   int64_t meshes = 0, mesh_vertices = 0;  ///< stored
   int64_t effects = 0, programs = 0;      ///< compiled
@@ -34,11 +34,11 @@ struct DrawStats {
   int64_t triangles = 0;      ///< left by clipping and culling
   int64_t made_vertices = 0;  ///< by clipping
   int samples = 1;            ///< a pixel
-  int64_t parts = 0;          ///< that the frame is drawn in, where it has several samples a pixel
-  int64_t empty_parts = 0;    ///< of them: no triangle, so not drawn
-  int64_t kept_images = 0;    ///< by the post chain: the most at a time, with the one that is made
+  int64_t parts = 0;          ///< windows that the picture is drawn in, if it has several samples a pixel
+  int64_t empty_parts = 0;    ///< windows without triangles, which are not drawn
+  int64_t kept_images = 0;    ///< the most images that the post chain kept at a time, with the new one
   NonFiniteReport non_finite;
-  double build_seconds = 0;   ///< of the backend, for code of the machine; part of none of the following
+  double build_seconds = 0;  ///< the backend's, for machine code; not part of the following
   double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0, post_seconds = 0;
 };
 

@@ -7,8 +7,8 @@
 namespace isoshade::render {
 namespace {
 
-/// A corner in clip space, and the sums of the magnitudes that rounding errors are in proportion to. In
-/// double: this decides what is drawn, never how.
+/// A corner in clip space, and for each coordinate the sum of magnitudes that bounds its rounding error. In double: it
+/// decides what is drawn, never how.
 struct Corner {
   double at[4];
   double magnitude[4];
@@ -31,8 +31,7 @@ Corner project(const glm::mat4& projected, double x, double y, double z) {
 bool outside_view(const glm::vec3& low, const glm::vec3& high, const glm::mat4& projected, int width,
                   int height) {
   // A point is left of the view if x + w < 0, and so on. All of these are linear, so the corners decide.
-  // The sides get a margin of a pixel, for snapping; all get one of 2^-16 of the terms, for rounding in
-  // float.
+  // The sides get a margin of a pixel, for snapping; all planes get one of 2^-16 of the terms, for rounding in float.
   const double wide = 1 + 2.0 / width;
   const double tall = 1 + 2.0 / height;
   constexpr double rounding = 0x1p-16;

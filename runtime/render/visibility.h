@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which meshes cannot be seen.
+// Which meshes a view cannot see.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -7,9 +7,9 @@
 
 namespace isoshade::render {
 
-/// Whether all of a box lies outside of the view, on one side of it and by more than rounding and snapping
-/// could undo: then no point in it reaches a pixel, once projected to clip space by `projected`. Where that
-/// is in doubt, or a coordinate is not finite, it does not.
+/// Whether the whole box, transformed to clip space by `projected`, lies outside one side of the view, by more than
+/// rounding and snapping can undo; then no point in it reaches a pixel. False in case of doubt, and if a coordinate is
+/// not finite.
 bool outside_view(const glm::vec3& low, const glm::vec3& high, const glm::mat4& projected, int width,
                   int height);
 

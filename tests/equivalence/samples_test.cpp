@@ -160,8 +160,9 @@ TEST(Parts, ShowTrianglesThatBeginFarBeforeThemAsTheCpuDoes) {
   const auto cpu = cpu_backend();
   const auto vulkan = vulkan_backend();
   render::Plan made = plan(scene_path("borders"));
-  made.frame.width = made.frame.height = raster::max_image_size;
-  const int object = made.frame.draws[0].object;
+  backends::View& view = made.frame.views.back();
+  view.target.width = view.target.height = raster::max_image_size;
+  const int object = view.draws[0].object;
   support::Diagnostics diagnostics;
   for (const backends::Window window : {backends::Window{3072, 4096, 128, 128},
                                         {8000, 0, 192, 64},
@@ -175,9 +176,9 @@ TEST(Parts, ShowTrianglesThatBeginFarBeforeThemAsTheCpuDoes) {
       backends::Image images[2];
       for (const bool second : {false, true}) {
         backends::Backend& backend = second ? *vulkan : *cpu;
-        const auto drawing = backend.begin(made.frame, made.frame.vertices, diagnostics);
-        ASSERT_NE(drawing, nullptr) << diagnostics.text();
-        ASSERT_TRUE(drawing->draw(window, triangles, images[second], diagnostics)) << diagnostics.text();
+        const auto renderer = backend.begin({made.frame, view}, made.frame.vertices, diagnostics);
+        ASSERT_NE(renderer, nullptr) << diagnostics.text();
+        ASSERT_TRUE(renderer->draw(window, triangles, images[second], diagnostics)) << diagnostics.text();
       }
       expect_identical(images[0], images[1], std::to_string(window.x) + "," + std::to_string(window.y));
     }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 
-#include "backends/array_limit.h"
+#include "backends/shared.h"
 #include "compiler/support/source.h"
 
 namespace isoshade::backends {

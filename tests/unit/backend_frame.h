@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame that asks much of a backend: many objects of a few triangles each, scattered over and beyond the
-// image, one over the other and some through the near plane.
+// A frame that is hard for a backend: many objects of a few triangles each, scattered over and beyond the image, which
+// overlap, and some of which pass through the near plane.
 #pragma once
 
 #include <cstring>
@@ -23,27 +23,32 @@ struct TestFrame {
   Frame frame;
 
   TestFrame(int width, int height, int objects) {
-    frame.width = width;
-    frame.height = height;
+    frame.views.resize(1);
+    view().target = {"the picture", width, height};
     frame.light_count = 3;
     frame.lights.resize(3 * lower::light_word::stride);
-    frame.frame = {0, 0, 0, 1};
-    frame.background[0] = 0.25f;
-    frame.background[3] = 1;
+    frame.frame.resize(lower::frame_word::count);
+    view().words.resize(lower::view_word::camera_words);
+    view().background[0] = 0.25f;
+    view().background[3] = 1;
     for (uint32_t i = 0; i < vertices_of_object; ++i) indices.push_back(i);
     for (int i = 0; i < objects; ++i) add_object(i * object_stride);
   }
   TestFrame(const TestFrame&) = delete;
   TestFrame& operator=(const TestFrame&) = delete;
 
-  /// What the scene steps do between transform and draw.
+  View& view() { return frame.views.back(); }
+  const View& view() const { return frame.views.back(); }
+  ViewPass pass() const { return {frame, view()}; }
+
+  /// The steps between transform and draw.
   void assemble(const std::vector<std::vector<float>>& clip, std::vector<float>& vertices,
                 std::vector<int32_t>& triangles) const {
     vertices = frame.vertices;
-    for (size_t d = 0; d < frame.draws.size(); ++d) {
-      const Draw& draw = frame.draws[d];
+    for (size_t d = 0; d < view().draws.size(); ++d) {
+      const Draw& draw = view().draws[d];
       raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object},
-                            frame.width, frame.height, vertices, triangles);
+                            view().target.width, view().target.height, vertices, triangles);
     }
   }
 
@@ -61,7 +66,8 @@ struct TestFrame {
     draw.vertex_count = vertices_of_object;
     draw.indices = indices;
     draw.state.cull = interface::Cull::none;
-    frame.draws.push_back(draw);
+    draw.projected = static_cast<int>(view().words.size());
+    view().draws.push_back(draw);
 
     frame.objects.resize(frame.objects.size() + object_stride);
     float* record = frame.objects.data() + object;
@@ -69,9 +75,8 @@ struct TestFrame {
     record[lower::object_word::program] = 1;
     record[lower::object_word::parameters] = random();
     // Columns of a perspective with the near plane at 0.25; what is at z = 0 is 1 away.
-    frame.draws.back().projected = static_cast<int>(frame.view.size());
-    frame.view.resize(frame.view.size() + lower::view_word::matrix);
-    float* columns = &frame.view[static_cast<size_t>(frame.draws.back().projected)];
+    view().words.resize(view().words.size() + lower::view_word::matrix);
+    float* columns = &view().words[static_cast<size_t>(draw.projected)];
     columns[0] = columns[5] = record[0];
     columns[11] = 1;
     columns[14] = 0.25f;
@@ -104,9 +109,9 @@ inline Image render(Backend& backend, const TestFrame& test) {
   std::vector<float> vertices;
   std::vector<int32_t> triangles;
   Image image;
-  EXPECT_TRUE(backend.transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  EXPECT_TRUE(backend.transform(test.pass(), clip, diagnostics)) << diagnostics.text();
   test.assemble(clip, vertices, triangles);
-  EXPECT_TRUE(backend.draw(test.frame, vertices, triangles, image, diagnostics)) << diagnostics.text();
+  EXPECT_TRUE(backend.draw(test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
   return image;
 }
 

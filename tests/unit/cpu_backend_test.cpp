@@ -65,7 +65,7 @@ TEST_P(CpuLanes, TransformsEveryVertex) {
   const Scene test(64, 64, 5);
   Diagnostics diagnostics;
   std::vector<std::vector<float>> clip;
-  ASSERT_TRUE(backend(GetParam(), 2)->transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  ASSERT_TRUE(backend(GetParam(), 2)->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
   ASSERT_EQ(clip.size(), 5u);
   for (size_t d = 0; d < clip.size(); ++d) {
     ASSERT_EQ(clip[d].size(), 4u * 30);
@@ -86,7 +86,7 @@ TEST_P(CpuLanes, TellsWhatItTookToBuildPrograms) {
   EXPECT_EQ(cpu->build_seconds(), 0);
   Diagnostics diagnostics;
   std::vector<std::vector<float>> clip;
-  ASSERT_TRUE(cpu->transform(test.frame, clip, diagnostics)) << diagnostics.text();
+  ASSERT_TRUE(cpu->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
   EXPECT_GT(cpu->build_seconds(), 0);
 }
 
@@ -99,9 +99,9 @@ TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
     std::vector<float> vertices;
     std::vector<int32_t> triangles;
     Image image;
-    ASSERT_TRUE(cpu->transform(test.frame, clip, diagnostics)) << diagnostics.text();
+    ASSERT_TRUE(cpu->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
     test.assemble(clip, vertices, triangles);
-    ASSERT_TRUE(cpu->draw(test.frame, vertices, triangles, image, diagnostics)) << diagnostics.text();
+    ASSERT_TRUE(cpu->draw(test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
 
     std::vector<int32_t> ids(static_cast<size_t>(width) * height);
     std::vector<float> depth(ids.size());
@@ -111,7 +111,7 @@ TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
     for (size_t i = 0; i < ids.size(); ++i) {
       const float* color = image.rgba.data() + 4 * i;
       if (ids[i] < 0) {
-        ASSERT_EQ(std::memcmp(color, test.frame.background, 16), 0) << "pixel " << i;
+        ASSERT_EQ(std::memcmp(color, test.view().background, 16), 0) << "pixel " << i;
         continue;
       }
       ++visible;
@@ -168,7 +168,7 @@ TEST(CpuBackend, DrawsTheBackgroundWhereThereIsNothing) {
   ASSERT_EQ(image.depth.size(), 130u * 70);
   for (size_t i = 0; i < image.depth.size(); ++i) {
     ASSERT_EQ(image.depth[i], 0.0f);
-    ASSERT_EQ(std::memcmp(image.rgba.data() + 4 * i, test.frame.background, 16), 0);
+    ASSERT_EQ(std::memcmp(image.rgba.data() + 4 * i, test.view().background, 16), 0);
   }
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "backends/cpu/compiler.h"
 #include "backends/cpu/kernel.h"
-#include "backends/cpu/lanes_headers.h"
 #include "runtime/lanes/lanes.h"
 #include "tests/unit/cpu_folders.h"
 #include "tests/unit/cpu_programs.h"

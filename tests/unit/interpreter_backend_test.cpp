@@ -120,8 +120,8 @@ TEST_P(Agreement, OfPositions) {
   test.frame.programs = {&vertex};
   Diagnostics diagnostics;
   std::vector<std::vector<float>> a, b;
-  ASSERT_TRUE(interpreted->transform(test.frame, a, diagnostics)) << diagnostics.text();
-  ASSERT_TRUE(compiled->transform(test.frame, b, diagnostics)) << diagnostics.text();
+  ASSERT_TRUE(interpreted->transform(test.pass(), a, diagnostics)) << diagnostics.text();
+  ASSERT_TRUE(compiled->transform(test.pass(), b, diagnostics)) << diagnostics.text();
   ASSERT_EQ(a.size(), b.size());
   for (size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(same_bits(a[i], b[i]));
 }
@@ -154,7 +154,7 @@ TEST(InterpreterBackend, DrawsTheDepthThatTheProgramComputes) {
   for (size_t i = 0; i < image.depth.size(); ++i) {
     const float* color = image.rgba.data() + 4 * i;
     if (image.depth[i] == 0) {
-      EXPECT_EQ(std::memcmp(color, test.frame.background, 16), 0);
+      EXPECT_EQ(std::memcmp(color, test.view().background, 16), 0);
       continue;
     }
     ++visible;

@@ -125,7 +125,7 @@ TEST(ReferenceBackend, DrawsSeveralSamplesAPixel) {
 
 TEST(ReferenceBackend, RefusesLargeImages) {
   render::Plan plan = small_plan(equivalence::scene_path("borders"), true);
-  plan.frame.width = max_size + 1;
+  plan.frame.views.back().target.width = max_size + 1;
   support::Diagnostics diagnostics;
   backends::Image image;
   render::DrawStats stats;

@@ -98,10 +98,10 @@ TEST_F(Parts, OfOneMaterialAreOneDraw) {
   EXPECT_EQ(made->stats.draws, 3);
   EXPECT_EQ(made->stats.vertices, 16);  // each once
   EXPECT_EQ(made->stats.triangles, 8);
-  ASSERT_EQ(made->frame.draws.size(), 3u);
-  EXPECT_EQ(made->frame.draws[0].indices.size(), 12u);
-  EXPECT_EQ(made->frame.draws[1].first_vertex, 8u);
-  EXPECT_EQ(made->frame.draws[1].indices[0], 0u);
+  ASSERT_EQ(made->frame.picture().draws.size(), 3u);
+  EXPECT_EQ(made->frame.picture().draws[0].indices.size(), 12u);
+  EXPECT_EQ(made->frame.picture().draws[1].first_vertex, 8u);
+  EXPECT_EQ(made->frame.picture().draws[1].indices[0], 0u);
 }
 
 TEST_F(Parts, AllHaveWhatTheObjectSays) {
@@ -117,11 +117,12 @@ TEST_F(Parts, ComePassAfterPassAndAreLeftOutEachByItsMaterial) {
   ASSERT_TRUE(made) << diagnostics_.text();
   ASSERT_EQ(made->stats.draws, 4);
   const auto metallic = [&](size_t draw) {
-    return made->frame.objects[static_cast<size_t>(made->frame.draws[draw].object) + word::parameters + 3];
+    return made->frame
+        .objects[static_cast<size_t>(made->frame.picture().draws[draw].object) + word::parameters + 3];
   };
   EXPECT_EQ(metallic(2), 0.75f);
   EXPECT_EQ(metallic(3), 0.75f);  // all of base, then what shines
-  EXPECT_NE(made->frame.draws[2].pixel_program, 0u);
+  EXPECT_NE(made->frame.picture().draws[2].pixel_program, 0u);
   ASSERT_EQ(made->stats.skips.size(), 1u);
   EXPECT_EQ(made->stats.skips[0].what, "shine of 2 of 3 parts of row");
 }
@@ -137,7 +138,7 @@ TEST_F(Parts, OutsideOfTheViewAreACopyThatIs) {
 TEST_F(Parts, CountForTheLimits) {
   // Both passes of all copies are within the limit, but not each of their three parts.
   static_assert(65536 * 2 * (word::parameters + 4) < render::max_object_words);
-  static_assert(65536 * 2 * 3 * (word::parameters + 4) > render::max_object_words);
+  static_assert(65536 * 2 * 3 * (word::parameters + lower::view_word::matrix + 4) > render::max_object_words);
   EXPECT_FALSE(plan(R"("effect": "twice.json", "repeat": [{"count": 65536, "step": [0, 100, 0]}])"));
   EXPECT_NE(diagnostics_.text().find("words of object records"), std::string::npos) << diagnostics_.text();
 }

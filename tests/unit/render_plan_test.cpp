@@ -64,7 +64,7 @@ class PlanTest : public ::testing::Test {
   }
 
   const float* record(const render::Plan& plan, size_t draw) const {
-    return &plan.frame.objects[static_cast<size_t>(plan.frame.draws[draw].object)];
+    return &plan.frame.objects[static_cast<size_t>(plan.frame.picture().draws[draw].object)];
   }
 
   fs::path folder_;
@@ -80,7 +80,7 @@ TEST_F(PlanTest, ParametersAreTheDefaultsButForWhatTheSceneSays) {
     "set": {"mesh": "box", "effect": "tinted.json",
             "parameters": {"gain": 0.5, "bright": true, "steps": 7, "tint": [1, 0, 1e-40]}}})");
   ASSERT_TRUE(made) << diagnostics_.text();
-  ASSERT_EQ(made->frame.draws.size(), 2u);
+  ASSERT_EQ(made->frame.picture().draws.size(), 2u);
   const auto words = [&](size_t draw) {
     const float* first = record(*made, draw) + word::parameters;
     return std::vector<float>(first, first + 6);
@@ -96,7 +96,7 @@ TEST_F(PlanTest, GridsVaryParametersAndPlaces) {
                {"count": 2, "step": [0, -0.5, 0], "parameters": {
                  "tint": {"values": [[1, 0, 0], [0, 1, 0]]}}}]}})");
   ASSERT_TRUE(made) << diagnostics_.text();
-  ASSERT_EQ(made->frame.draws.size(), 6u);
+  ASSERT_EQ(made->frame.picture().draws.size(), 6u);
   const float* last = record(*made, 5);
   EXPECT_EQ(last[word::model + 9], 1.0f);
   EXPECT_EQ(last[word::model + 10], -0.5f);
@@ -114,14 +114,15 @@ TEST_F(PlanTest, MeshesEffectsAndProgramsAreSharedWhereTheyAreTheSame) {
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(made->meshes.size(), 2u);
   EXPECT_EQ(made->effects.size(), 2u);
-  ASSERT_EQ(made->frame.draws.size(), 4u);
+  ASSERT_EQ(made->frame.picture().draws.size(), 4u);
   EXPECT_EQ(made->frame.programs.size(), 4u);  // one vertex program, three pixel programs
-  EXPECT_EQ(made->frame.draws[0].first_vertex, made->frame.draws[1].first_vertex);
-  for (const backends::Draw& draw : made->frame.draws) {
+  EXPECT_EQ(made->frame.picture().draws[0].first_vertex, made->frame.picture().draws[1].first_vertex);
+  for (const backends::Draw& draw : made->frame.picture().draws) {
     EXPECT_EQ(made->frame.programs[draw.vertex_program]->stage, lower::Stage::vertex);
     EXPECT_EQ(made->frame.programs[draw.pixel_program]->stage, lower::Stage::pixel);
   }
-  EXPECT_EQ(record(*made, 3)[word::program], static_cast<float>(made->frame.draws[3].pixel_program));
+  EXPECT_EQ(record(*made, 3)[word::program],
+            static_cast<float>(made->frame.picture().draws[3].pixel_program));
 }
 
 TEST_F(PlanTest, AMovedPlanPointsToWhatItPointedTo) {
@@ -129,7 +130,7 @@ TEST_F(PlanTest, AMovedPlanPointsToWhatItPointedTo) {
   ASSERT_TRUE(made) << diagnostics_.text();
   const render::Plan moved = std::move(*made);
   made.reset();
-  EXPECT_EQ(moved.frame.draws[0].indices.data(), moved.meshes[0].parts[0].indices.data());
+  EXPECT_EQ(moved.frame.picture().draws[0].indices.data(), moved.meshes[0].parts[0].indices.data());
   EXPECT_EQ(moved.frame.programs[0], &moved.effects[0].passes[0].vertex);
 }
 
@@ -138,10 +139,10 @@ TEST_F(PlanTest, MirroredObjectsKeepTheirOutside) {
     "a": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [1, -1, 1]}},
     "b": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [-1, -1, 1]}}})");
   ASSERT_TRUE(made) << diagnostics_.text();
-  EXPECT_EQ(made->frame.draws[0].state.cull, interface::Cull::back);  // the pass that culls fronts
-  EXPECT_EQ(made->frame.draws[1].state.cull, interface::Cull::front);
-  EXPECT_EQ(made->frame.draws[2].state.cull, interface::Cull::front);
-  EXPECT_EQ(made->frame.draws[3].state.cull, interface::Cull::back);
+  EXPECT_EQ(made->frame.picture().draws[0].state.cull, interface::Cull::back);  // the pass that culls fronts
+  EXPECT_EQ(made->frame.picture().draws[1].state.cull, interface::Cull::front);
+  EXPECT_EQ(made->frame.picture().draws[2].state.cull, interface::Cull::front);
+  EXPECT_EQ(made->frame.picture().draws[3].state.cull, interface::Cull::back);
 }
 
 TEST_F(PlanTest, ReportsParametersThatAnEffectHasNotOrThatDoNotFit) {
@@ -270,15 +271,16 @@ TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
     "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]},
                "lamp": {"type": "point", "position": [1, 2, 3], "intensity": 5}}, "objects": {})");
   ASSERT_TRUE(made) << diagnostics_.text();
-  EXPECT_EQ(made->frame.width, 17);
-  EXPECT_EQ(made->frame.height, 9);
+  EXPECT_EQ(made->frame.picture().target.width, 17);
+  EXPECT_EQ(made->frame.picture().target.height, 9);
   EXPECT_EQ(made->frame.light_count, 2);
   EXPECT_EQ(made->frame.lights.size(), 2u * lower::light_word::stride);
   EXPECT_EQ(made->frame.lights[lower::light_word::stride + lower::light_word::color], 5.0f);
   EXPECT_EQ(made->frame.frame, std::vector<float>{2.5f});
-  EXPECT_EQ(made->frame.view.size(), static_cast<size_t>(lower::view_word::camera_words));
+  EXPECT_EQ(made->frame.picture().words.size(), static_cast<size_t>(lower::view_word::camera_words));
   const auto words = [&](int first, size_t count) {
-    return std::vector(made->frame.view.begin() + first, made->frame.view.begin() + first + static_cast<int>(count));
+    const float* const from = made->frame.picture().words.data() + first;
+    return std::vector(from, from + count);
   };
   EXPECT_EQ(words(lower::view_word::eye, 4), (std::vector<float>{0, 0, 5, 1}));
   EXPECT_EQ(words(lower::view_word::view, 12), (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -5}));
@@ -290,13 +292,13 @@ TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   const std::vector<float> pixel = words(lower::view_word::pixel_size, 2);
   EXPECT_EQ(pixel[0], 0.0f);
   EXPECT_FLOAT_EQ(pixel[1] * projection[5] * 9, 2.0f);  // nine pixels are the height of clip space
-  EXPECT_EQ(made->frame.background[3], 0.4f);
+  EXPECT_EQ(made->frame.picture().background[3], 0.4f);
   options_.width = 5;
   options_.height = 7;
   const auto other = plan("\"objects\": {}");
   ASSERT_TRUE(other);
-  EXPECT_EQ(other->frame.width, 5);
-  EXPECT_EQ(other->frame.height, 7);
+  EXPECT_EQ(other->frame.picture().target.width, 5);
+  EXPECT_EQ(other->frame.picture().target.height, 7);
 }
 
 TEST_F(PlanTest, SkippingWhatIsOutsideOfTheViewChangesNoBit) {

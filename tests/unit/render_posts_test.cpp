@@ -126,11 +126,12 @@ class MeasuringBackend final : public backends::Backend {
  public:
   std::string_view name() const override { return "measuring"; }
   std::string description() const override { return "fills images"; }
-  bool transform(const backends::Frame&, std::vector<std::vector<float>>&, support::Diagnostics&) override {
+  bool transform(const backends::ViewPass&, std::vector<std::vector<float>>&,
+                 support::Diagnostics&) override {
     return true;
   }
-  std::unique_ptr<backends::Drawing> begin(const backends::Frame&, std::span<const float>,
-                                           support::Diagnostics&) override {
+  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass&, std::span<const float>,
+                                                support::Diagnostics&) override {
     return nullptr;
   }
   bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, support::Diagnostics&) override {
@@ -156,7 +157,7 @@ TEST_F(PostsTest, ImagesThatAreNotReadAnyMoreTakeNoMemory) {
   backends::Image image;
   image.resize(512, 512);
   MeasuringBackend backend;
-  ASSERT_TRUE(render::run_posts(made->posts, made->frame.frame, backend, image, stats_, diagnostics_));
+  ASSERT_TRUE(render::run_posts(made->posts, made->frame, backend, image, stats_, diagnostics_));
   ASSERT_EQ(backend.bytes.size(), 32u);
   // An image has 4 MiB. Under the address sanitizer, which has a heap of its own, all are alike.
   const auto [least, most] = std::ranges::minmax(backend.bytes);

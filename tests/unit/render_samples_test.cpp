@@ -132,9 +132,9 @@ TEST_F(SamplesTest, MakeTheFrameLargerAndLeaveTheCameraAndThePixelAsTheyAre) {
   for (const auto& [samples, side] : {std::pair{4, 2}, {16, 4}}) {
     const auto several = plan("\"samples\": " + std::to_string(samples) + ", " + members);
     ASSERT_TRUE(several) << diagnostics_.text();
-    EXPECT_EQ(several->frame.width, 30 * side);
-    EXPECT_EQ(several->frame.height, 20 * side);
-    EXPECT_EQ(several->frame.view, one->frame.view);  // pixel_size is among these words
+    EXPECT_EQ(several->frame.picture().target.width, 30 * side);
+    EXPECT_EQ(several->frame.picture().target.height, 20 * side);
+    EXPECT_EQ(several->frame.picture().words, one->frame.picture().words);  // pixel_size is among these words
     EXPECT_EQ(several->frame.objects, one->frame.objects);
     const Image image = drawn(*several);
     EXPECT_EQ(image.width, 30);

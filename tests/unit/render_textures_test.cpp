@@ -281,8 +281,8 @@ TEST_F(Textures, GridsVaryThem) {
     "repeat": [{"count": 2, "step": [0.1, 0, 0], "parameters": {"map": {"values": ["", "a.png"]}}}]}})");
   ASSERT_TRUE(made) << diagnostics_.text();
   const auto image = [&](size_t draw) {
-    return made->frame
-        .objects[static_cast<size_t>(made->frame.draws[draw].object) + lower::object_word::parameters + 1];
+    return made->frame.objects[static_cast<size_t>(made->frame.picture().draws[draw].object) +
+                               lower::object_word::parameters + 1];
   };
   EXPECT_EQ(image(0), -1.0f);
   EXPECT_EQ(image(1), 0.0f);

@@ -37,28 +37,29 @@ TEST(VulkanTransform, GivesEachDrawItsVerticesInOrder) {
   frame.vertices.resize(4 * 8);
   for (size_t i = 0; i < 4; ++i) frame.vertices[8 * i] = static_cast<float>(i) + 0.5f;
   frame.objects = {3.0f, 4.0f};
-  frame.view = {1.0f, -0.0f};
-  frame.draws.resize(3);
-  frame.draws[0].first_vertex = 1;
-  frame.draws[0].vertex_count = 2;
-  frame.draws[1].vertex_count = 1;
-  frame.draws[1].object = 1;
-  frame.draws[1].projected = 1;
+  backends::View& view = frame.views.emplace_back();
+  view.words = {1.0f, -0.0f};
+  view.draws.resize(3);
+  view.draws[0].first_vertex = 1;
+  view.draws[0].vertex_count = 2;
+  view.draws[1].vertex_count = 1;
+  view.draws[1].object = 1;
+  view.draws[1].projected = 1;
   // More than one run of the device takes.
-  frame.draws[2].first_vertex = 3;
-  frame.draws[2].vertex_count = max_output_words / 4 + 7;
+  view.draws[2].first_vertex = 3;
+  view.draws[2].vertex_count = max_output_words / 4 + 7;
   std::vector<std::vector<float>> clip;
-  ASSERT_TRUE(hand.backend->transform(frame, clip, hand.diagnostics)) << hand.diagnostics.text();
+  ASSERT_TRUE(hand.backend->transform({frame, view}, clip, hand.diagnostics)) << hand.diagnostics.text();
 
   ASSERT_EQ(clip.size(), 3u);
   for (size_t d = 0; d < 3; ++d) {
-    const backends::Draw& draw = frame.draws[d];
+    const backends::Draw& draw = view.draws[d];
     ASSERT_EQ(clip[d].size(), size_t{4} * draw.vertex_count);
     for (uint32_t v = 0; v < draw.vertex_count; ++v) {
       const uint32_t vertex = draw.first_vertex + v;
       const float expected[4] = {static_cast<float>(vertex), frame.objects[static_cast<size_t>(draw.object)],
                                  frame.vertices[size_t{8} * (vertex % 4)],
-                                 frame.view[static_cast<size_t>(draw.projected)]};
+                                 view.words[static_cast<size_t>(draw.projected)]};
       ASSERT_EQ(std::memcmp(clip[d].data() + size_t{4} * v, expected, sizeof(expected)), 0)
           << "draw " << d << ", vertex " << v;
     }
@@ -109,13 +110,13 @@ struct Rectangles {
   Image expected;
 
   Rectangles(int width, int height, const std::vector<Item>& items) {
-    frame.width = width;
-    frame.height = height;
+    frame.views.resize(1);
+    frame.views[0].target = {"the picture", width, height};
     frame.programs = {&red, &nan};
     frame.lights = {100.0f, 1000.0f};
     frame.light_count = 2;
     const float background[4] = {0.1f, -0.0f, 1e30f, 0.5f};
-    std::copy(std::begin(background), std::end(background), frame.background);
+    std::copy(std::begin(background), std::end(background), frame.views[0].background);
     for (int program = 0; program < 2; ++program) {
       frame.objects.resize(frame.objects.size() + object_words);
       frame.objects[static_cast<size_t>(program * object_words + lower::object_word::program)] =
@@ -125,6 +126,8 @@ struct Rectangles {
     for (size_t i = 0; i < expected.depth.size(); ++i) std::memcpy(&expected.rgba[4 * i], background, 16);
     for (const Item& item : items) add(item);
   }
+  const backends::Target& target() const { return frame.views[0].target; }
+  backends::ViewPass pass() const { return {frame, frame.views[0]}; }
 
  private:
   void add(const Item& item) {
@@ -143,12 +146,12 @@ struct Rectangles {
   /// The upper triangle has the pixels on and right of the diagonal; the diagonal belongs to the lower one,
   /// whose right edge it is not: it is the upper one's left edge.
   void show(const Item& item, float index, bool upper) {
-    for (int y = std::max(item.y0, 0); y < std::min(item.y1, frame.height); ++y)
-      for (int x = std::max(item.x0, 0); x < std::min(item.x1, frame.width); ++x) {
+    for (int y = std::max(item.y0, 0); y < std::min(item.y1, target().height); ++y)
+      for (int x = std::max(item.x0, 0); x < std::min(item.x1, target().width); ++x) {
         const int64_t across = int64_t{2 * (x - item.x0) + 1} * (item.y1 - item.y0);
         const int64_t down = int64_t{2 * (y - item.y0) + 1} * (item.x1 - item.x0);
         if ((across >= down) != upper) continue;
-        const size_t pixel = static_cast<size_t>(y * frame.width + x);
+        const size_t pixel = static_cast<size_t>(y * target().width + x);
         if (!(item.depth > expected.depth[pixel])) continue;
         expected.depth[pixel] = item.depth;
         const float color[4] = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, index + 1000.0f,
@@ -167,10 +170,10 @@ class VulkanDraw : public testing::Test {
   void expect_identical(const Rectangles& scene) {
     Image image;
     const std::vector<float> vertices(8);
-    ASSERT_TRUE(hand.backend->draw(scene.frame, vertices, scene.triangles, image, hand.diagnostics))
+    ASSERT_TRUE(hand.backend->draw(scene.pass(), vertices, scene.triangles, image, hand.diagnostics))
         << hand.diagnostics.text();
-    ASSERT_EQ(image.width, scene.frame.width);
-    ASSERT_EQ(image.height, scene.frame.height);
+    ASSERT_EQ(image.width, scene.target().width);
+    ASSERT_EQ(image.height, scene.target().height);
     for (size_t i = 0; i < image.depth.size(); ++i) {
       ASSERT_EQ(bits(image.depth[i]), bits(scene.expected.depth[i])) << "pixel " << i;
       for (size_t k = 4 * i; k < 4 * i + 4; ++k)
@@ -206,9 +209,9 @@ TEST_F(VulkanDraw, BringsBackLargeImagesInBands) {
 
 TEST_F(VulkanDraw, RefusesFramesBeyondTheGuardBand) {
   Rectangles scene(1, 1, {});
-  scene.frame.width = guard_band + 1;
+  scene.frame.views[0].target.width = guard_band + 1;
   Image image;
-  EXPECT_FALSE(hand.backend->draw(scene.frame, {}, {}, image, hand.diagnostics));
+  EXPECT_FALSE(hand.backend->draw(scene.pass(), {}, {}, image, hand.diagnostics));
   ASSERT_EQ(hand.diagnostics.all().size(), 1u);
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::device_limit);
   EXPECT_NE(hand.diagnostics.text().find("8193x1 pixels"), std::string::npos) << hand.diagnostics.text();
@@ -219,7 +222,7 @@ TEST_F(VulkanDraw, ReportsAShaderThatDoesNotCompileAndGoesOn) {
   const Rectangles scene(8, 8, {{0, 0, 8, 8, 0.5f, 0}});
   hand.texts["red"] = "#version 450\nvoid main() { nothing(); }\n";
   Image image;
-  EXPECT_FALSE(hand.backend->draw(scene.frame, {}, scene.triangles, image, hand.diagnostics));
+  EXPECT_FALSE(hand.backend->draw(scene.pass(), {}, scene.triangles, image, hand.diagnostics));
   ASSERT_EQ(hand.diagnostics.all().size(), 1u);
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::bad_shader);
   EXPECT_NE(hand.diagnostics.text().find("the pixel stage of \"red\""), std::string::npos);

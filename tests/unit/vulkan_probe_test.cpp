@@ -8,8 +8,7 @@
 
 #include "backends/vulkan/limits.h"
 #include "backends/vulkan/probe.h"
-#include "backends/vulkan/probe_arithmetic.h"
-#include "backends/vulkan/probe_coverage.h"
+#include "backends/vulkan/probe_parts.h"
 #include "runtime/lanes/scalar.h"
 #include "runtime/raster/clip.h"
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the backends share with each other and with nobody else.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "backends/backend.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/support/assert.h"
+
+namespace isoshade::backends {
+
+/// Calls use(buffer, words) for each array that programs of a view read, except textures and triangles, until a call
+/// returns false. `vertices`: see Backend::begin.
+template <class Use>
+bool for_each_array(const ViewPass& pass, std::span<const float> vertices, const Use& use) {
+  using lower::FrameBuffer;
+  const Frame& frame = pass.frame;
+  return use(FrameBuffer::vertices, vertices) && use(FrameBuffer::objects, std::span(frame.objects)) &&
+         use(FrameBuffer::lights, std::span(frame.lights)) &&
+         use(FrameBuffer::frame, std::span(frame.frame)) &&
+         use(FrameBuffer::view, std::span(pass.view.words)) && use(FrameBuffer::layers, pass.layers) &&
+         use(FrameBuffer::layer_records, pass.layer_records);
+}
+
+template <class Use>
+bool for_each_texture_array(const Frame& frame, const Use& use) {
+  using lower::FrameBuffer;
+  return use(FrameBuffer::texels, std::span(frame.texels)) &&
+         use(FrameBuffer::texel_bytes, std::span(frame.texel_bytes)) &&
+         use(FrameBuffer::textures, std::span(frame.textures));
+}
+
+template <class Use>
+bool for_each_array(const ScreenPass& pass, const Use& use) {
+  using lower::FrameBuffer;
+  return use(FrameBuffer::frame, pass.frame) && use(FrameBuffer::view, pass.view) &&
+         use(FrameBuffer::objects, pass.record) && use(FrameBuffer::layers, pass.layers) &&
+         use(FrameBuffer::layer_records, pass.layer_records);
+}
+
+/// The pixel program of the object whose record begins at this word: an index into frame.programs.
+inline size_t pixel_program_of(const Frame& frame, int object) {
+  const auto program =
+      static_cast<size_t>(frame.objects[static_cast<size_t>(object) + lower::object_word::program]);
+  support::assert_that(program < frame.programs.size(), "an object has a program that the frame lacks");
+  return program;
+}
+
+/// The words of a record of these fields.
+size_t word_count(std::span<const driver::Field> fields);
+
+/// The largest array that a backend accepts.
+struct ArrayLimit {
+  std::string_view taker;  ///< the name of the device, or "the cpu backend"
+  size_t bytes = 0;
+  bool is_cpu = false;  ///< no other backend accepts more
+};
+
+/// Reports that the array has `bytes`: what is too large, which item takes most of it if `frame` tells (it may be
+/// null), and what the user can do.
+void report_too_large(lower::FrameBuffer array, size_t bytes, const ArrayLimit& limit, const Frame* frame,
+                      support::Diagnostics& diagnostics);
+
+/// Adds its lifetime in seconds to a sum.
+class Timed {
+ public:
+  explicit Timed(double& sum) : sum_(sum) {}
+  ~Timed() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace isoshade::backends
