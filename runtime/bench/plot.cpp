@@ -108,7 +108,7 @@ class Plot {
     }
     text_ +=
         blocks_ + fmt::format("set title {} noenhanced\nset xlabel \"{}\"\nset ylabel \"{}\"\n",
-                              quoted(effect), "ns a pixel", index % columns == 0 ? "largest error, ULP" : "");
+                              quoted(effect), "ns per row or pixel", index % columns == 0 ? "largest error, ULP" : "");
     if (plots_.empty()) plots_.push_back("NaN");
     text_ += "plot ";
     for (size_t i = 0; i < plots_.size(); ++i) text_ += (i ? ", \\\n  " : "") + plots_[i];
@@ -148,7 +148,7 @@ class Plot {
     line(y, "filled: cpu, lanes " + lanes_);
     line(y -= 0.11, "hollow: vulkan");
     labels += fmt::format("set label \"s\" at 0.1,{} center font \",10\"\n", y -= 0.11);
-    line(y, "form of the source");
+    line(y, "formula of the source");
     rule(y -= 0.11, 1, "#1f4e9c");
     line(y, "front, cpu");
     rule(y -= 0.11, 2, "#b3541e");
