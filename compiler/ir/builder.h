@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes functions instruction by instruction. A misuse (wrong types, a value out of scope) is a bug and
-// aborts.
+// Builds functions instruction by instruction. Misuse (wrong types, a value out of scope) is a bug and aborts.
 #pragma once
 
 #include <functional>

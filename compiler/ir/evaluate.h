@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each primitive op computes, on the bits of one component. The meaning of ops.def, executable.
+// What each primitive op computes, on the bits of one component: the executable meaning of ops.def.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace isoshade::ir {
 
-/// Whether operands `a` and `b` are where an op with this precondition is defined.
+/// Whether operands `a` and `b` satisfy a precondition.
 inline bool holds(Precondition precondition, uint32_t a, uint32_t b) {
   switch (precondition) {
     case Precondition::none: return true;

@@ -8,13 +8,13 @@
 
 namespace isoshade::ir {
 
-/// What functions come to when each of their calls is replaced by the body of what it calls, as every Vulkan driver
-/// does: the operations on single numbers of each, those of both ways through a branch and of one turn of a loop. Two
-/// calls in each of 30 nested functions make 2^30. By function of the module; of those that `entry` does not reach, and
-/// of declarations, 0. Stops counting at a number beyond all limits. `of_division` is what `/` or sqrt counts.
+/// The size of each function after inlining all calls, as every Vulkan driver inlines them: the number of scalar
+/// operations, with both sides of a branch and one turn of a loop. (Two calls in each of 30 nested functions make
+/// 2^30.) By function of the module; 0 for declarations and for functions that `entry` does not reach. Counting
+/// saturates. `of_division` is the weight of `/` and sqrt.
 std::vector<uint64_t> expanded_operations(const Module& module, uint32_t entry, uint64_t of_division = 1);
 
-/// The same of one instruction, with its blocks, given those of what it calls.
+/// The size of one instruction with its blocks, given the sizes of the functions.
 uint64_t expanded_operations(const Function& function, const Instruction& instruction,
                              const std::vector<uint64_t>& of_functions, uint64_t of_division = 1);
 

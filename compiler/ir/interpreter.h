@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs functions of a module on one lane. Slow and plain: the meaning of the IR that everything else is held
-// to.
+// Runs functions of a module on one lane. Slow and simple: the reference semantics of the IR, which every other
+// executor must match.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace isoshade::ir {
 
 enum class Preconditions : uint8_t {
   enforce,  ///< a breach is a bug: prints the function and aborts
-  report,   ///< a breach is counted; the result is evaluate.h's
+  report,   ///< a breach is counted; the result is that of evaluate.h
 };
 
-/// Not for several threads at once. The module must be valid and outlive the interpreter; a function must not
-/// change after its first run.
+/// Not thread-safe. The module must be valid and outlive the interpreter; a function must not change after its first
+/// run.
 class Interpreter {
  public:
   explicit Interpreter(const Module& module, Preconditions preconditions = Preconditions::enforce);
@@ -28,14 +28,14 @@ class Interpreter {
   /// loaded.
   void bind(uint32_t buffer, std::span<const uint32_t> words);
 
-  /// The next runs stop after about this many steps in all. No limit unless set.
+  /// Limits the steps of all following runs together. There is no limit by default.
   void limit_steps(uint64_t steps) { steps_left_ = steps; }
 
   uint64_t steps_left() const { return steps_left_; }
 
   /// Runs a function all of whose callees have bodies. Arguments and results are words, vectors flattened,
-  /// bools 0 or 1; denormal float arguments are flushed, NaN results are 0x7fc00000. False if the steps did
-  /// not suffice. After a function's first run, runs of it allocate nothing.
+  /// bools 0 or 1; denormal float arguments are flushed, NaN results are 0x7fc00000. False if the step limit
+  /// was reached. Only a function's first run allocates memory.
   bool run(uint32_t function, std::span<const uint32_t> arguments, std::span<uint32_t> results);
 
   /// Preconditions that did not hold, in all runs so far.

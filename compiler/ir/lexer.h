@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of text IR.
+// The tokens of text IR.
 #pragma once
 
 #include <cstdint>
