@@ -87,8 +87,8 @@ Binding bind_pixel(ImageNumber image, const std::string& prefix, Axis axis) {
           image_place};
 }
 
-Binding bind_place(ImageNumber image, const std::string& prefix) {
-  return {source::PlaceInPixel{image}, {prefix + "_inside", ir::vector_type(2), "screen", false}, fraction};
+Binding bind_offset(ImageNumber image, const std::string& prefix) {
+  return {source::OffsetInPixel{image}, {prefix + "_inside", ir::vector_type(2), "screen", false}, fraction};
 }
 
 Binding bind_size(ImageNumber image, const std::string& prefix, Axis axis) {
@@ -112,7 +112,7 @@ std::string_view kind_name(const Source& source) {
                           [](const source::LightCount&) { return Name("light count"); },
                           [](const source::ScreenValue&) { return Name("screen value"); },
                           [](const source::PixelOfImage&) { return Name("pixel of an image"); },
-                          [](const source::PlaceInPixel&) { return Name("place in a pixel"); },
+                          [](const source::OffsetInPixel&) { return Name("offset in a pixel"); },
                           [](const source::SizeOfImage&) { return Name("size of an image"); },
                           [](const source::TapCount&) { return Name("tap count"); }},
                     source);

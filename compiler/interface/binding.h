@@ -138,8 +138,8 @@ struct PixelOfImage {
   ImageNumber image;
   Axis axis;
 };
-/// Where in that pixel the centre lies: a vec2, 0 to 1.
-struct PlaceInPixel {
+/// The position of the centre inside that pixel: a vec2, 0 to 1.
+struct OffsetInPixel {
   ImageNumber image;
 };
 struct SizeOfImage {
@@ -154,7 +154,7 @@ struct TapCount {
 
 using Source =
     std::variant<source::Attribute, source::MatrixColumn, source::Time, source::Input, source::Image,
-                 source::LightCount, source::ScreenValue, source::PixelOfImage, source::PlaceInPixel,
+                 source::LightCount, source::ScreenValue, source::PixelOfImage, source::OffsetInPixel,
                  source::SizeOfImage, source::TapCount>;
 
 /// Functions for std::visit, one an alternative: what forgets one does not compile.
@@ -185,7 +185,7 @@ Binding bind_light_count();
 Binding bind_image(uint32_t slot, std::string slot_name);
 /// `prefix`: what names of the image begin with.
 Binding bind_pixel(ImageNumber image, const std::string& prefix, Axis axis);
-Binding bind_place(ImageNumber image, const std::string& prefix);
+Binding bind_offset(ImageNumber image, const std::string& prefix);
 Binding bind_size(ImageNumber image, const std::string& prefix, Axis axis);
 /// `count`: as many as the document asks for.
 Binding bind_taps(uint32_t node, std::string node_name, int count);

@@ -401,7 +401,7 @@ Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
                      const bool is_depth = s.image == depth_image;
                      image.at = host.find(is_depth ? interface::Host::depth : interface::Host::image, s.image);
                    },
-                   [&](const source::PlaceInPixel& s) { screen.images[s.image].inside = id; },
+                   [&](const source::OffsetInPixel& s) { screen.images[s.image].inside = id; },
                    [&](const source::SizeOfImage& s) {
                      ReadImage& image = screen.images[s.image];
                      (s.axis == interface::Axis::x ? image.width : image.height) = id;

@@ -69,7 +69,7 @@ class ScreenPoint {
             [&](const source::Input& s) { return field(column_word(record_, s, type)); },
             [&](const source::ScreenValue& s) { return screen(s.value); },
             [&](const source::PixelOfImage& s) { return spot_in(s.image).pixel[index(s.axis)].value; },
-            [&](const source::PlaceInPixel& s) {
+            [&](const source::OffsetInPixel& s) {
               const Spot& spot = spot_in(s.image);
               return Vec2(spot.inside[0], spot.inside[1]).value;
             },

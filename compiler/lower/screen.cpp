@@ -163,7 +163,7 @@ std::vector<Binding> screen_bindings(const check::TypedGraph& graph, const Scree
   add_images([&](interface::ImageNumber image, const ImageNeeds& needed) {
     const std::string prefix = prefix_of(graph, image);
     for (const Axis axis : {Axis::x, Axis::y}) bindings.push_back(interface::bind_pixel(image, prefix, axis));
-    if (needed.inside) bindings.push_back(interface::bind_place(image, prefix));
+    if (needed.inside) bindings.push_back(interface::bind_offset(image, prefix));
   });
   add_values("sizes");
   add_images([&](interface::ImageNumber image, const ImageNeeds& needed) {

@@ -99,7 +99,7 @@ class SurfaceArguments {
             [&](const source::LightCount&) { return light_count_; },
             [&](const source::ScreenValue&) { return only_posts(); },
             [&](const source::PixelOfImage&) { return only_posts(); },
-            [&](const source::PlaceInPixel&) { return only_posts(); },
+            [&](const source::OffsetInPixel&) { return only_posts(); },
             [&](const source::SizeOfImage&) { return only_posts(); },
             [&](const source::TapCount&) { return only_posts(); },
         },
