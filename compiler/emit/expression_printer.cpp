@@ -111,17 +111,27 @@ ValueId ExpressionPrinter::splat_of(ValueId value) const {
 ValueId ExpressionPrinter::behind(ValueId value) const { return is_splat(value) ? splat_of(value) : value; }
 
 Operand ExpressionPrinter::operand(ValueId value) {
-  if (is_splat(value)) write_splat(value);
+  if (is_splat(value)) write_splat(value, uniform_[value]);
   const Written& written = written_[value];
   const ir::Instruction* made = definition(value);
   return {written.text, function_.type(value), written.precedence, uniform_[value],
           made != nullptr && made->op == Opcode::constant};
 }
 
-void ExpressionPrinter::write_splat(ValueId value) {
+void ExpressionPrinter::write_splat(ValueId value, bool uniform) {
   Written& written = written_[value];
-  written.text.assign(language_.type(function_.type(value), uniform_[value])).append("(");
+  written.text.assign(language_.type(function_.type(value), uniform)).append("(");
   written.text.append(written_[splat_of(value)].text).append(")");
+}
+
+void ExpressionPrinter::put_exactly(std::string& out, ValueId value, bool uniform) {
+  Operand written = operand(value);
+  if (is_splat(value) && !uniform) {
+    write_splat(value, false);
+    written.text = written_[value].text;
+    written.uniform = false;
+  }
+  language_.exactly(out, written, uniform);
 }
 
 void ExpressionPrinter::put(std::string& out, const Operand& operand, const Room& room) {
@@ -359,7 +369,7 @@ void ExpressionPrinter::fill(std::string& out, const ir::Instruction& instructio
     const Operand plain = operand(may_be_number ? behind(value) : value);
     const bool is_condition = instruction.op == Opcode::select && piece.hole == 0;
     if (text.is_call && !is_condition) {
-      language_.exactly(out, plain, uniform_[result]);
+      put_exactly(out, value, uniform_[result]);
     } else if (plain.literal && combines_bits(instruction.op)) {
       out += integer(definition(value)->imm, true);
     } else {

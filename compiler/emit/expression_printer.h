@@ -51,6 +51,8 @@ class ExpressionPrinter {
 
   /// The value as a part of an expression.
   Operand operand(ValueId value);
+  /// The same where its type must be exact, for all lanes alike or for each: an argument, what a variable is given.
+  void put_exactly(std::string& out, ValueId value, bool uniform);
   /// Gives what is still an expression a name and a statement.
   void need_name(ValueId value);
   /// About how long the value's text is, the same in all languages.
@@ -88,7 +90,7 @@ class ExpressionPrinter {
   ValueId splat_of(ValueId value) const;
   /// The value whose text stands for `value`: a splat is written by its number.
   ValueId behind(ValueId value) const;
-  void write_splat(ValueId value);
+  void write_splat(ValueId value, bool uniform);
   void put(std::string& out, const Operand& operand, const Room& room);
   void state(ValueId value, const Written& made);
   /// The vector all of whose components come first, in order: `vec4(color, 1.0)`.

@@ -104,7 +104,7 @@ class FunctionPrinter : private ExpressionPrinter {
     if (yields.size() == 1 && written_[yields[0]].pending) print_doc(function_.values[yields[0]].names);
     const bool exact = is_exact(yields);
     if (yields.size() == 1) {
-      language_.exactly(out, operand(yields[0]), false);
+      put_exactly(out, yields[0], false);
       return exact;
     }
     std::vector<Operand> fields;
@@ -156,7 +156,7 @@ class FunctionPrinter : private ExpressionPrinter {
         body_.append(" ").append(names[i]).append(";\n");
       }
       indent().append(names[first]).append(".").append(called.fields[i]).append(" = ");
-      language_.exactly(body_, operand(operands[i]), parameter.uniform);
+      put_exactly(body_, operands[i], parameter.uniform);
       body_ += ";\n";
     }
     return names;
@@ -258,7 +258,7 @@ class FunctionPrinter : private ExpressionPrinter {
       const ValueId value = instruction.first_result + i;
       language_.variable(indent(), function_.type(value), uniform_[value], written_[value].text);
       body_ += " = ";
-      language_.exactly(body_, operand(operands[i + 1]), uniform_[value]);
+      put_exactly(body_, operands[i + 1], uniform_[value]);
       body_ += ";";
       end_line(value);
       set_name(body.parameters[i + 1], written_[value].text);
@@ -274,7 +274,7 @@ class FunctionPrinter : private ExpressionPrinter {
     for (uint32_t i = 0; i < instruction.result_count; ++i) {
       const ValueId value = instruction.first_result + i;
       prepare_assigned(body.yields[i]);
-      language_.exactly(next[i], operand(body.yields[i]), uniform_[value]);
+      put_exactly(next[i], body.yields[i], uniform_[value]);
       if (instruction.result_count == 1) continue;
       const std::string name = names_.take(written_[value].text + "_next");
       language_.local_type(indent(), function_.type(value), uniform_[value], false);
