@@ -20,9 +20,8 @@ std::string glsl_head() {
 namespace {
 
 constexpr std::string_view push_constants =
-    "layout(push_constant) uniform Push {\n"
-    "  int object, light_count, program, first, count, width, origin_x, origin_y, projected;\n"
-    "} push;\n";
+    "layout(push_constant) uniform Push { int object, light_count, program, first, count, width, origin_x, origin_y, "
+    "projected; } push;\n";
 
 // A uniform will not do: lavapipe compiles a shader again for the values of some.
 constexpr std::string_view zero =
@@ -36,12 +35,9 @@ std::string binding(size_t after_frame, std::string_view layout = "std430, ") {
 }
 
 constexpr std::string_view canonical_bits =
-    "// The bits of a float; NaN is one value.\n"
-    "int canonical(float x) {\n"
-    "  int bits = floatBitsToInt(x);\n"
-    "  return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits;\n"
-    "}\n";
-
+    "\n// The bits of a float; NaN is one value.\n"
+    "int canonical(int bits) { return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits; }\n"
+    "int canonical(float x) { return canonical(floatBitsToInt(x)); }\n";
 constexpr std::string_view canonical_vector =
     "ivec4 canonical(vec4 v) { return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w)); }\n";
 

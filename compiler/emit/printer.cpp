@@ -181,20 +181,11 @@ const std::string* RecordWords::take(uint32_t word, uint32_t& rest) {
   return &names_[field];
 }
 
-void RecordWords::declare(std::string& out) const {
-  constexpr size_t columns = 100;
-  size_t line = out.size();
-  bool any = false;
-  for (size_t i = 0; i < names_.size(); ++i) {
-    if (!taken_[i]) continue;
-    const std::string constant = names_[i] + " = " + std::to_string(buffer_.fields[i].first);
-    const bool fits = any && out.size() - line + constant.size() + 3 <= columns;
-    if (any) out += fits ? ", " : ";\n";
-    if (!fits) line = out.size();
-    out.append(fits ? "" : "const int ").append(constant);
-    any = true;
-  }
-  if (any) out += ";\n";
+std::vector<std::string> RecordWords::taken() const {
+  std::vector<std::string> constants;
+  for (size_t i = 0; i < names_.size(); ++i)
+    if (taken_[i]) constants.push_back(names_[i] + " = " + std::to_string(buffer_.fields[i].first));
+  return constants;
 }
 
 WordReaders::WordReaders(const ir::Buffer& buffer, Names& globals) : buffer_(buffer) {
@@ -217,6 +208,21 @@ void WordReaders::define(std::string& out, const Language& language) const {
     }
     language.end_word_reader(out);
   }
+}
+
+/// `const int roughness = 54, metallic = 55;` for each name that was taken, several a line.
+static void declare(const std::vector<RecordWords>& records, std::string& out) {
+  constexpr size_t columns = 116;
+  size_t line = 0;
+  for (const RecordWords& words : records) {
+    for (const std::string& constant : words.taken()) {
+      const bool fits = !out.empty() && out.size() - line + constant.size() + 3 <= columns;
+      if (!out.empty()) out += fits ? ", " : ";\n";
+      if (!fits) line = out.size();
+      out.append(fits ? "" : "const int ").append(constant);
+    }
+  }
+  if (!out.empty()) out += ";\n";
 }
 
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
@@ -273,7 +279,7 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
     follows_line = is_line;
   }
   std::string head;
-  for (const RecordWords& words : records) words.declare(head);
+  declare(records, head);
   if (!head.empty()) head += "\n";
   const size_t constants = head.size();
   for (const WordReaders& reader : readers) reader.define(head, language);

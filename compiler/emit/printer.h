@@ -100,8 +100,8 @@ class RecordWords {
   /// The name of the field that has this word, which the text then declares; null: none has. `rest` receives the word's
   /// place in the field.
   const std::string* take(uint32_t word, uint32_t& rest);
-  /// `const int roughness = 54;` for each name that was taken.
-  void declare(std::string& out) const;
+  /// "roughness = 54" for each name that was taken.
+  std::vector<std::string> taken() const;
   bool empty() const { return names_.empty(); }
 
  private:
