@@ -35,7 +35,7 @@ std::string binding(size_t after_frame, std::string_view layout = "std430, ") {
 }
 
 constexpr std::string_view canonical_bits =
-    "\n// The bits of a float; NaN is one value.\n"
+    "// The bits of a float; NaN is one value.\n"
     "int canonical(int bits) { return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits; }\n"
     "int canonical(float x) { return canonical(floatBitsToInt(x)); }\n";
 constexpr std::string_view canonical_vector =
