@@ -86,7 +86,7 @@ class File {
 bool report_unwritable(const std::string& path, Diagnostics& diagnostics) {
   const int failure = errno;
   diagnostics.report(Id::unwritable_cache, "cannot write " + quote(path) + ": " + std::strerror(failure))
-      .suggest(std::string(support::way_to_write(failure)));
+      .suggest(std::string(support::write_failure_fix(failure)));
   return false;
 }
 

@@ -52,7 +52,7 @@ void note_lines(std::string_view text, support::Diagnostic& report) {
 std::string_view way_out_of(std::string_view words) {
   // The compiler runs in the C locale, and spells these reasons as strerror does.
   for (const int failure : {ENOSPC, EDQUOT, EFBIG, EROFS})
-    if (words.find(std::strerror(failure)) != std::string_view::npos) return support::way_to_write(failure);
+    if (words.find(std::strerror(failure)) != std::string_view::npos) return support::write_failure_fix(failure);
   return way_out;
 }
 

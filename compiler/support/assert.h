@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bugs of ours end the program with a message; they are never the user's to read as a diagnostic.
+// Internal errors abort with a message; they are never reported as diagnostics.
 #pragma once
 
 #include <string_view>

@@ -32,7 +32,7 @@ std::string folded(std::string_view word) {
   return out;
 }
 
-/// Edits (insert, delete, replace, swap of neighbours) from `a` to `b`, or limit + 1 where there are more.
+/// The number of edits (insert, delete, replace, swap of neighbours) from `a` to `b`, or limit + 1 if more.
 size_t edit_distance(std::string_view a, std::string_view b, size_t limit) {
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > limit) return limit + 1;
   std::vector<size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -103,7 +103,7 @@ Diagnostic& Diagnostics::report_unknown(Id id, Span where, std::string message, 
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   constexpr size_t longest = 64;
-  size_t budget = 4'000'000;  // cells of the distance table, some 10 ms
+  size_t budget = 4'000'000;  // cells of the distance table: about 10 ms
   if (word.empty() || word.size() > longest) return {};
   const std::string wanted = folded(word);
   size_t limit = std::max<size_t>(1, word.size() / 3);
@@ -115,7 +115,7 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
     if (candidate.empty() || candidate.size() > longest) continue;
     const size_t distance = edit_distance(wanted, folded(candidate), limit);
     if (distance > limit || (distance == limit && !best.empty())) continue;
-    // A word of which nothing is left is near to nothing.
+    // If every character changes, the words are not similar.
     if (distance >= std::max(wanted.size(), size_t{1})) continue;
     best = candidate;
     limit = distance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two forms in which diagnostics leave: text for people, JSON for tools.
+// Prints diagnostics: as text for people, as JSON for tools.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -9,12 +9,12 @@
 namespace isoshade::support {
 namespace {
 
-constexpr size_t window = 160;         // bytes of a line that are shown
-constexpr size_t before_caret = 60;    // of these before the caret, where the line is longer
-constexpr size_t longest_text = 2000;  // bytes of a message, note or fix that are shown
+constexpr size_t window = 160;         // bytes shown of a source line
+constexpr size_t before_caret = 60;    // bytes shown before the caret if the line is longer than `window`
+constexpr size_t longest_text = 2000;  // bytes shown of a message, note or fix
 constexpr std::string_view cut_mark = "...";
 
-/// Marks parts of a text for a terminal, or leaves them plain.
+/// Colours parts of a text for a terminal, or leaves them plain.
 class Paint {
  public:
   explicit Paint(bool colour) : colour_(colour) {}
@@ -40,7 +40,7 @@ std::string place(const Span& where) {
 
 bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
 
-/// A source line as it is shown, and the columns to underline in it.
+/// A source line as printed, and the columns to underline.
 struct Shown {
   std::string text;
   size_t caret = 0, carets = 0;
@@ -52,7 +52,7 @@ Shown show_line(std::string_view line, size_t begin, size_t end) {
   if (line.size() > window) {
     from = std::min(begin - std::min(begin, before_caret), line.size() - window);
     to = from + window;
-    // A character has at most three continuation bytes; more are no text and may be cut anywhere.
+    // A character has at most three continuation bytes; longer runs are not UTF-8 and may be cut anywhere.
     for (int i = 0; i < 3 && from > 0 && continues_character(line[from]); ++i) --from;
     for (int i = 0; i < 3 && to < line.size() && continues_character(line[to]); ++i) ++to;
   }
@@ -67,7 +67,7 @@ Shown show_line(std::string_view line, size_t begin, size_t end) {
     } else {
       glyph = append_visible(line.substr(at, to - at), shown.text);
     }
-    // A span that begins inside a character is underlined from the character's begin.
+    // A span that begins inside a character is underlined from the start of the character.
     if (at + glyph.bytes <= begin) shown.caret += glyph.columns;
     if (at + glyph.bytes > begin && at < end) shown.carets += glyph.columns;
     column += glyph.columns;
@@ -153,7 +153,7 @@ std::string Diagnostics::json() const {
     entry["fix"] = diagnostic.fix;
     list.push_back(std::move(entry));
   }
-  // ASCII, so that a terminal is as safe as with text(); bytes that are not UTF-8 become U+FFFD.
+  // ASCII output is as safe for a terminal as text(); bytes that are not UTF-8 become U+FFFD.
   return list.dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

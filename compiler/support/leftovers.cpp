@@ -18,14 +18,14 @@ struct List {
   std::set<pid_t> groups;
 };
 
-/// Never destroyed: threads may use it until the process is gone.
+/// Never destroyed, because threads may use it until the process exits.
 List& list() {
   static List& only = *new List;
   return only;
 }
 
-volatile std::sig_atomic_t status_asked_for = -1;  ///< by clean_up_and_exit()
-volatile std::sig_atomic_t is_waiting = 0;         ///< whether there is a thread that waits for SIGTERM
+volatile std::sig_atomic_t exit_status = -1;  ///< set by clean_up_and_exit()
+volatile std::sig_atomic_t is_waiting = 0;    ///< whether a thread waits for SIGTERM
 
 sigset_t& awaited() {
   static sigset_t signals;
@@ -36,8 +36,8 @@ void* wait_for_signals(void*) {
   int signal = 0;
   while (sigwait(&awaited(), &signal) != 0) {}
   Leftovers::clean_up();
-  if (status_asked_for >= 0) _exit(status_asked_for);
-  // By its default action, so that whoever waits for this process sees which signal ended it.
+  if (exit_status >= 0) _exit(exit_status);
+  // Take the default action, so that the parent process sees which signal ended this one.
   std::signal(signal, SIG_DFL);
   sigset_t only;
   sigemptyset(&only);
@@ -73,7 +73,7 @@ void Leftovers::clean_up() {
 }
 
 void clean_up_on_signals() {
-  list();  // made now, where there is memory
+  list();  // allocate now, while there is memory
   sigemptyset(&awaited());
   for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU}) {
     struct sigaction now {};
@@ -86,7 +86,7 @@ void clean_up_on_signals() {
   pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   pthread_attr_setstacksize(&attributes, 256 * 1024);
   pthread_t thread;
-  // Where no thread can be made, signals end the process at once.
+  // If no thread can be created, signals end the process at once.
   if (pthread_create(&thread, &attributes, wait_for_signals, nullptr) != 0)
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   else
@@ -95,10 +95,10 @@ void clean_up_on_signals() {
 }
 
 void clean_up_and_exit(int status) {
-  status_asked_for = status;
+  exit_status = status;
   if (is_waiting == 0) _exit(status);
-  // The fault may have left a lock behind that cleaning up needs.
-  std::signal(SIGALRM, [](int) { _exit(status_asked_for); });
+  // The faulting thread may hold a lock that the cleanup needs; exit after a timeout.
+  std::signal(SIGALRM, [](int) { _exit(exit_status); });
   alarm(5);
   kill(getpid(), SIGTERM);
   while (true) pause();

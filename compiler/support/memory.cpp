@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint64_t no_limit = std::numeric_limits<uint64_t>::max();
 
-/// MemAvailable and SwapFree of the machine.
+/// MemAvailable + SwapFree of the machine, in bytes.
 uint64_t free_on_machine() {
   std::ifstream file("/proc/meminfo");
   std::optional<uint64_t> memory;
@@ -30,14 +30,14 @@ uint64_t free_on_machine() {
   return memory ? (*memory + swap) * 1024 : no_limit;
 }
 
-/// A number in a file of a control group; "max" and what is not there are no limit.
+/// The number in a control group file; no limit for "max" or a missing file.
 uint64_t number_in(const std::string& path) {
   uint64_t number = no_limit;
   std::ifstream file(path);
   return file >> number ? number : no_limit;
 }
 
-/// Of the group of this process and those around it, in either version of control groups.
+/// The memory limit of the process's control group and its ancestors; reads both cgroup versions.
 uint64_t limit_of_group() {
   const std::string root = "/sys/fs/cgroup";
   uint64_t limit =
@@ -51,7 +51,7 @@ uint64_t limit_of_group() {
   return limit;
 }
 
-/// What is left of a limit of this process, of which it has so many pages already.
+/// What is left of a resource limit of which this process already uses `pages`.
 uint64_t left_of(int resource, uint64_t pages) {
   rlimit limit{};
   if (getrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -60,9 +60,9 @@ uint64_t left_of(int resource, uint64_t pages) {
   return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
-/// What is left of the limits of this process. Allocates nothing.
+/// What is left of this process's limits on address space and data. Async-signal-safe: allocates nothing.
 uint64_t left_of_limits() {
-  // The pages of the process: all, resident, shared, text, libraries, data.
+  // Fields of statm, in pages: total, resident, shared, text, libraries, data.
   uint64_t pages[6] = {};
   char text[256];
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -83,7 +83,7 @@ uint64_t left_of_limits() {
 uint64_t available_memory() { return std::min({free_on_machine(), limit_of_group(), left_of_limits()}); }
 
 bool is_memory_exhausted() {
-  constexpr uint64_t few = uint64_t{128} << 20;  // drivers take memory in blocks of this order
+  constexpr uint64_t few = uint64_t{128} << 20;  // drivers allocate blocks of about this size
   return left_of_limits() < few;
 }
 
@@ -93,14 +93,13 @@ std::string memory_text(uint64_t bytes) {
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " GiB";
 }
 
-bool check_memory(uint64_t bytes, const std::string& what, const std::string& way_out,
-                  Diagnostics& diagnostics) {
+bool check_memory(uint64_t bytes, const std::string& what, const std::string& fix, Diagnostics& diagnostics) {
   const uint64_t available = available_memory();
   if (bytes <= available) return true;
   diagnostics
-      .report(Id::device_limit, what + " needs " + memory_text(bytes) + " of memory, and there are " +
-                                    memory_text(available) + " for it")
-      .suggest(way_out);
+      .report(Id::device_limit, what + " needs " + memory_text(bytes) + " of memory, but only " +
+                                    memory_text(available) + " are available")
+      .suggest(fix);
   return false;
 }
 

@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory there is, and what happens where it does not suffice.
+// How much memory is available, how to report that it is too little, and how to free it.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::support {
 
-/// How many bytes this process may still take: the least of what the machine has free, with its swap, of the limit of
-/// its control group (a container's), and of the limits on its address space and data (ulimit -v, -d).
+/// Bytes that this process can still allocate: the minimum of the machine's free memory and swap, the limit of the
+/// control group (a container's), and what is left of the limits on address space and data (ulimit -v, -d).
 uint64_t available_memory();
 
-/// Whether so few bytes are left of a limit on the address space or data of this process that a fault in a library is
-/// most likely an allocation that failed. May be called in the handler of a signal.
+/// Whether this process is so close to its limit on address space or data that a fault in a library is most likely a
+/// failed allocation. Async-signal-safe.
 bool is_memory_exhausted();
 
-/// Reports, before it is taken, that `what` ("the image") needs more than there is. Returns whether it fits.
-bool check_memory(uint64_t bytes, const std::string& what, const std::string& way_out,
-                  Diagnostics& diagnostics);
+/// Whether `what` ("the image"), which is about to be allocated, fits; otherwise reports it and suggests `fix`.
+bool check_memory(uint64_t bytes, const std::string& what, const std::string& fix, Diagnostics& diagnostics);
 
 /// "1.3 GiB", "20 MiB".
 std::string memory_text(uint64_t bytes);
+
+/// Frees the memory of a vector. (`v = {}` assigns an empty list and keeps the capacity.)
+template <class T>
+void release(std::vector<T>& vector) {
+  std::vector<T>().swap(vector);
+}
 
 }  // namespace isoshade::support

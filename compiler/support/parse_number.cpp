@@ -13,8 +13,8 @@ namespace {
 constexpr uint32_t sign_bit = 0x80000000u, infinity_bits = 0x7f800000u, nan_bits = 0x7fc00000u,
                    smallest_normal = 0x00800000u;
 
-/// Whether a number that no float can hold is so because it is too small. `body` has the form that from_chars
-/// accepted, and is not zero.
+/// Whether a number outside the range of float is too small rather than too large. from_chars accepted `body`,
+/// and it is not zero.
 bool is_tiny(std::string_view body, bool hex) {
   const size_t mark = body.find_first_of(hex ? "pP" : "eE");
   const std::string_view mantissa = body.substr(0, mark);
@@ -27,8 +27,8 @@ bool is_tiny(std::string_view body, bool hex) {
     const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
     if (result.ec == std::errc::result_out_of_range) return digits.front() == '-';
   }
-  // The value is about radix^(point - first) * base^exponent: far from 1 on the side that matters. A text is
-  // far shorter than 2^59 bytes, so only the exponent can be near the ends of the range.
+  // The value is about radix^(point - first) * base^exponent, and far from 1. The text is far shorter than 2^59
+  // bytes, so the product does not overflow.
   return exponent < -(point - first) * (hex ? 4 : 1);
 }
 
@@ -44,7 +44,7 @@ std::optional<float> parse_float(std::string_view text) {
   if (text == "inf") return std::bit_cast<float>(sign | infinity_bits);
   const bool hex = text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
   if (hex) text.remove_prefix(2);
-  // from_chars would take a second sign, "infinity" and "nan(...)" too.
+  // from_chars would also accept a second sign, "infinity" and "nan(...)".
   if (text.empty() || text.find_first_not_of(hex ? "0123456789abcdefABCDEF.pP+-" : "0123456789.eE+-") !=
                           std::string_view::npos) {
     return std::nullopt;
@@ -82,7 +82,7 @@ std::string format_hex_float(float value) {
   const uint32_t bits = std::bit_cast<uint32_t>(value);
   const uint32_t magnitude = bits & ~sign_bit;
   if (magnitude >= infinity_bits) return format_float(value);
-  // By hand: to_chars does not say how it writes denormals, and through a double DAZ would lose them.
+  // Not to_chars: its text for denormals is unspecified, and DAZ would lose them in a conversion to double.
   uint32_t fraction = magnitude & (smallest_normal - 1);
   int exponent = static_cast<int>(magnitude >> 23) - 127;
   if (magnitude != 0 && magnitude < smallest_normal) {

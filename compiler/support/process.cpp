@@ -31,15 +31,15 @@ class SpawnSettings {
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
-    // Whatever this process ignores or blocks is its own affair; but a limit on file sizes that it ignores is told by
-    // the child in words, where the signal would only end it.
+    // Unblocks all signals and restores SIGPIPE. An ignored SIGXFSZ stays ignored, so that a child that exceeds the
+    // limit on file sizes reports it in words instead of being killed.
     posix_spawnattr_init(&attributes);
     sigset_t signals;
     sigemptyset(&signals);
     posix_spawnattr_setsigmask(&attributes, &signals);
     sigaddset(&signals, SIGPIPE);
     posix_spawnattr_setsigdefault(&attributes, &signals);
-    posix_spawnattr_setpgroup(&attributes, 0);  // one of its own, so that all that it starts can be ended
+    posix_spawnattr_setpgroup(&attributes, 0);  // a new group, so that its children can be killed with it
     posix_spawnattr_setflags(&attributes,
                              POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   }
@@ -83,7 +83,7 @@ class Output {
   bool is_open() const { return file_ >= 0; }
   std::string take() { return std::move(text_); }
 
-  /// Waits for more of it, not longer than this, and reads what there is, so that the writer is never held up.
+  /// Waits at most this long for output and reads it, so that the writer never blocks on a full pipe.
   void read_for(int milliseconds) {
     pollfd event{file_, POLLIN, 0};
     if (poll(&event, 1, milliseconds) <= 0) return;
@@ -93,7 +93,7 @@ class Output {
     if (n <= 0) return end();
     text_.append(part, std::min(static_cast<size_t>(n), most_output - text_.size()));
   }
-  /// Reads what is there already.
+  /// Reads what is available without waiting.
   void read_rest() {
     for (pollfd event{file_, POLLIN, 0}; is_open() && poll(&event, 1, 0) > 0;) read_for(0);
   }
@@ -108,7 +108,7 @@ class Output {
   std::string text_;
 };
 
-/// Whether the child has ended; it stays a zombie, so that its number is not given to another process.
+/// Whether the child has ended. It stays a zombie, so that its pid is not reused.
 bool has_ended(pid_t child, bool wait) {
   siginfo_t info{};
   while (waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG)) != 0)
@@ -116,12 +116,12 @@ bool has_ended(pid_t child, bool wait) {
   return info.si_pid == child;
 }
 
-/// Waits for the child, which leads a group of its own, and kills the group when the time is over. Returns whether it
-/// had to. What the child leaves running may hold its output open: that is not waited for.
+/// Waits for the child, which leads its own process group, and kills the group after `limit`. Returns whether it was
+/// killed. Does not wait for processes that the child leaves running, although they may hold its output open.
 bool wait_for(pid_t child, Output& output, Seconds limit) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
-  constexpr int tick = 20;  // milliseconds in which the end of the child may go unseen
+  constexpr int tick = 20;  // milliseconds between checks whether the child has ended
   while (!has_ended(child, false)) {
     if (Clock::now() >= end) {
       kill(-child, SIGKILL);
@@ -141,7 +141,7 @@ bool is_program(const std::string& path) {
   return stat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode) && access(path.c_str(), X_OK) == 0;
 }
 
-/// The program's path; empty if there is none. The working folder is not searched, whatever PATH says.
+/// The program's path, found in the absolute folders of PATH; empty if there is none.
 std::string search_path(const std::string& name) {
   const char* variable = std::getenv("PATH");
   std::string_view folders = variable ? variable : "/usr/bin:/bin";
@@ -198,7 +198,7 @@ Diagnostic& report_late(Id id, const std::string& program, const std::string& wh
   std::string seconds = format_float(static_cast<float>(limit.count()));
   if (seconds.ends_with(".0")) seconds.resize(seconds.size() - 2);
   return diagnostics.report(id, quote(program) + " did not " + what + " within " + seconds +
-                                    (seconds == "1" ? " second" : " seconds") + ", and was ended");
+                                    (seconds == "1" ? " second" : " seconds") + " and was killed");
 }
 
 }  // namespace isoshade::support

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Running another program, without a shell in between.
+// Runs another program without a shell.
 #pragma once
 
 #include <chrono>
@@ -13,28 +13,28 @@
 namespace isoshade::support {
 
 struct ProcessEnd {
-  int status;          ///< its exit status; 128 and the signal's number if one ended it
-  std::string output;  ///< what it wrote to stdout and stderr, at most 64 KiB of it
-  bool late = false;   ///< it did not end in time, and was killed
+  int status;          ///< the exit status, or 128 + the number of the signal that ended it
+  std::string output;  ///< stdout and stderr, at most 64 KiB
+  bool late = false;   ///< killed because it exceeded the time limit
 };
 
 using Seconds = std::chrono::duration<double>;
 
-/// How long a program may take where the user does not say.
+/// The time limit unless the user sets one.
 inline constexpr Seconds default_time_limit{120};
 
 using Variables = std::vector<std::pair<std::string, std::string>>;
 
-/// The path of a program: `name` itself if it has a slash, else where PATH has it; empty if there is none. The
-/// working folder is not searched, whatever PATH says.
+/// The path of a program: `name` itself if it contains a slash, else the first match in PATH; empty if there is none.
+/// Relative entries of PATH are skipped, so the working directory is never searched.
 std::string find_program(const std::string& name);
 
-/// Runs the program at the path arguments[0] to its end, with nothing to read and `variables` set in its
-/// environment. After `limit` it is killed, with all programs that it started. Nothing if it cannot be started.
+/// Runs the program at path arguments[0] and waits for it. Its stdin is empty, and `variables` are added to its
+/// environment. After `limit`, kills it and every process that it started. Returns nullopt if it cannot be started.
 std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
                                       const Variables& variables = {}, Seconds limit = default_time_limit);
 
-/// Reports under `id` that a program did not do something, "compile ...", in time. The caller suggests what to do.
+/// Reports under `id` that a program did not finish `what` ("compile ...") in time. The caller adds the suggestion.
 Diagnostic& report_late(Id id, const std::string& program, const std::string& what, Seconds limit,
                         Diagnostics& diagnostics);
 

@@ -23,7 +23,7 @@ struct FilesRead {
   std::set<Identity> files;
 };
 
-/// Of the whole process: whatever reads a file, by whatever way, must be known to whoever writes one.
+/// One set for the process, so that every writer knows what any reader has read.
 FilesRead& files_read() {
   static FilesRead only;
   return only;
@@ -34,7 +34,7 @@ FileBytes failed(int failure) {
   return {{}, missing ? Id::missing_file : Id::unreadable_file, std::strerror(failure)};
 }
 
-/// What a file is that is no regular one; empty if it may be read.
+/// What kind of file it is if it may not be read ("a folder"); empty if it may.
 std::string_view refuse(const std::string& path, const struct stat& facts, Pipes pipes) {
   if (S_ISREG(facts.st_mode)) return "";
   if (S_ISFIFO(facts.st_mode)) {
@@ -72,7 +72,7 @@ FileBytes read_open_file(int descriptor, size_t most_bytes) {
       if (static_cast<uint64_t>(facts.st_size) <= most_bytes)
         bytes.reserve(static_cast<size_t>(facts.st_size));
     }
-    // Read rather than trusted in its size: pipes have none, and files grow.
+    // Read to the end instead of trusting the size: pipes have none, and files grow.
     char part[1 << 16];
     while (bytes.size() <= most_bytes) {
       const ssize_t n = read(descriptor, part, sizeof part);
@@ -81,25 +81,25 @@ FileBytes read_open_file(int descriptor, size_t most_bytes) {
       if (n == 0) return {std::move(bytes), {}, {}};
       bytes.append(part, static_cast<size_t>(n));
     }
-  } catch (const std::bad_alloc&) { return {{}, Id::too_large, "the memory does not suffice"}; }
+  } catch (const std::bad_alloc&) { return {{}, Id::too_large, "there is not enough memory"}; }
   return {{}, Id::too_large, "it has more than " + std::to_string(most_bytes >> 20) + " MiB"};
 }
 
 FileBytes read_file(const std::string& path, size_t most_bytes, Pipes pipes) {
-  // The system would open what stands before the NUL.
+  // The system would open the path up to the NUL.
   if (path.find('\0') != std::string::npos) return {{}, Id::missing_file, "the name has a NUL byte"};
   struct stat facts;
   if (stat(path.c_str(), &facts) != 0) return failed(errno);
   const auto refused = [&]() -> FileBytes {
     const std::string_view what = refuse(path, facts, pipes);
     if (what.empty()) return {};
-    return {{}, Id::unreadable_file, "it is no regular file, but " + std::string(what)};
+    return {{}, Id::unreadable_file, "it is not a regular file but " + std::string(what)};
   };
   if (FileBytes answer = refused(); !answer.reason.empty()) return answer;
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (file.number() < 0 || fstat(file.number(), &facts) != 0) return failed(errno);
-  if (FileBytes answer = refused(); !answer.reason.empty()) return answer;  // replaced meanwhile
-  fcntl(file.number(), F_SETFL, O_RDONLY);  // reading shall wait for a pipe's writer
+  if (FileBytes answer = refused(); !answer.reason.empty()) return answer;  // replaced since stat()
+  fcntl(file.number(), F_SETFL, O_RDONLY);  // reads must wait for a pipe's writer
   if (S_ISREG(facts.st_mode)) {
     const std::lock_guard lock(files_read().mutex);
     files_read().files.insert({facts.st_dev, facts.st_ino});

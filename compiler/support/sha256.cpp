@@ -30,7 +30,7 @@ Sha256& Sha256::add(const void* data, size_t bytes) {
 }
 
 std::string Sha256::hex() const {
-  // Finishing ends a context, so a copy is finished.
+  // EVP_DigestFinal_ex invalidates its context, so finalise a copy.
   const std::unique_ptr<void, Free> copy(EVP_MD_CTX_new());
   require(copy != nullptr && EVP_MD_CTX_copy_ex(context_of(copy.get()), context_of(context_.get())) == 1);
   unsigned char digest[EVP_MAX_MD_SIZE];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256 (FIPS 180-4), by OpenSSL.
+// SHA-256 (FIPS 180-4), computed by OpenSSL.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace isoshade::support {
 
-/// Hashes what is added, in order. Aborts where OpenSSL offers no SHA-256.
+/// Hashes the bytes added, in order. Aborts if OpenSSL does not provide SHA-256.
 class Sha256 {
  public:
   Sha256();
@@ -17,7 +17,7 @@ class Sha256 {
   Sha256& add(const void* data, size_t bytes);
   Sha256& add(std::string_view text) { return add(text.data(), text.size()); }
 
-  /// 64 lower-case hex digits of all added so far; more may be added afterwards.
+  /// The digest of the bytes added so far, as 64 lower-case hex digits; more may be added afterwards.
   std::string hex() const;
 
  private:
@@ -27,7 +27,6 @@ class Sha256 {
   std::unique_ptr<void, Free> context_;  ///< an EVP_MD_CTX
 };
 
-/// The digest of one text.
 std::string sha256(std::string_view text);
 
 }  // namespace isoshade::support

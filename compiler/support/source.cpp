@@ -9,7 +9,7 @@ namespace isoshade::support {
 SourceFile::SourceFile(std::string path, std::string text, Origin origin)
     : path_(std::move(path)), text_(std::move(text)), origin_(origin) {
   line_starts_.reserve(1 + std::count(text_.begin(), text_.end(), '\n'));
-  // A byte order mark is no part of the first line: nobody sees it, so no column counts it.
+  // A byte order mark is invisible, so it does not count as columns of the first line.
   line_starts_.push_back(text_.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0);
   for (size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1)) {
     line_starts_.push_back(static_cast<uint32_t>(at + 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source texts and places in them.
+// Source texts and locations in them.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace isoshade::support {
 
-/// A text that diagnostics can point into. Shared and immutable: spans keep it alive.
+/// A text that diagnostics point into. Immutable and shared: spans keep it alive.
 class SourceFile {
  public:
   enum class Origin : uint8_t {
     document,
-    argument,  ///< the user's own words on the command line, which may name any file
+    argument,  ///< given on the command line, so it may refer to any file
   };
   SourceFile(std::string path, std::string text, Origin origin = Origin::document);
 
-  /// As the user gave it; "<stdin>" for standard input.
+  /// As the user gave it, or "<stdin>".
   const std::string& path() const { return path_; }
   const std::string& text() const { return text_; }
   Origin origin() const { return origin_; }
@@ -29,7 +29,7 @@ class SourceFile {
     uint32_t column;  ///< from 1, in bytes
   };
   Position position(uint32_t offset) const;
-  /// The line without its end, `line` from 1.
+  /// The text of a line without its line ending; `line` starts at 1.
   std::string_view line(uint32_t line) const;
 
  private:
@@ -41,7 +41,7 @@ class SourceFile {
 
 using Source = std::shared_ptr<const SourceFile>;
 
-/// Half-open byte range [begin, end) of a source. An empty `file` means "nowhere in a document".
+/// Half-open byte range [begin, end) of a source. A null `file` means "not in a document".
 struct Span {
   Source file;
   uint32_t begin = 0;

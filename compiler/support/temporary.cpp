@@ -32,16 +32,16 @@ std::string temporary_parent() {
   return parent != nullptr && *parent == '/' ? parent : "/tmp";
 }
 
-std::string_view way_to_write(int failure) {
+std::string_view write_failure_fix(int failure) {
   switch (failure) {
-    case ENOSPC: return "make room on the disk, or choose a folder on another one";
-    case EDQUOT: return "the quota of this user is used up: make room, or choose a folder on another disk";
-    case EFBIG: return "files may not grow that large here: raise the limit (ulimit -f)";
+    case ENOSPC: return "free space on the disk, or choose a folder on another one";
+    case EDQUOT: return "your disk quota is used up: free space, or choose a folder on another disk";
+    case EFBIG: return "the file exceeds the limit on file sizes: raise it (ulimit -f)";
     case EROFS: return "the disk is mounted read-only: choose a folder on another one";
     case EACCES:
-    case EPERM: return "this user may not write there: choose another folder, or change its permissions";
+    case EPERM: return "you have no permission to write there: choose another folder, or change its permissions";
     case ENAMETOOLONG: return "choose a shorter name";
-    case ELOOP: return "the symbolic links lead in a circle: name the file itself";
+    case ELOOP: return "the symbolic links form a loop: give the path of the file itself";
     default: return {};
   }
 }
@@ -69,11 +69,11 @@ bool TemporaryFolder::is_name(const std::string& name) {
 }
 
 TemporaryFile::TemporaryFile(const std::string& folder) : folder_(folder.empty() ? "." : folder) {
-  if (access("/proc/self/fd", X_OK) == 0) {  // by which it is given a name
+  if (access("/proc/self/fd", X_OK) == 0) {  // take_name() links the file through it
     descriptor_ = open(folder_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) return;
   }
-  // Not every file system has nameless files, and each says so by another error: any real one is met again here.
+  // Some file systems lack O_TMPFILE, with various errors; mkostemp meets a genuine error again.
   std::string path = folder_ + "/.isoshade-" + std::string(filler);
   const mode_t mask = umask(0);
   umask(mask);
@@ -82,7 +82,7 @@ TemporaryFile::TemporaryFile(const std::string& folder) : folder_(folder.empty()
   if (descriptor_ < 0) return;
   Leftovers::add_path(path);
   name_ = std::move(path);
-  (void)fchmod(descriptor_, 0666 & ~mask);  // mkostemp gives it to its owner alone
+  (void)fchmod(descriptor_, 0666 & ~mask);  // mkostemp creates it with mode 0600
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -97,14 +97,14 @@ bool TemporaryFile::close_file() {
   return descriptor < 0 || close(descriptor) == 0;
 }
 
-/// Gives a nameless file a name that nothing has.
+/// Gives a nameless file an unused name.
 bool TemporaryFile::take_name() {
   if (!name_.empty()) return true;
   const std::string open_file = "/proc/self/fd/" + std::to_string(descriptor_);
   constexpr int most_attempts = 100;
   const auto lock = Leftovers::lock();
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    // mkstemp would make the file, and only a link to none can be made.
+    // Not mkstemp: it would create the file, and linkat fails if the name exists.
     std::string path = folder_ + "/.isoshade-" + std::to_string(getpid()) + "-" + std::to_string(attempt);
     if (linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
       Leftovers::add_path(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Temporary files and folders: gone with the object, and with the process where a signal ends it.
+// Temporary files and folders, removed with their object, and also when a signal ends the process.
 #pragma once
 
 #include <memory>
@@ -10,16 +10,16 @@
 
 namespace isoshade::support {
 
-/// $TMPDIR where that is an absolute path, else /tmp.
+/// $TMPDIR if it is an absolute path, else /tmp.
 std::string temporary_parent();
 
-/// What to do where a file could not be written for this reason, an errno; empty where nothing general can be said.
-std::string_view way_to_write(int failure);
+/// A suggestion for a file that could not be written, by errno; empty if there is no general advice.
+std::string_view write_failure_fix(int failure);
 
-/// A folder that is removed with all that is in it. Only its owner can enter it.
+/// A folder, accessible to its owner only, that is removed with its contents.
 class TemporaryFolder {
  public:
-  /// Within `parent`. Nothing if it cannot be made, with the reason in errno.
+  /// Creates one in `parent`. On failure returns nullopt and sets errno.
   static std::optional<TemporaryFolder> make(const std::string& parent);
   TemporaryFolder(TemporaryFolder&&) = default;
   TemporaryFolder& operator=(TemporaryFolder&&) = delete;
@@ -27,7 +27,7 @@ class TemporaryFolder {
 
   const std::string& path() const { return *path_; }
 
-  /// Whether make() may have made a folder of this name.
+  /// Whether `name` has the form of the names that make() chooses.
   static bool is_name(const std::string& name);
 
  private:
@@ -35,12 +35,12 @@ class TemporaryFolder {
   std::unique_ptr<std::string> path_;  ///< null after a move
 };
 
-/// A file that is written before it takes the name of another, so that readers of that see its old bytes or its new
-/// ones. Until then it has no name where the file system can do that (O_TMPFILE), so that not even SIGKILL leaves it
-/// behind; otherwise a name of its own beside the other, which begins with ".isoshade-".
+/// A file that is written first and then atomically replaces another, so that readers see either the old or the new
+/// bytes. Until then it has no name if the file system supports O_TMPFILE, so that not even SIGKILL leaves it behind;
+/// otherwise it has a name in the same folder that begins with ".isoshade-".
 class TemporaryFile {
  public:
-  /// In `folder`. Check is_open(); the reason is in errno.
+  /// Creates it in `folder`. If is_open() is then false, errno has the reason.
   explicit TemporaryFile(const std::string& folder);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -49,8 +49,8 @@ class TemporaryFile {
   bool is_open() const { return descriptor_ >= 0; }
   int descriptor() const { return descriptor_; }
 
-  /// Closes the file and gives it the name, which lies in the folder and may be that of an old file. False with the
-  /// reason in errno.
+  /// Closes the file and moves it to `path`, which lies in the folder and may be an existing file. On failure returns
+  /// false and sets errno.
   bool rename_to(const std::string& path);
 
  private:
@@ -58,7 +58,7 @@ class TemporaryFile {
   bool close_file();
 
   std::string folder_;
-  std::string name_;  ///< its path; empty: it has none
+  std::string name_;  ///< its path; empty while it has no name
   int descriptor_ = -1;
 };
 

@@ -13,7 +13,7 @@ struct Range {
   uint32_t first, last;
 };
 
-// Format characters of Unicode: without a shape of their own, or changing the direction of writing.
+// Unicode characters without a visible glyph, or that change the writing direction.
 constexpr Range invisible[] = {{0x80, 0x9f},      {0xad, 0xad},     {0x61c, 0x61c},   {0x115f, 0x1160},
                                {0x180e, 0x180e},  {0x200b, 0x200f}, {0x2028, 0x202e}, {0x2060, 0x206f},
                                {0x3164, 0x3164},  {0xfeff, 0xfeff}, {0xffa0, 0xffa0}, {0xfff0, 0xfffb},
@@ -30,7 +30,7 @@ bool contains(const Range (&ranges)[N], uint32_t code) {
                      [&](const Range& range) { return range.first <= code && code <= range.last; });
 }
 
-/// The code point at the head of `text` and its length, or length 0 where the bytes are not UTF-8.
+/// Decodes the first code point of `text`. Returns its length, or 0 if the bytes are not UTF-8.
 size_t decode(std::string_view text, uint32_t& code) {
   const auto byte = [&](size_t i) -> uint32_t { return static_cast<unsigned char>(text[i]); };
   const uint32_t head = byte(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of documents on its way to a terminal. Nothing in it may move the cursor, change colours, reorder the
-// line or be bytes that the terminal guesses about.
+// Makes text from documents safe to print on a terminal: it must not move the cursor, change colours, reorder
+// the line or contain invalid UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,18 @@ namespace isoshade::support {
 
 struct Glyph {
   size_t bytes;    ///< consumed from the text, at least 1
-  size_t columns;  ///< taken up on a terminal
+  size_t columns;  ///< width on a terminal
 };
 
-/// Appends the first character of `text` (not empty) to `out`: as it is where it prints as itself; as \x1b
-/// where it is a control character or a byte that is not UTF-8; as \u202e where it is invisible or changes
-/// the direction of writing.
+/// Appends the first character of `text` (not empty) to `out`: unchanged if printable; as \x1b if it is a
+/// control character or a byte that is not UTF-8; as \u202e if it is invisible or changes the writing
+/// direction.
 Glyph append_visible(std::string_view text, std::string& out);
 
-/// All of `text` made visible, so it is one line.
+/// `text` with every character made visible; the result is one line.
 std::string visible(std::string_view text);
 
-/// The visible text in double quotes, cut after some 80 bytes: how messages name what a document says.
+/// visible(text) in double quotes, cut after about 80 bytes. Messages use it for names and text from documents.
 std::string quote(std::string_view text);
 
 }  // namespace isoshade::support

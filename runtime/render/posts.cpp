@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
-#include "compiler/support/release.h"
+#include "compiler/support/memory.h"
 #include "compiler/support/visible.h"
 #include "runtime/render/parameters.h"
 #include "runtime/render/records.h"

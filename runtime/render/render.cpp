@@ -7,7 +7,6 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/memory.h"
-#include "compiler/support/release.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/records.h"

@@ -88,7 +88,7 @@ bool write_file(const std::string& path, std::string_view bytes, support::Diagno
   support::Diagnostic& report = diagnostics.report(
       support::Id::unwritable_file, "cannot write " + name + ": " + std::generic_category().message(failure));
   if (failure == ENOENT) report.note("the folder does not exist");
-  report.suggest(std::string(support::way_to_write(failure)));
+  report.suggest(std::string(support::write_failure_fix(failure)));
   return false;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/support/release.h"
+#include "compiler/support/memory.h"
 
 #include <gtest/gtest.h>
 
