@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every body of functions.def, at every width.
+// The bodies of all functions in all tiers, at all widths.
 #pragma once
 
 #include "compiler/functions/blending.h"
@@ -8,13 +8,14 @@
 #include "compiler/functions/comparison.h"
 #include "compiler/functions/exact.h"
 #include "compiler/functions/exponential.h"
+#include "compiler/functions/fast.h"
 #include "compiler/functions/feature_points.h"
 #include "compiler/functions/inverse_trigonometric.h"
 #include "compiler/functions/logarithm.h"
 #include "compiler/functions/matrix.h"
 #include "compiler/functions/noise.h"
 #include "compiler/functions/power.h"
-#include "compiler/functions/root.h"
+#include "compiler/functions/precise.h"
 #include "compiler/functions/rounding.h"
 #include "compiler/functions/texture.h"
 #include "compiler/functions/trigonometric.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From one value to another.
+// Interpolation and averages.
 #pragma once
 
 #include "compiler/functions/comparison.h"
@@ -7,16 +7,17 @@
 namespace isoshade::functions {
 
 /// a * (1 - t) + b * t: exactly `a` at t = 0 and exactly `b` at t = 1.
-/// Domain: all floats; a share outside [0, 1] extrapolates. An infinite end gives NaN at the other, as overflow may.
+/// Domain: all floats; t outside [0, 1] extrapolates. NaN at one end if the other end is infinite; overflow may give
+/// NaN, too.
 /// Error: 2 ULP of |a * (1 - t)| + |b * t|.
 template <class F>
 F mix(F a, F b, F t) {
   return a * (1.0f - t) + b * t;
 }
 
-/// 0 up to `low`, 1 from `high` on, 3t^2 - 2t^3 between.
-/// Domain: all floats. With `low` above `high` it falls from 1 to 0. Equal edges make a step: 0 up to the edge, 1
-/// above. NaN gives 0; so do edges whose difference overflows.
+/// 0 for x <= low, 1 for x >= high, 3t^2 - 2t^3 in between.
+/// Domain: all floats. If `low` is above `high`, falls from 1 to 0. Equal edges give a step: 0 up to the edge, 1
+/// above it. NaN gives 0, and so does a difference of the edges that overflows.
 /// Error: 6 ULP.
 template <class F>
 F smoothstep(F low, F high, F x) {
@@ -24,9 +25,9 @@ F smoothstep(F low, F high, F x) {
   return (t * t) * (3.0f - 2.0f * t);
 }
 
-/// From the range [in_low, in_high] to [out_low, out_high]: exactly `out_low` at in_low, `out_high` at in_high.
-/// Domain: all floats; values outside the range extrapolate. An empty range gives the lower end of the other. What
-/// overflows is infinite or NaN.
+/// Maps [in_low, in_high] linearly to [out_low, out_high]: exactly `out_low` at in_low, `out_high` at in_high.
+/// Domain: all floats; values outside the range extrapolate. An empty input range gives `out_low`. Overflow gives
+/// infinities or NaN.
 /// Error: 3 ULP of |out_low| + |out_high| for x between in_low and in_high.
 template <class F>
 F remap(F x, F in_low, F in_high, F out_low, F out_high) {
@@ -36,12 +37,22 @@ F remap(F x, F in_low, F in_high, F out_low, F out_high) {
   return mix(out_low, out_high, select(empty, F(0.0f), share));
 }
 
-/// (x - pivot) * amount + pivot: farther from `pivot` for an amount above 1, nearer to it below.
-/// Domain: all floats. What overflows is infinite; infinities that cancel and NaN give NaN.
+/// (x - pivot) * amount + pivot: an amount above 1 increases the distance from `pivot`, one below 1 decreases it.
+/// Domain: all floats. Overflow gives infinities; NaN and infinities that cancel give NaN.
 /// Error: 2 ULP of |(x - pivot) * amount| + |pivot|.
 template <class F>
 F contrast(F x, F amount, F pivot) {
   return (x - pivot) * amount + pivot;
+}
+
+/// The mean of a 2 x 2 block of samples in row order, which reduces supersampled images.
+/// Domain: all floats; finite samples have a finite mean. Infinities and NaN propagate; magnitudes below 2^-124 count
+/// as 0.
+/// Error: 2^-23 of the mean of the magnitudes: the quarters are exact, and each result has two rounded sums.
+template <class F>
+F mean_of_four(F a, F b, F c, F d) {
+  const F quarter(0.25f);
+  return (a * quarter + b * quarter) + (c * quarter + d * quarter);
 }
 
 }  // namespace isoshade::functions

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every body is written with: the ops of runtime/lanes, and ways to write one body for all widths.
+// The vocabulary of function bodies: the ops of runtime/lanes, and helpers for vectors, polynomials and loops.
 //
-// A body is a template over a float type F. With F = float it computes, with F = traced::Float it builds IR,
-// so it may not branch on values: only ops, `select`, each other. A literal beside an F becomes one.
+// A body is a template over a float type F. With F = float it computes; with F = traced::Float it builds IR. It must
+// not branch on values; it may use ops, `select`, and other bodies. Float literals convert to F.
 #pragma once
 
 #include <cstddef>
 #include <tuple>
 
-#include "compiler/functions/matrix_type.h"
 #include "runtime/lanes/lanes.h"
 
 namespace isoshade::functions {
@@ -23,6 +22,13 @@ inline constexpr int one_bits = 0x3f800000;  // of 1.0f
 inline constexpr int fraction_mask = 0x7fffff;
 inline constexpr int implicit_bit = 0x800000;
 
+/// An N x N matrix of columns; m[c][r] is column c, row r.
+template <class F, int N>
+struct mat {
+  vec<F, N> column[N];
+  const vec<F, N>& operator[](int i) const { return column[i]; }
+};
+
 /// All components equal `s`.
 template <int N, class F>
 vec<F, N> splat(F s) {
@@ -31,7 +37,7 @@ vec<F, N> splat(F s) {
   if constexpr (N == 4) return {s, s, s, s};
 }
 
-/// f of the components of its arguments, one after another.
+/// Applies f to each component of its arguments.
 template <class Function, class F, int N, class... Rest>
 vec<F, N> componentwise(Function f, vec<F, N> first, Rest... rest) {
   const auto component = [&](int i) { return f(first[i], rest[i]...); };
@@ -48,7 +54,7 @@ F polynomial(F x, const float (&c)[n]) {
   return p;
 }
 
-/// The states that body(index, state...) makes of each other for index 0 .. count-1, from these on.
+/// Iterates states = body(index, states...) for index 0 .. count-1, starting with `initial`.
 template <class Body, class... State>
 std::tuple<State...> loop(int count, Body body, State... initial) {
   std::tuple<State...> states(initial...);

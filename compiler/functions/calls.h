@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of functions.def on traced values: each records a call where the same name on floats computes.
-// They are not templates over the scalar type, so overload resolution prefers them to the bodies.
+// The rows of functions.def on traced values: each records a call to the library function. They are not templates over
+// the scalar type, so overload resolution prefers them to the bodies.
 #pragma once
 
 #include <string_view>
@@ -11,7 +11,7 @@
 
 namespace isoshade::functions::traced {
 
-/// Records a call of the row's variant that fits the arguments.
+/// Records a call of the row's variant for these argument types.
 template <class Result, class... T>
 Result call(std::string_view row, const T&... arguments) {
   ir::Builder& b = builder_of(arguments...);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour. The transfer function of sRGB, IEC 61966-2-1, is made of polynomials in the distance from the middle or
-// the lower end of their piece, which keeps rounding small; both directions rise monotonically over all floats.
+// Colour. The sRGB transfer function (IEC 61966-2-1) uses polynomials in the distance from the middle or the lower end
+// of a piece, which keeps rounding errors small; both directions are monotonic over all floats.
 #pragma once
 
 #include "compiler/functions/comparison.h"
@@ -8,7 +8,7 @@
 
 namespace isoshade::functions {
 
-/// Horner's rule with one of two lists of coefficients.
+/// Evaluates one of two polynomials by Horner's rule.
 template <class F, class Condition, size_t n>
 F polynomial_of_two(F x, Condition first, const float (&a)[n], const float (&b)[n]) {
   F p = select(first, F(a[0]), F(b[0]));
@@ -17,10 +17,10 @@ F polynomial_of_two(F x, Condition first, const float (&a)[n], const float (&b)[
 }
 
 /// Linear light to sRGB.
-/// Domain: all floats; below 0 and NaN give 0, above 1 gives 1. Exact at 0 and 1.
-/// Error: 4 ULP. Where the standard's pieces meet, at the float nearest to 0.0031308, it falls by 8 ULP; here both stop
-/// half-way.
-/// Source: of the fourth root of 8x, which costs least accuracy in float; polynomials by Sollya's fpminimax.
+/// Domain: all floats; negative values and NaN give 0, values above 1 give 1. Exact at 0 and 1.
+/// Error: 4 ULP. The standard's curve falls by 8 ULP where its pieces meet (0.0031308); here both pieces are clamped to
+/// the middle of the gap.
+/// Source: polynomials in the fourth root of 8x, the most accurate choice in float, by Sollya's fpminimax.
 template <class F>
 F srgb_encode(F x) {
   constexpr float joint = 0x1.4b5da4p-5f;
@@ -39,7 +39,7 @@ F srgb_encode(F x) {
 }
 
 /// sRGB to linear light.
-/// Domain: all floats; below 0 and NaN give 0, above 1 gives 1. Exact at 0 and 1.
+/// Domain: all floats; negative values and NaN give 0, values above 1 give 1. Exact at 0 and 1.
 /// Error: 3 ULP.
 /// Source: polynomials by Sollya's fpminimax.
 template <class F>
@@ -58,7 +58,7 @@ F srgb_decode(F x) {
   return select(x > 0.0f, below_one, F(0.0f));
 }
 
-/// The luminance of a linear colour with the primaries of Rec. 709 and sRGB. For other primaries take `dot`.
+/// The luminance of a linear colour with the primaries of Rec. 709 and sRGB. For other primaries, use `dot`.
 /// Domain: all floats; infinities of different signs and NaN give NaN. White gives exactly 1.
 /// Error: 2 ULP of the sum of the terms' magnitudes.
 template <class F>
@@ -66,11 +66,11 @@ F luminance(vec<F, 3> color) {
   return (color[0] * 0.2126f + color[1] * 0.7152f) + color[2] * 0.0722f;
 }
 
-/// Hue (a whole turn is 1), saturation and value to red, green and blue.
-/// Domain: all floats. The hue wraps; saturation and value are not clamped. An infinite or NaN hue is no colour's:
-/// it gives value * (1 - saturation) in all three.
+/// HSV to RGB; a full turn of hue is 1.
+/// Domain: all floats. The hue wraps; saturation and value are not clamped. An infinite or NaN hue gives
+/// value * (1 - saturation) in all components.
 /// Error: 5 ULP of |value|, for a saturation in [0, 1].
-/// Source: Smith, "Color gamut transform pairs", 1978, written as three ramps of the hue.
+/// Source: Smith, "Color gamut transform pairs", 1978, as three ramps of the hue.
 template <class F>
 vec<F, 3> hsv_to_rgb(vec<F, 3> hsv) {
   const F sixths = fract(hsv[0]) * 6.0f;
@@ -81,9 +81,9 @@ vec<F, 3> hsv_to_rgb(vec<F, 3> hsv) {
   return {mixed(red), mixed(green), mixed(blue)};
 }
 
-/// Red, green and blue to hue (in [0, 1]; a whole turn is 1), saturation and value.
-/// Domain: all floats. Greys have hue and saturation 0, and so have colours without a positive component. Hue and
-/// saturation may be infinite or NaN where a difference of components overflows and where one is infinite or NaN.
+/// RGB to HSV; the hue is in [0, 1], and a full turn is 1.
+/// Domain: all floats. Greys, and colours without a positive component, have hue and saturation 0. Hue and saturation
+/// may be infinite or NaN if a component is, or if a difference of components overflows.
 /// Error: 3 ULP.
 /// Source: Smith, "Color gamut transform pairs", 1978.
 template <class F>

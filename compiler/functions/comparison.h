@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions that choose.
+// Functions built from comparisons.
 #pragma once
 
 #include "compiler/functions/body.h"
 
 namespace isoshade::functions {
 
-/// The lesser.
-/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is the first.
+/// The smaller of a and b.
+/// Domain: all floats. Returns `a` if either is NaN or both are zeros.
 /// Error: 0 ULP.
 template <class F>
 F min(F a, F b) {
   return select(b < a, b, a);
 }
 
-/// The greater.
-/// Domain: all floats. If either is NaN, or they are zeros of different sign, it is the first.
+/// The larger of a and b.
+/// Domain: all floats. Returns `a` if either is NaN or both are zeros.
 /// Error: 0 ULP.
 template <class F>
 F max(F a, F b) {
   return select(a < b, b, a);
 }
 
-/// The nearest value to `x` in [low, high].
-/// Domain: all floats. With `low` above `high` it is `high`. NaN gives NaN; as an end it counts as none.
+/// The value in [low, high] nearest to `x`.
+/// Domain: all floats. Returns `high` if `low` is above it. A NaN `x` gives NaN; a NaN bound is ignored.
 /// Error: 0 ULP.
 template <class F>
 F clamp(F x, F low, F high) {
   return min(max(x, low), high);
 }
 
-/// The nearest value to `x` in [0, 1].
+/// The value in [0, 1] nearest to `x`.
 /// Domain: all floats. NaN and -0 give +0.
 /// Error: 0 ULP.
 template <class F>
@@ -39,7 +39,7 @@ F saturate(F x) {
   return select(x > 0.0f, below_one, F(0.0f));
 }
 
-/// `x`, or 0 where it is infinite or NaN.
+/// `x`, or 0 if it is infinite or NaN.
 /// Domain: all floats.
 /// Error: 0 ULP.
 template <class F>
@@ -48,7 +48,7 @@ F finite_or_zero(F x) {
 }
 
 /// 1, 0 or -1.
-/// Domain: all floats. Zeros and NaN give themselves.
+/// Domain: all floats. Zeros and NaN are returned unchanged.
 /// Error: 0 ULP.
 template <class F>
 F sign(F x) {
@@ -56,8 +56,8 @@ F sign(F x) {
   return select(x > 0.0f, F(1.0f), below_zero);
 }
 
-/// 0 below `edge`, 1 from there on.
-/// Domain: all floats. If either is NaN it is 1.
+/// 0 for x < edge, 1 for x >= edge.
+/// Domain: all floats. 1 if either is NaN.
 /// Error: 0 ULP.
 template <class F>
 F step(F edge, F x) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/functions/derivatives.h"
+#include "compiler/functions/library.h"
 
 #include <map>
 #include <string_view>
@@ -20,7 +20,7 @@ using namespace traced;
 
 struct Absent {};
 
-// The rows as types: what arguments they take.
+// The rows as types, with the argument types of their variants.
 #define FUNCTION(name, signature, ulp, domain, reference, unit) \
   struct Row_##name {                                           \
     using Variants = Signatures<Float>::signature;              \
@@ -31,7 +31,7 @@ struct Absent {};
 
 #define DERIVATIVE(row, argument, change_)                                  \
   struct Change_##row##_##argument : Row_##row {                            \
-    static constexpr size_t place = #argument[0] - 'x';                     \
+    static constexpr size_t index = #argument[0] - 'x';                     \
     template <class D, class X, class Y = Absent>                           \
     static auto run(D d, [[maybe_unused]] X x, [[maybe_unused]] Y y = {}) { \
       return change_;                                                       \
@@ -42,7 +42,7 @@ struct Absent {};
 template <class Change, class... T>
 ir::ValueId contribution(ir::Builder& b, std::span<const ir::ValueId> arguments, ir::ValueId change) {
   const std::tuple<T...> taken{Flat<T>::take(b, arguments)...};
-  const std::tuple_element_t<Change::place, std::tuple<T...>> d(b, change);
+  const std::tuple_element_t<Change::index, std::tuple<T...>> d(b, change);
   return std::apply([&](T... a) { return Change::run(d, a...); }, taken).value;
 }
 
@@ -53,16 +53,16 @@ DerivativeRule& rule_of(Rules& rules, std::string_view row, Types<T...>) {
   std::vector<ir::Type> types;
   (Flat<T>::types(types), ...);
   const Variant* variant = find(row, types);
-  support::assert_that(variant != nullptr && variant->results.size() == 1, "a derivative of no such function");
+  support::assert_that(variant != nullptr && variant->results.size() == 1, "a derivative of an unknown function");
   return rules[variant];
 }
 
 template <class Change, class... T>
 void add_change(Rules& rules, Types<T...> types) {
-  rule_of(rules, Change::row, types)[Change::place] = &contribution<Change, T...>;
+  rule_of(rules, Change::row, types)[Change::index] = &contribution<Change, T...>;
 }
 
-/// Bodies of wider variants of rows on floats call the row for each component.
+/// Vector variants of rows defined on floats need no rule: their bodies call the float variant for each component.
 template <class Change, class First, class... Rest>
 void add_changes(Rules& rules, Types<First, Rest...>) {
   add_change<Change>(rules, First{});

@@ -1,12 +1,12 @@
 # cmake -DOUTPUT=file -DROOT=folder -P domains.cmake
-# Writes the list of what the docstrings of the headers in ROOT say after "Domain:", by tier and function, for
-# domains.cpp to include.
+# Extracts the text after "Domain:" from the docstrings of the headers in ROOT, by tier and function; library.cpp
+# includes the list.
 cmake_minimum_required(VERSION 3.25)
 file(GLOB headers "${ROOT}/*.h")
 set(list "")
 foreach(header IN LISTS headers)
   file(READ "${header}" text)
-  # Semicolons and brackets mean something in lists.
+  # Semicolons and brackets are special in CMake lists.
   string(REPLACE ";" "<semicolon>" text "${text}")
   string(REPLACE "[" "<open>" text "${text}")
   string(REPLACE "]" "<close>" text "${text}")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ops fdiv and fsqrt, for devices that do not round them correctly, out of ops that every device has
-// right. Both approximate by Newton's method and then settle the last bit with the exact remainder in
-// integers, which fits in 32 bits because only its low bits are unknown.
+// The ops fdiv and fsqrt for devices that do not round them correctly, built from ops that every device computes
+// exactly. Both approximate by Newton's method and then correct the last bit with the exact integer remainder,
+// which fits in 32 bits because only its low bits are unknown.
 #pragma once
 
 #include "compiler/functions/body.h"
@@ -21,7 +21,7 @@ F div_exact(F a, F b) {
   const Int a_fraction = a_bits & fraction_mask;
   const Int b_fraction = b_bits & fraction_mask;
 
-  // Significands in [1, 2); the dividend's is doubled where it is the lesser, so that their quotient is too.
+  // Significands in [1, 2); the dividend's is doubled if it is the smaller one, so that the quotient is in [1, 2), too.
   const auto doubled = a_fraction < b_fraction;
   const F x = from_bits_normal(a_fraction | select(doubled, Int(0x40000000), Int(one_bits)));
   const F y = from_bits_normal(b_fraction | one_bits);
@@ -63,7 +63,7 @@ F div_exact(F a, F b) {
 }
 
 /// The square root, rounded to nearest even.
-/// Domain: all floats; as IEEE-754 with denormals flushed: -0 gives -0, less gives NaN.
+/// Domain: all floats; as IEEE-754 with denormals flushed: -0 gives -0, negative numbers give NaN.
 /// Error: 0 ULP.
 template <class F>
 F sqrt_exact(F a) {
@@ -74,7 +74,7 @@ F sqrt_exact(F a) {
   const Int exponent = biased - 127;
   const Int odd = exponent & 1;
 
-  // The significand in [1, 4) and 1 / sqrt of it.
+  // The significand, in [1, 4), and its inverse square root.
   const F x = from_bits_normal(fraction | shift_left(odd + 127, 23));
   const F half = x * 0.5f;
   F r = from_bits_normal(0x5f3759df - shift_right(bits_nonnan(x), 1));

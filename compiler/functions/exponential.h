@@ -5,7 +5,7 @@
 
 namespace isoshade::functions {
 
-/// p * 2^n, n a whole number. The result must be normal, or an infinity.
+/// p * 2^n for an integer n. The result must be normal or infinite.
 template <class F>
 F scale_by_power_of_two(F p, F n) {
   return from_bits_normal(bits_nonnan(p) + shift_left(to_int(n), 23));
@@ -25,7 +25,7 @@ F exp2_of_fraction(F f) {
 template <class F>
 F exp2(F x) {
   const F above = select(x < -126.0f, F(-126.0f), x);
-  const F within = select(above < 128.0f, above, F(127.0f));  // NaN too becomes harmless
+  const F within = select(above < 128.0f, above, F(127.0f));  // replaces NaN, too
   const F n = floor(within + 0.5f);
   const F power = scale_by_power_of_two(exp2_of_fraction(within - n), n);
   const F finite = select(x < -126.0f, F(0.0f), power);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances to random points, one in each cell. Worley, "A cellular texture basis function", 1996; points as in
-// Open Shading Language and MaterialX.
+// Cellular noise: distances to random points, one per cell. Worley, "A cellular texture basis function", 1996; the
+// points are those of Open Shading Language and MaterialX.
 #pragma once
 
 #include <tuple>
@@ -10,21 +10,21 @@
 
 namespace isoshade::functions {
 
-/// nearer(square of the distance, nearest...) for the points of the cell of p and of its eight neighbours.
+/// Folds nearest = nearer(squared distance, nearest...) over the points in the cell of p and its eight neighbours.
 template <class F, class Nearer, class... Nearest>
 std::tuple<Nearest...> visit_feature_points(vec<F, 2> p, F jitter, Nearer nearer, Nearest... nearest) {
   using Int = int_of<F>;
   const InCell<F> x = split_cell(p[0]);
   const InCell<F> y = split_cell(p[1]);
-  // From p to the point, along one axis.
-  const auto offset = [&](Int i, F place, Int hash) {
+  // The distance from p to the point along one axis.
+  const auto offset = [&](Int i, F fraction, Int hash) {
     const F in_cell = (unit_of_bits(hash) - 0.5f) * jitter + 0.5f;
-    return (to_float(i - 1) + in_cell) - place;
+    return (to_float(i - 1) + in_cell) - fraction;
   };
   const auto column = [&](Int i, Int cell_x, Nearest... before) {
     const auto cell = [&](Int j, Int cell_y, Nearest... so_far) {
-      const F dx = offset(i, x.place, hash_channel(cell_x, cell_y, 0));
-      const F dy = offset(j, y.place, hash_channel(cell_x, cell_y, 1));
+      const F dx = offset(i, x.fraction, hash_channel(cell_x, cell_y, 0));
+      const F dy = offset(j, y.fraction, hash_channel(cell_x, cell_y, 1));
       return std::tuple_cat(std::tuple(cell_y + 1), nearer(dx * dx + dy * dy, so_far...));
     };
     const auto visit = [&](Int, Nearest... found) { return std::tuple(cell_x + 1, found...); };
@@ -34,10 +34,10 @@ std::tuple<Nearest...> visit_feature_points(vec<F, 2> p, F jitter, Nearer nearer
   return std::apply(drop_cell, loop(Int(3), column, x.cell - 1, nearest...));
 }
 
-/// The distance to the nearest of random points in the plane, one in each unit square: anywhere in it for a jitter
-/// of 1, in its middle for 0.
-/// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0. Only the point's square
-/// and its neighbours are searched, which a jitter outside [0, 1] leads out of. A NaN jitter gives +inf.
+/// The distance to the nearest of random points in the plane, one per unit square: anywhere in the square for jitter
+/// 1, at its centre for jitter 0.
+/// Domain: all floats; coordinates of a magnitude from 2^31, infinities and NaN count as 0. Only the square of p and
+/// its neighbours are searched; jitter outside [0, 1] moves points out of them. A NaN jitter gives +inf.
 /// Error: 2 ULP of 1, for a jitter in [0, 1].
 template <class F>
 F worleynoise2d(vec<F, 2> p, F jitter) {
@@ -45,9 +45,9 @@ F worleynoise2d(vec<F, 2> p, F jitter) {
   return sqrt(std::get<0>(visit_feature_points(p, jitter, nearer, F(infinity))));
 }
 
-/// The distances to the nearest, second and third of the points of worleynoise2d.
-/// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0. Only the point's square
-/// and its neighbours are searched, which a jitter outside [0, 1] leads out of. A NaN jitter gives +inf.
+/// The distances to the nearest, second and third nearest point of worleynoise2d.
+/// Domain: all floats; coordinates of a magnitude from 2^31, infinities and NaN count as 0. Only the square of p and
+/// its neighbours are searched; jitter outside [0, 1] moves points out of them. A NaN jitter gives +inf.
 /// Error: 2 ULP of 1, for a jitter in [0, 1], in each component.
 template <class F>
 vec<F, 3> worleynoise2d_vector3(vec<F, 2> p, F jitter) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the C++ types of function templates and values of the IR, of which a matrix is several.
+// Converts between the C++ types of function templates and IR values; a matrix is several IR values.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/functions/matrix_type.h"
+#include "compiler/functions/body.h"
 #include "compiler/functions/traced.h"
 
 namespace isoshade::functions::traced {
@@ -76,7 +76,7 @@ struct Flat<std::tuple<T...>> {
   }
 };
 
-/// then() where the condition holds, else other(): the IR's `branch`, as lanes::branch is of values.
+/// Builds an IR `branch`: then() if the condition holds, else other(). The traced counterpart of lanes::branch.
 template <class Then, class Other>
 auto branch(Bool condition, const Then& then, const Other& other) {
   using Result = decltype(then());
@@ -93,8 +93,8 @@ auto branch(Bool condition, const Then& then, const Other& other) {
   return Flat<Result>::take(b, rest);
 }
 
-/// body(index, state...) for index 0 .. count-1: the IR's `loop`, as functions::loop is of values. One of the
-/// initial states at least is no literal.
+/// Builds an IR `loop` over body(index, state...) for index 0 .. count-1. The traced counterpart of functions::loop. At
+/// least one initial state must not be a literal.
 template <class Body, class... State>
 std::tuple<State...> loop(Int count, const Body& body, const State&... initial) {
   using States = std::tuple<State...>;

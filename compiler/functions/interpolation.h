@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a snapped triangle and a pixel to depth and attributes. Rasterisers, stages and the host all come here.
+// Edge functions, depth and attribute interpolation of a snapped triangle, shared by rasterisers, stages and host.
 //
-// Positions are ints in 1/256 pixel, y down, |x|, |y| <= 2^21; the triangle is wound so that its doubled area is
-// positive. The edge function opposite to vertex i is an exact integer, rounded once to float: the weight of
-// vertex i in screen space, times the doubled area.
+// Positions are integers in 1/256 pixel, y down, |x|, |y| <= 2^21; the winding makes the doubled area positive. The
+// edge function opposite vertex i is an exact integer, rounded once to float: the screen-space barycentric coordinate
+// of vertex i, times the doubled area.
 #pragma once
 
 #include "compiler/functions/body.h"
 
 namespace isoshade::functions {
 
-/// (x1-x0)*(py-y0) - (y1-y0)*(px-x0), every difference below 2^15: exact in 32 bits, rounded once.
+/// (x1-x0)*(py-y0) - (y1-y0)*(px-x0) for differences below 2^15: exact in 32 bits, rounded once.
 template <class F, class X, class P>
 F edge_narrow(X x0, X y0, X x1, X y1, P px, P py) {
   return F(to_float((x1 - x0) * (py - y0) - (y1 - y0) * (px - x0)));
 }
 
-/// The same for every difference below 2^23, through 64 bits: high * 2^23 + low, both exact as floats.
+/// The same for differences below 2^23, in 64 bits: high * 2^23 + low, both exact as floats.
 template <class F, class X, class P>
 F edge_wide(X x0, X y0, X x1, X y1, P px, P py) {
   using I = int_of<F>;
@@ -34,8 +34,8 @@ F edge_wide(X x0, X y0, X x1, X y1, P px, P py) {
   return to_float(upper) * F(8388608.0f) + to_float(lower);
 }
 
-/// The three edge functions at a pixel centre, (px, py) in 1/256 pixel. `wide`: an edge spans 2^15 or more.
-/// `wide_edge`: edge_wide, or what calls it.
+/// The three edge functions at a pixel centre (px, py), in 1/256 pixel. `wide`: an edge spans 2^15 or more.
+/// `wide_edge`: edge_wide, or a function that calls it.
 template <class F, class X, class P, class WideEdge>
 vec<F, 3> edge_functions(X x0, X y0, X x1, X y1, X x2, X y2, bool_of<F> wide, P px, P py, WideEdge wide_edge) {
   return branch(
@@ -55,7 +55,7 @@ vec<F, 3> edge_functions(X x0, X y0, X x1, X y1, X x2, X y2, bool_of<F> wide, P 
   return edge_functions<F>(x0, y0, x1, y1, x2, y2, wide, px, py, edge_wide<F, X, P>);
 }
 
-/// Depth is linear in screen space. Clamped to [0, 1].
+/// Interpolates depth linearly in screen space and clamps it to [0, 1].
 template <class F>
 F interpolate_depth(vec<F, 3> edges, F z0, F z1, F z2) {
   const F sum = (edges[0] + edges[1]) + edges[2];
@@ -64,8 +64,7 @@ F interpolate_depth(vec<F, 3> edges, F z0, F z1, F z2) {
   return select(above < F(1.0f), above, F(1.0f));
 }
 
-/// Weights that interpolate attributes with perspective correction: attribute = (w0*a0 + w1*a1) + w2*a2.
-/// They sum to 1 within rounding.
+/// Perspective-correct interpolation weights: attribute = (w0*a0 + w1*a1) + w2*a2. They sum to 1 up to rounding.
 template <class F>
 vec<F, 3> attribute_weights(vec<F, 3> edges, F inverse_w0, F inverse_w1, F inverse_w2) {
   const F l0 = edges[0] * inverse_w0;
@@ -75,7 +74,7 @@ vec<F, 3> attribute_weights(vec<F, 3> edges, F inverse_w0, F inverse_w1, F inver
   return vec<F, 3>(l0 * scale, l1 * scale, l2 * scale);
 }
 
-/// An attribute of the three vertices at a pixel.
+/// Interpolates an attribute of the three vertices.
 template <class F, class A>
 F interpolate(vec<F, 3> weights, A a0, A a1, A a2) {
   return (weights[0] * a0 + weights[1] * a1) + weights[2] * a2;

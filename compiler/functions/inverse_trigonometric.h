@@ -6,7 +6,7 @@
 namespace isoshade::functions {
 
 /// The angle from the x axis to the point (x, y), in [-pi, pi].
-/// Domain: all floats; NaN gives NaN. As IEEE-754, but that -0 counts as +0: atan2(-0, -1) = pi.
+/// Domain: all floats; NaN gives NaN. As IEEE-754, except that -0 counts as +0: atan2(-0, -1) = pi.
 /// Error: 2 ULP.
 /// Source: polynomial by Sollya's fpminimax on [0, 1]; pi in 24 + 24 bits.
 template <class F>
@@ -36,7 +36,7 @@ F atan(F x) {
 }
 
 /// The angle in [-pi/2, pi/2] whose sine is x.
-/// Domain: [-1, 1]; beyond it, and for NaN, NaN.
+/// Domain: [-1, 1]; other arguments give NaN.
 /// Error: 3 ULP.
 template <class F>
 F asin(F x) {
@@ -44,7 +44,7 @@ F asin(F x) {
 }
 
 /// The angle in [0, pi] whose cosine is x.
-/// Domain: [-1, 1]; beyond it, and for NaN, NaN.
+/// Domain: [-1, 1]; other arguments give NaN.
 /// Error: 2.5 ULP.
 template <class F>
 F acos(F x) {

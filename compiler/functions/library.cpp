@@ -10,7 +10,6 @@
 #include "compiler/functions/all.h"
 #include "compiler/functions/calls.h"
 #include "compiler/functions/signatures.h"
-#include "compiler/functions/tiers.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::functions {
@@ -19,7 +18,7 @@ namespace {
 
 using namespace traced;
 
-// The body of a row, as a type: its `run` is the template, never the recording overload of the same name.
+// The body of a row as a type. `run` calls the template, never the recording overload of the same name.
 #define FUNCTION(name, signature, ulp_, domain, reference, unit_) \
   struct Body_##name {                                            \
     using Variants = Signatures<Float>::signature;                \
@@ -65,7 +64,7 @@ constexpr std::string_view code<V<N>> = N == 2   ? "v2"
 template <int N>
 constexpr std::string_view code<M<N>> = N == 3 ? "m3" : "m4";
 
-/// The row's own name where it takes floats, else with the types of its arguments, or the one type of all.
+/// The row's name, followed by the types of its arguments, or by one type if all are equal; floats add nothing.
 template <class First, class... Rest>
 std::string variant_name(std::string_view row) {
   std::string name(row);
@@ -102,7 +101,7 @@ void set_accuracy(std::vector<Variant>& table, std::string_view row, Tier tier, 
     if (variant.row == row) variant.accuracy[static_cast<size_t>(tier)] = accuracy;
 }
 
-/// Wider variants of rows on floats call the row for each component, and so follow its tier.
+/// Vector variants of rows defined on floats call the float variant for each component, so they follow its tier.
 template <class Body, class First, class... Rest>
 void add_tier(std::vector<Variant>& table, std::string_view row, Types<First, Rest...>) {
   auto variant = std::ranges::find(table, row, &Variant::row);
@@ -110,6 +109,19 @@ void add_tier(std::vector<Variant>& table, std::string_view row, Types<First, Re
   set_accuracy(table, row, Body::tier, Body::accuracy);
   set_body<Body>(*variant, First{});
   if constexpr (!Body::on_floats) (set_body<Body>(*++variant, Rest{}), ...);
+}
+
+struct Domain {
+  std::string_view tier, row, text;
+};
+constexpr Domain domains[] = {
+#include "domains.inc"
+};
+
+std::string_view domain_text(std::string_view row, Tier tier) {
+  for (const Domain& domain : domains)
+    if (domain.row == row && domain.tier == tier_name(tier)) return domain.text;
+  return {};
 }
 
 }  // namespace
@@ -145,7 +157,7 @@ uint32_t declare(ir::Module& module, const Variant& variant) {
   for (uint32_t i = 0; i < module.functions.size(); ++i)
     if (module.functions[i].library == variant.name) return i;
   ir::Function function;
-  function.name = "iso_" + variant.name;  // no name of GLSL, C++ or an author
+  function.name = "iso_" + variant.name;  // cannot clash with names of GLSL, C++ or documents
   function.library = variant.name;
   constexpr std::string_view letters = "abcdefgh";
   for (size_t i = 0; i < variant.parameters.size(); ++i)
@@ -162,24 +174,29 @@ std::vector<ir::ValueId> call_library(ir::Builder& builder, std::string_view row
   std::vector<ir::Type> types;
   for (ir::ValueId argument : arguments) types.push_back(builder.type(argument));
   const Variant* variant = find(row, types);
-  if (variant == nullptr) support::bug("no library function " + std::string(row) + " for these arguments");
+  if (variant == nullptr) support::bug("there is no library function " + std::string(row) + " for these argument types");
   return builder.call(declare(builder.module(), *variant), arguments);
 }
 
 const Variant& variant_of(const ir::Function& declaration) {
   for (const Variant& variant : variants())
     if (variant.name == declaration.library) return variant;
-  support::bug("a declaration that the library does not have: " + declaration.name);
+  support::bug("the library has no function for the declaration " + declaration.name);
 }
 
 void expand(ir::Module& module, Tier tier) {
-  // Bodies declare further functions at the end of the list.
+  // Bodies append declarations of the functions that they call.
   for (uint32_t i = 0; i < module.functions.size(); ++i) {
     if (!module.functions[i].is_declaration()) continue;
     const Variant& variant = variant_of(module.functions[i]);
     ir::Builder builder(module, i);
     variant.body(tier)(builder);
   }
+}
+
+std::string_view domain_of(std::string_view row, Tier tier) {
+  const std::string_view own = domain_text(row, tier);
+  return own.empty() ? domain_text(row, Tier::standard) : own;
 }
 
 }  // namespace isoshade::functions

@@ -21,29 +21,29 @@ Binary<F> split_binary(F x) {
   return {to_float(shift_right_signed(offset, 23)), significand - 1.0f};
 }
 
-/// What a logarithm gives where x is not finite and positive, and `finite` where it is.
+/// `finite` if x is finite and positive, else the special value of a logarithm.
 template <class F>
 F logarithm_or_special(F x, F finite) {
   const F nonpositive = select(x == 0.0f, F(-infinity), F(not_a_number));
   return select(x > 0.0f, select(x < infinity, finite, F(infinity)), nonpositive);
 }
 
-/// The 12 high bits of a significand: products of two heads are exact.
+/// x with its significand truncated to 12 bits: the product of two heads is exact.
 template <class F>
 F head(F x) {
   return from_bits_normal(bits_nonnan(x) & ~0xfff);
 }
 
-/// A number as a sum, not carried out; |low| is at most a few ULP of high.
+/// A number as an unevaluated sum; |low| is at most a few ULP of high.
 template <class F>
 struct Sum {
   F high;
   F low;
 };
 
-/// log2 of a normal positive x, to 2^-30 of it: the kernel of log2 and pow.
-/// With 1 + r the significand and s = r / (2 + r) it is log2((1 + s) / (1 - s)) = c s + s^3 P(s^2), of which
-/// c s is computed to more than a float. Source: polynomials by Sollya's fpminimax.
+/// log2 of a normal positive x, relative error 2^-30: the kernel of log2 and pow.
+/// With the significand 1 + r and s = r / (2 + r), it is log2((1 + s) / (1 - s)) = c s + s^3 P(s^2), where c s is
+/// computed with more than float precision. Source: polynomials by Sollya's fpminimax.
 template <class F>
 Sum<F> log2_sum(F x) {
   constexpr float c_head = 0x1.716p1f;  // 2 / log(2) to 12 bits
@@ -51,7 +51,7 @@ Sum<F> log2_sum(F x) {
   const Binary<F> b = split_binary(x);
   const F r = b.rest;
 
-  // s = s_head + s_tail, the tail from what the head leaves of r.
+  // s = s_head + s_tail; the tail is computed from the remainder r - s_head * divisor.
   const F divisor = r + 2.0f;
   const F estimate = polynomial(divisor, {0x1.deaba2p-4f, -0x1.71e43ap-1f, 0x1.7a4e3ep0f});
   const F reciprocal = estimate * (2.0f - divisor * estimate);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matrices of columns, acting on column vectors from the left.
+// Column-major matrices, which multiply column vectors from the left.
 #pragma once
 
 #include <utility>
@@ -42,38 +42,38 @@ mat<F, N> matmul(mat<F, N> a, mat<F, N> b) {
   return make_columns<N>([&](int c) { return transform(a, b[c]); });
 }
 
-/// Rows become columns.
-/// Domain: all floats, which stay what they are.
+/// The transpose.
+/// Domain: all floats, unchanged.
 /// Error: 0 ULP.
 template <class F, int N>
 mat<F, N> transpose(mat<F, N> m) {
   return make_columns<N>([&](int c) { return make_elements<N>([&](int r) { return m[r][c]; }); });
 }
 
-/// The first three rows of a column.
+/// The first three components of a column.
 template <class F, int N>
 vec<F, 3> upper_three(vec<F, N> column) {
   return {column[0], column[1], column[2]};
 }
 
-/// m * (v, 0) without its last component: a direction or a difference of points.
-/// Domain: all floats; sums of products that overflow give infinities or NaN. The matrix's last row is not looked at.
+/// m * (v, 0) without its last component: transforms a direction.
+/// Domain: all floats; sums of products that overflow give infinities or NaN. Ignores the last row of the matrix.
 /// Error: 2 ULP of the sum of the products' magnitudes, in each component.
 template <class F>
 vec<F, 3> transform_vector(mat<F, 4> m, vec<F, 3> v) {
   return transform(mat<F, 3>{{upper_three(m[0]), upper_three(m[1]), upper_three(m[2])}}, v);
 }
 
-/// m * (p, 1) without its last component: a point moved by an affine matrix.
-/// Domain: all floats; sums of products that overflow give infinities or NaN. The matrix's last row is not looked at.
+/// m * (p, 1) without its last component: transforms a point by an affine matrix.
+/// Domain: all floats; sums of products that overflow give infinities or NaN. Ignores the last row of the matrix.
 /// Error: 2.5 ULP of the sum of the terms' magnitudes, in each component.
 template <class F>
 vec<F, 3> transform_point(mat<F, 4> m, vec<F, 3> p) {
   return transform_vector(m, p) + upper_three(m[3]);
 }
 
-/// The matrix that takes normals where `m` takes points: a positive multiple of the inverse transpose of its
-/// upper left 3 x 3, by cofactors and without a division. Normalise what it gives.
+/// The matrix that transforms normals: a positive multiple of the inverse transpose of the upper left 3 x 3 block of
+/// `m`, computed from cofactors without a division. The transformed normals need normalisation.
 /// Domain: all floats; products that overflow give infinities or NaN. A singular matrix gives its cofactors.
 /// Error: 1.5 ULP of the sum of the two products' magnitudes, in each element.
 template <class F, int N>
@@ -87,7 +87,7 @@ mat<F, 3> normal_matrix(mat<F, N> m) {
   return {{outward(first), outward(cross(z, x)), outward(cross(x, y))}};
 }
 
-/// normal_matrix(m) * n: a normal of what `m` moves. Normalise what it gives.
+/// normal_matrix(m) * n: transforms a normal. The result is not normalised.
 /// Domain: all floats; products that overflow give infinities or NaN.
 /// Error: 3 ULP of the sum of the terms' magnitudes, in each component.
 template <class F>
@@ -101,7 +101,7 @@ mat<F, 3> adjugate_rows(mat<F, 3> m) {
   return {{cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])}};
 }
 
-/// The six 2 x 2 determinants of two columns of four; xy is that of their first two rows.
+/// The six 2 x 2 minors of a 4 x 2 matrix with columns a and b; xy is that of the first two rows.
 template <class F>
 struct Minors {
   F xy, xz, xw, yz, yw, zw;
@@ -114,7 +114,7 @@ struct Minors {
         yw(a[1] * b[3] - a[3] * b[1]),
         zw(a[2] * b[3] - a[3] * b[2]) {}
 
-  /// The vector whose product with any x is the determinant of x, v and the two columns.
+  /// The vector whose dot product with any x is the determinant of the matrix (x, v, a, b).
   vec<F, 4> with(vec<F, 4> v) const {
     return {(v[1] * zw - v[2] * yw) + v[3] * yz, (v[2] * xw - v[0] * zw) - v[3] * xz,
             (v[0] * yw - v[1] * xw) + v[3] * xy, (v[1] * xz - v[0] * yz) - v[2] * xy};
@@ -133,14 +133,14 @@ mat<F, 4> adjugate_rows(mat<F, 4> m) {
 /// Error: 4 ULP of the sum of the terms' magnitudes.
 template <class F, int N>
 F determinant(mat<F, N> m) {
-  return dot(adjugate_rows(m)[0], m[0]);  // of the rows only this one becomes code
+  return dot(adjugate_rows(m)[0], m[0]);  // the other rows are dead code
 }
 
 /// The inverse.
-/// Domain: all floats; products of N elements that overflow or underflow lose it. A singular matrix gives
-/// infinities and NaN.
-/// Error: 4 ULP of (the sum of the terms' magnitudes of the element's cofactor + |element| times that of the
-/// determinant) / |determinant|.
+/// Domain: all floats; wrong if products of N elements overflow or underflow. A singular matrix gives infinities and
+/// NaN.
+/// Error: 4 ULP of (C + |element| * D) / |determinant|, where C and D are the sums of the terms' magnitudes of the
+/// element's cofactor and of the determinant.
 /// Source: Cramer's rule.
 template <class F, int N>
 mat<F, N> inverse(mat<F, N> m) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradient noise. Perlin, "Improving noise", 2002; gradients, hashes and scales as in Open Shading Language and
-// MaterialX. Three channels come from three bytes of one hash.
+// Gradient noise. Perlin, "Improving noise", 2002; gradients, hashes and scales are those of Open Shading Language and
+// MaterialX. Three channels use three bytes of one hash.
 #pragma once
 
 #include <tuple>
@@ -10,8 +10,8 @@
 
 namespace isoshade::functions {
 
-/// 6t^5 - 15t^4 + 10t^3: from 0 to 1 with first and second derivatives 0 at both. Taken about its middle, where the
-/// terms do not cancel: that is ten times as exact.
+/// 6t^5 - 15t^4 + 10t^3: rises from 0 to 1, with zero first and second derivatives at both ends. Expanded about
+/// t = 0.5, where the terms do not cancel, which is ten times as accurate.
 template <class F>
 F fade(F t) {
   const F s = t - 0.5f;
@@ -19,13 +19,13 @@ F fade(F t) {
   return ((z * 6.0f - 5.0f) * z + 1.875f) * s + 0.5f;
 }
 
-/// x, negated where this bit of the hash is set. x is not NaN.
+/// x, negated if this bit of the hash is set. x must not be NaN.
 template <class F>
 F negate_by_bit(F x, int_of<F> hash, int bit) {
   return from_bits_normal(bits_nonnan(x) ^ (shift_left(hash, 31 - bit) & sign_bit));
 }
 
-/// The product of (x, y) with one of (+-1, +-2) and (+-2, +-1), chosen by the lowest 3 bits.
+/// The dot product of (x, y) with one of (+-1, +-2) and (+-2, +-1), chosen by the lowest 3 bits.
 template <class F>
 F gradient(int_of<F> hash, F x, F y) {
   const auto flat = (hash & 4) == 0;
@@ -34,8 +34,8 @@ F gradient(int_of<F> hash, F x, F y) {
   return negate_by_bit(once, hash, 0) + negate_by_bit(twice, hash, 1);
 }
 
-/// The product of (x, y, z) with one of the 12 vectors to the middles of a cube's edges (four of them twice),
-/// chosen by the lowest 4 bits.
+/// The dot product of (x, y, z) with one of the 12 vectors to the midpoints of a cube's edges, chosen by the lowest 4
+/// bits (four vectors have two codes).
 template <class F>
 F gradient(int_of<F> hash, F x, F y, F z) {
   const F first = select((hash & 8) == 0, x, y);
@@ -44,7 +44,7 @@ F gradient(int_of<F> hash, F x, F y, F z) {
   return negate_by_bit(first, hash, 0) + negate_by_bit(second, hash, 1);
 }
 
-/// The noise around a point of the plane: corners are 00, 10, 01, 11 (x first).
+/// The grid cell around a point in the plane; corners in the order 00, 10, 01, 11 (x first).
 template <class F>
 struct Square {
   int_of<F> hashes[4];
@@ -52,7 +52,7 @@ struct Square {
 
   explicit Square(vec<F, 2> p) : Square(split_cell(p[0]), split_cell(p[1])) {}
 
-  /// The channel whose gradients are chosen by the hash from this bit on.
+  /// The noise channel whose gradients use the hash from this bit.
   F channel(int bit) const {
     const F x1 = x - 1.0f;
     const F y1 = y - 1.0f;
@@ -69,11 +69,11 @@ struct Square {
   Square(InCell<F> a, InCell<F> b)
       : hashes{hash(a.cell, b.cell), hash(a.cell + 1, b.cell), hash(a.cell, b.cell + 1),
                hash(a.cell + 1, b.cell + 1)},
-        x(a.place),
-        y(b.place) {}
+        x(a.fraction),
+        y(b.fraction) {}
 };
 
-/// The noise around a point of space: corner i is at bit 0, 1 and 2 of i in x, y and z.
+/// The grid cell around a point in space; bits 0, 1 and 2 of a corner's index are its x, y and z.
 template <class F>
 struct Cube {
   using Int = int_of<F>;
@@ -83,7 +83,7 @@ struct Cube {
 
   explicit Cube(vec<F, 3> p) : Cube(split_cell(p[0]), split_cell(p[1]), split_cell(p[2])) {}
 
-  /// The channel whose gradients are chosen by the hash from this bit on.
+  /// The noise channel whose gradients use the hash from this bit.
   F channel(int bit) const {
     const F x1 = x - 1.0f;
     const F y1 = y - 1.0f;
@@ -107,13 +107,13 @@ struct Cube {
       : hashes{hash(a.cell, b.cell, c.cell), hash(a1, b.cell, c.cell), hash(a.cell, b1, c.cell),
                hash(a1, b1, c.cell),         hash(a.cell, b.cell, c1), hash(a1, b.cell, c1),
                hash(a.cell, b1, c1),         hash(a1, b1, c1)},
-        x(a.place),
-        y(b.place),
-        z(c.place) {}
+        x(a.fraction),
+        y(b.fraction),
+        z(c.fraction) {}
 };
 
-/// Gradient noise in the plane: smooth, about within [-1, 1], 0 at whole coordinates.
-/// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0.
+/// Gradient noise in the plane: smooth, roughly in [-1, 1], 0 at integer coordinates.
+/// Domain: all floats; coordinates of a magnitude from 2^31, infinities and NaN count as 0.
 /// Error: 2 ULP of 1.
 template <class F>
 F noise2d(vec<F, 2> p) {
@@ -121,7 +121,7 @@ F noise2d(vec<F, 2> p) {
 }
 
 /// Gradient noise in the plane with three channels; the first is noise2d.
-/// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0.
+/// Domain: all floats; coordinates of a magnitude from 2^31, infinities and NaN count as 0.
 /// Error: 2 ULP of 1, in each component.
 template <class F>
 vec<F, 3> noise2d_vector3(vec<F, 2> p) {
@@ -129,8 +129,8 @@ vec<F, 3> noise2d_vector3(vec<F, 2> p) {
   return {square.channel(0), square.channel(8), square.channel(16)};
 }
 
-/// Gradient noise in space: smooth, about within [-1, 1], 0 at whole coordinates.
-/// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0.
+/// Gradient noise in space: smooth, roughly in [-1, 1], 0 at integer coordinates.
+/// Domain: all floats; coordinates of a magnitude from 2^31, infinities and NaN count as 0.
 /// Error: 2 ULP of 1.
 template <class F>
 F noise3d(vec<F, 3> p) {
@@ -138,7 +138,7 @@ F noise3d(vec<F, 3> p) {
 }
 
 /// Gradient noise in space with three channels; the first is noise3d.
-/// Domain: all floats; coordinates from 2^31 on in magnitude, infinities and NaN count as 0.
+/// Domain: all floats; coordinates of a magnitude from 2^31, infinities and NaN count as 0.
 /// Error: 2 ULP of 1, in each component.
 template <class F>
 vec<F, 3> noise3d_vector3(vec<F, 3> p) {
@@ -148,9 +148,10 @@ vec<F, 3> noise3d_vector3(vec<F, 3> p) {
 
 inline constexpr int most_octaves = 16;
 
-/// noise3d(p) + diminish * noise3d(lacunarity * p) + diminish^2 * noise3d(lacunarity^2 * p) + ..., so many terms.
-/// Domain: all floats. Octaves are rounded up, and are 16 at most; of none, which NaN counts as, the sum is 0. Points
-/// and amplitudes grow as floats do: a point from 2^31 on counts as 0, an infinite or NaN amplitude gives NaN.
+/// The sum of `octaves` terms: noise3d(p) + diminish * noise3d(lacunarity * p) + diminish^2 * noise3d(lacunarity^2 * p)
+/// + ...
+/// Domain: all floats. `octaves` is rounded up and limited to 16; 0 or NaN octaves give 0. Scaled coordinates from 2^31
+/// count as 0; an infinite or NaN amplitude gives NaN.
 /// Error: 2 ULP of the sum of |diminish^i| (1 + i |p_i|), where p_i is the i-th octave's point.
 template <class F>
 F fractal3d(vec<F, 3> p, F octaves, F lacunarity, F diminish) {
@@ -169,8 +170,8 @@ F fractal3d(vec<F, 3> p, F octaves, F lacunarity, F diminish) {
 }
 
 /// fractal3d with three channels.
-/// Domain: all floats. Octaves are rounded up, and are 16 at most; of none, which NaN counts as, the sum is 0. Points
-/// and amplitudes grow as floats do: a point from 2^31 on counts as 0, an infinite or NaN amplitude gives NaN.
+/// Domain: all floats. `octaves` is rounded up and limited to 16; 0 or NaN octaves give 0. Scaled coordinates from 2^31
+/// count as 0; an infinite or NaN amplitude gives NaN.
 /// Error: 2 ULP of the sum of |diminish^i| (1 + i |p_i|), where p_i is the i-th octave's point.
 template <class F>
 vec<F, 3> fractal3d_vector3(vec<F, 3> p, F octaves, F lacunarity, F diminish) {

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unit vectors in one float each: a point of the unit octahedron, unfolded to a square of 4095 x 4095 steps, as
-// column + 4096 * row. Source: Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors.
+// Octahedral encoding of unit vectors in one float: a point on the unit octahedron, unfolded to a grid of 4095 x 4095
+// points, as column + 4096 * row. Source: Cigolle et al. 2014, A Survey of Efficient Representations for Independent
+// Unit Vectors.
 #pragma once
 
 #include "compiler/functions/comparison.h"
 
 namespace isoshade::functions {
 
-inline constexpr float octahedral_half = 2047.0f;  ///< steps from the middle of the square to its side
+inline constexpr float octahedral_half = 2047.0f;  ///< steps from the centre of the square to its edge
 inline constexpr float octahedral_rows = 4096.0f;
 
-/// `x` less `by` where it is not negative, else more: the fold of the lower half.
+/// Moves `x` towards 0 by `by`: folds the lower half.
 template <class F>
 F folded(F x, F by) {
   return select(x < 0.0f, x + by, x - by);
 }
 
-/// The packed vector, of a length from 0.57 to 1.
-/// Domain: what octahedral_encode gives.
-/// Error: the directions of the axes are exact, others are off by at most 1.1e-3 radians.
+/// Decodes a vector; its length is between 0.57 and 1.
+/// Domain: results of octahedral_encode.
+/// Error: axis directions are exact; others differ by at most 1.1e-3 radians.
 template <class F>
 vec<F, 3> octahedral_decode(F packed) {
   const F row = floor(packed * (1.0f / octahedral_rows));
@@ -30,7 +31,7 @@ vec<F, 3> octahedral_decode(F packed) {
   return {folded(x, below), folded(y, below), z};
 }
 
-/// Packs a vector of any length above 0.
+/// Encodes the direction of a vector of any positive length.
 inline float octahedral_encode(vec<float, 3> v) {
   const float sum = abs(v[0]) + abs(v[1]) + abs(v[2]);
   float x = v[0] / sum, y = v[1] / sum;

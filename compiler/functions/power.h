@@ -8,17 +8,17 @@
 namespace isoshade::functions {
 
 /// x^y for x >= 0.
-/// Domain: all floats. As IEEE-754's powr, but that pow(x, 0) = 1 for every x, NaN too, and pow(1, y) = 1
-/// for every y but NaN; x < 0 gives NaN even for whole y. A result below 2^-126 is 0.
-/// Error: 2 ULP for x in [1e-6, 1e6] and |y| <= 64; at most some 6 ULP beyond.
-/// Source: exp2(y * log2(x)) with the product and the logarithm carried as sums of two floats.
+/// Domain: all floats. As IEEE-754's powr, except that pow(x, 0) = 1 for every x, including NaN, and pow(1, y) = 1
+/// for every y but NaN; x < 0 gives NaN even for integer y. Results below 2^-126 are 0.
+/// Error: 2 ULP for x in [1e-6, 1e6] and |y| <= 64; at most about 6 ULP elsewhere.
+/// Source: exp2(y * log2(x)), with the logarithm and the product as sums of two floats.
 template <class F>
 F pow(F x, F y) {
   const auto ordinary = (x > 0.0f) & (x < infinity);
   const Sum<F> log2_x = log2_sum(select(ordinary, x, F(1.0f)));
   const F l = log2_x.high + log2_x.low;
   const F l_rest = (log2_x.high - l) + log2_x.low;
-  const F e = min(max(F(-0x1p100f), y), F(0x1p100f));  // so that nothing overflows; not NaN
+  const F e = min(max(F(-0x1p100f), y), F(0x1p100f));  // avoids overflow; never NaN
 
   // e * (l + l_rest) = p + p_rest
   const F e_head = head(e);
@@ -42,9 +42,8 @@ F pow(F x, F y) {
 }
 
 /// |x|^y with the sign of x.
-/// Domain: all floats, as pow of a magnitude, in each tier. -0 counts as 0 and 0 as positive: 0^0 is 1, and 0 to a
-/// negative power +inf.
-/// Error: 2 ULP for |x| in [1e-6, 1e6] and |y| <= 64; at most some 6 ULP beyond.
+/// Domain: all floats, as for pow in each tier. Zeros count as positive: 0^0 is 1, and 0 to a negative power is +inf.
+/// Error: 2 ULP for |x| in [1e-6, 1e6] and |y| <= 64; at most about 6 ULP elsewhere.
 template <class F>
 F safepower(F x, F y) {
   const F magnitude = pow(abs(x), y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// To whole numbers, and what is left over.
+// Rounding to integers, fractions and remainders.
 #pragma once
 
 #include <tuple>
@@ -8,27 +8,27 @@
 
 namespace isoshade::functions {
 
-/// The least whole number not below x.
-/// Domain: all floats. Zeros, infinities and NaN give themselves; above -1 and below 0 it is -0.
+/// The smallest integer not below x.
+/// Domain: all floats. Zeros, infinities and NaN are returned unchanged; x in (-1, 0) gives -0.
 /// Error: 0 ULP.
 template <class F>
 F ceil(F x) {
   return negate(floor(negate(x)));
 }
 
-/// The whole number nearest to x; halves go to the even one, as GLSL's roundEven and IEEE-754 have it.
-/// Domain: all floats. Zeros, infinities and NaN give themselves; what rounds to zero keeps its sign.
+/// The integer nearest to x, ties to even, like GLSL's roundEven.
+/// Domain: all floats. Zeros, infinities and NaN are returned unchanged; a zero result keeps the sign of x.
 /// Error: 0 ULP.
 template <class F>
 F round(F x) {
-  constexpr float whole = 0x1p23f;  // from here on every float is whole
+  constexpr float whole = 0x1p23f;  // all floats from here are integers
   const auto small = abs(x) < whole;
   const F within = select(small, x, F(0.0f));
   const F magnitude = (abs(within) + whole) - whole;
   return select(small, from_bits_normal(bits_nonnan(magnitude) | (bits_nonnan(within) & sign_bit)), x);
 }
 
-/// x - floor(x), in [0, 1): what would round to 1 is the float below.
+/// x - floor(x), in [0, 1): a difference that rounds to 1 gives the largest float below 1.
 /// Domain: all floats; infinities and NaN give NaN.
 /// Error: 1 ULP.
 template <class F>
@@ -36,11 +36,11 @@ F fract(F x) {
   return min(x - floor(x), F(0x1.fffffep-1f));
 }
 
-/// What is left of |x| when divided by |y|, or else what is missing there, exactly, for finite |x| >= |y| > 0. Other
-/// arguments give some number.
-/// Long division of the significands, seven bits of the quotient at a time, which to_int can take.
+/// The exact remainder of |x| divided by |y|, or, if `complement`, |y| minus the remainder (0 stays 0), for finite
+/// |x| >= |y| > 0. Other arguments give an unspecified number.
+/// Long division of the significands, 7 bits of the quotient per step, so that quotients convert to int exactly.
 template <class F>
-F remainder_of_magnitudes(F x, F y, bool_of<F> missing) {
+F remainder_of_magnitudes(F x, F y, bool_of<F> complement) {
   using Int = int_of<F>;
   const auto exponent = [](Int pattern) { return shift_right(pattern, 23) & 255; };
   const Int x_bits = bits(x);
@@ -64,14 +64,14 @@ F remainder_of_magnitudes(F x, F y, bool_of<F> missing) {
   };
   const Int first = select(dividend >= divisor, dividend - divisor, dividend);
   const Int left = std::get<0>(loop(Int(37), more, first));
-  const Int rest = select(missing & (left != 0), divisor - left, left);
+  const Int rest = select(complement & (left != 0), divisor - left, left);
   return (to_float(rest) * 0x1p-24f) * from_bits_normal(shift_left(exponent(y_bits) + 1, 23));
 }
 
-/// What is left of x when divided by y: x - y * floor(x / y), with the sign of y.
+/// The floored remainder x - y * floor(x / y), with the sign of y.
 /// Domain: all floats. A divisor of 0, infinities and NaN give NaN.
-/// Error: 1 ULP of |x| + |y|; where x / y rounds to a whole number 0 and y are taken for each other. From |x / y| =
-/// 2^20 on it is 1 ULP of |y|.
+/// Error: 1 ULP of |x| + |y|, where 0 and y count as equal if x / y rounds to an integer; 1 ULP of |y| for
+/// |x / y| >= 2^20.
 template <class F>
 F mod(F x, F y) {
   const F quotient = x / y;
@@ -79,7 +79,7 @@ F mod(F x, F y) {
       abs(quotient) < 0x1p20f,
       [&] {
         const F rest = x - y * floor(quotient);
-        // A quotient just below a whole number may have been rounded up to it, and products round.
+        // The quotient may have been rounded up to an integer, and the product is rounded.
         const F turned = select((rest < 0.0f) ^ (y < 0.0f), select(rest == 0.0f, rest, rest + y), rest);
         return select(abs(turned) > abs(y), y, turned);
       },

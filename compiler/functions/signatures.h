@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the signature column of functions.def means: the argument types of a row's variants.
+// The signature column of functions.def: the argument types of a row's variants.
 #pragma once
 
-#include "compiler/functions/matrix_type.h"
+#include "compiler/functions/body.h"
 
 namespace isoshade::functions {
 
 template <class... T>
 struct Types {};
 
-/// A code is a list of variants, a variant a list of argument types. Rows whose code begins with g are
-/// defined on floats; their vector variants apply that to each component.
+/// A signature is a list of variants, and a variant a list of argument types. Rows whose signature begins with g are
+/// defined on floats; their vector variants work componentwise.
 template <class F>
 struct Signatures {
   template <int N>
@@ -24,7 +24,7 @@ struct Signatures {
   using g_gg = Types<Types<F, F>, Types<V<2>, V<2>>, Types<V<3>, V<3>>, Types<V<4>, V<4>>>;
   using g_ggg =
       Types<Types<F, F, F>, Types<V<2>, V<2>, V<2>>, Types<V<3>, V<3>, V<3>>, Types<V<4>, V<4>, V<4>>>;
-  using g_ggh = Types<Types<F, F, F>,  // h: as g, or a float for all components
+  using g_ggh = Types<Types<F, F, F>,  // h: like g, or a float for all components
                       Types<V<2>, V<2>, V<2>>, Types<V<3>, V<3>, V<3>>, Types<V<4>, V<4>, V<4>>,
                       Types<V<2>, V<2>, F>, Types<V<3>, V<3>, F>, Types<V<4>, V<4>, F>>;
   using g_ggggg = Types<Types<F, F, F, F, F>, Types<V<2>, V<2>, V<2>, V<2>, V<2>>,

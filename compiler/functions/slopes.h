@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the changes in functions.def are written with: slopes that take more than a line.
+// Helpers of the DERIVATIVE rows of functions.def.
 #pragma once
 
 #include "compiler/functions/noise.h"
@@ -9,7 +9,7 @@
 
 namespace isoshade::functions {
 
-/// Of x^y along x. At x = 0 it is 1 for y = 1, and else 0, where it would be infinite too.
+/// The derivative of x^y with respect to x. At x = 0 it is 1 for y = 1, else 0, even where it is infinite.
 template <class F>
 F power_slope(F x, F y) {
   const F at_zero = select(y == 1.0f, F(1.0f), F(0.0f));
@@ -23,7 +23,7 @@ F angle_slope(F part, F y, F x) {
   return select(square > 0.0f, part / square, F(0.0f));
 }
 
-/// Of v / |v| where v changes by d: what of d is across v, over |v|. 0 where v is.
+/// The change of v / |v| if v changes by d: the component of d perpendicular to v, divided by |v|; 0 if v is 0.
 template <class F, int N>
 vec<F, N> normalize_change(vec<F, N> v, vec<F, N> d) {
   const vec<F, N> unit = normalize(v);
@@ -32,37 +32,37 @@ vec<F, N> normalize_change(vec<F, N> v, vec<F, N> d) {
   return componentwise([&](F c) { return select(size > 0.0f, c / size, F(0.0f)); }, across);
 }
 
-/// A quarter turn clockwise.
+/// v, rotated clockwise by 90 degrees.
 template <class F>
-vec<F, 2> turned_right(vec<F, 2> v) {
+vec<F, 2> rotate_right(vec<F, 2> v) {
   return {v[1], negate(v[0])};
 }
 
-/// x, negated where this bit is set. As negate_by_bit, for NaN too: changes may be anything.
+/// x, negated if this bit of the hash is set. Unlike negate_by_bit, allows NaN, because changes may be NaN.
 template <class F>
 F negated_by_bit(F x, int_of<F> hash, int bit) {
   return select((hash & (1 << bit)) == 0, x, negate(x));
 }
 
-/// A value and what it changes by.
+/// A dual number: a value and its change.
 template <class F>
-struct Moving {
+struct Dual {
   F value;
   F change;
 };
 
 template <class F>
-Moving<F> mix(Moving<F> a, Moving<F> b, Moving<F> t) {
+Dual<F> mix(Dual<F> a, Dual<F> b, Dual<F> t) {
   return {mix(a.value, b.value, t.value), mix(a.change, b.change, t.value) + (b.value - a.value) * t.change};
 }
 
 template <class F>
-Moving<F> fade(Moving<F> t) {
+Dual<F> fade(Dual<F> t) {
   const F rise = t.value * (1.0f - t.value);
   return {fade(t.value), (rise * rise) * (t.change * 30.0f)};
 }
 
-/// `gradient` of changes: it is linear.
+/// The change of `gradient`, which is linear in its arguments.
 template <class F>
 F gradient_change(int_of<F> hash, F dx, F dy) {
   const auto flat = (hash & 4) == 0;
@@ -78,7 +78,7 @@ F gradient_change(int_of<F> hash, F dx, F dy, F dz) {
   return negated_by_bit(first, hash, 0) + negated_by_bit(second, hash, 1);
 }
 
-/// A channel of the noise around a point that moves by d.
+/// The change of a noise channel if the point moves by d.
 template <class F>
 F channel_change(const Square<F>& square, int bit, vec<F, 2> d) {
   const F dx = d[0];
@@ -87,12 +87,12 @@ F channel_change(const Square<F>& square, int bit, vec<F, 2> d) {
   const F y1 = square.y - 1.0f;
   const auto corner = [&](int i, F x, F y) {
     const auto hash = bit == 0 ? square.hashes[i] : shift_right(square.hashes[i], bit);
-    return Moving<F>{gradient(hash, x, y), gradient_change(hash, dx, dy)};
+    return Dual<F>{gradient(hash, x, y), gradient_change(hash, dx, dy)};
   };
-  const Moving<F> across = fade(Moving<F>{square.x, dx});
-  const Moving<F> near = mix(corner(0, square.x, square.y), corner(1, x1, square.y), across);
-  const Moving<F> far = mix(corner(2, square.x, y1), corner(3, x1, y1), across);
-  return mix(near, far, fade(Moving<F>{square.y, dy})).change * 0.6616f;
+  const Dual<F> across = fade(Dual<F>{square.x, dx});
+  const Dual<F> near = mix(corner(0, square.x, square.y), corner(1, x1, square.y), across);
+  const Dual<F> far = mix(corner(2, square.x, y1), corner(3, x1, y1), across);
+  return mix(near, far, fade(Dual<F>{square.y, dy})).change * 0.6616f;
 }
 
 template <class F>
@@ -103,18 +103,18 @@ F channel_change(const Cube<F>& cube, int bit, vec<F, 3> d) {
   const F x1 = cube.x - 1.0f;
   const F y1 = cube.y - 1.0f;
   const F z1 = cube.z - 1.0f;
-  const Moving<F> across = fade(Moving<F>{cube.x, dx});
+  const Dual<F> across = fade(Dual<F>{cube.x, dx});
   const auto edge = [&](int i, F y, F z) {
     const auto corner = [&](int k, F x) {
       const auto hash = bit == 0 ? cube.hashes[k] : shift_right(cube.hashes[k], bit);
-      return Moving<F>{gradient(hash, x, y, z), gradient_change(hash, dx, dy, dz)};
+      return Dual<F>{gradient(hash, x, y, z), gradient_change(hash, dx, dy, dz)};
     };
     return mix(corner(i, cube.x), corner(i + 1, x1), across);
   };
-  const Moving<F> down = fade(Moving<F>{cube.y, dy});
-  const Moving<F> near = mix(edge(0, cube.y, cube.z), edge(2, y1, cube.z), down);
-  const Moving<F> far = mix(edge(4, cube.y, z1), edge(6, y1, z1), down);
-  return mix(near, far, fade(Moving<F>{cube.z, dz})).change * 0.982f;
+  const Dual<F> down = fade(Dual<F>{cube.y, dy});
+  const Dual<F> near = mix(edge(0, cube.y, cube.z), edge(2, y1, cube.z), down);
+  const Dual<F> far = mix(edge(4, cube.y, z1), edge(6, y1, z1), down);
+  return mix(near, far, fade(Dual<F>{cube.z, dz})).change * 0.982f;
 }
 
 template <class F>

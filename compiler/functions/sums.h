@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arithmetic on sums of two floats that are not carried out: the error-free transformations of Dekker, "A
-// floating-point technique for extending the available precision", 1971, and Knuth. The operands' exponents are such
-// that no product's low part underflows.
+// Arithmetic on unevaluated sums of two floats: the error-free transformations of Dekker, "A floating-point technique
+// for extending the available precision", 1971, and Knuth. The low parts of products must not underflow.
 #pragma once
 
 #include "compiler/functions/logarithm.h"
@@ -16,7 +15,7 @@ Sum<F> two_sum(F a, F b) {
   return {high, (a - (high - b_part)) + (b - b_part)};
 }
 
-/// a + b, exactly, where |a| >= |b| or a = 0.
+/// a + b, exactly, for |a| >= |b| or a = 0.
 template <class F>
 Sum<F> quick_two_sum(F a, F b) {
   const F high = a + b;
@@ -34,7 +33,7 @@ Sum<F> two_product(F a, F b) {
   return {high, (((a_head * b_head - high) + a_head * b_tail) + a_tail * b_head) + a_tail * b_tail};
 }
 
-/// a * b, exactly, of a constant.
+/// a * b, exactly, for a constant b.
 template <class F>
 Sum<F> two_product_by(F a, float b) {
   const float b_head = __builtin_bit_cast(float, __builtin_bit_cast(int, b) & ~0xfff);

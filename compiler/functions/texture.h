@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texture coordinates and mip levels. What is made of them: compiler/lower/sampling.h.
+// Texture coordinates and mip levels; compiler/lower/sampling.h uses them.
 #pragma once
 
 #include "compiler/functions/logarithm.h"
@@ -8,7 +8,7 @@
 
 namespace isoshade::functions {
 
-/// A texture coordinate brought into [0, 1) by leaving out whole pictures.
+/// Repeats the texture: maps a texture coordinate to [0, 1).
 /// Domain: all floats; infinities and NaN give 0.
 /// Error: 1 ULP.
 template <class F>
@@ -16,7 +16,7 @@ F wrap(F x) {
   return fract(select(abs(x) < infinity, x, F(0.0f)));
 }
 
-/// A texture coordinate brought into [0, 1] by mirrors at all whole numbers.
+/// Repeats the texture mirrored: maps a texture coordinate to [0, 1], reflecting it at every integer.
 /// Domain: all floats; infinities and NaN give 0.
 /// Error: 0 ULP.
 template <class F>
@@ -27,9 +27,9 @@ F mirror(F x) {
   return select(in_two > 1.0f, 2.0f - in_two, in_two);
 }
 
-/// The mip level whose texels are as large as a pixel: the logarithm to base 2 of the longer of two gradients, each
-/// what the place in the texture changes by along one side of a pixel, in texels.
-/// Domain: all floats. +inf where squares overflow, -inf where both gradients are 0; NaN or by the other where one is.
+/// The mip level whose texels are the size of a pixel: the base-2 logarithm of the longer of the two screen-space
+/// gradients of the texture coordinate, in texels per pixel.
+/// Domain: all floats. +inf if squares overflow, -inf if both gradients are 0; a NaN gradient gives NaN or is ignored.
 /// Error: 2 ULP of 1 + |result|.
 template <class F, int N>
 F mip_level(vec<F, N> along_x, vec<F, N> along_y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How exact the library is asked to be: a choice of bodies. In every tier all backends compute the same bits.
+// The accuracy tier, which selects function bodies. In every tier, all backends compute the same bits.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ enum class Tier : uint8_t {
 
 inline constexpr std::array tiers{Tier::fast, Tier::standard, Tier::precise};
 
-/// As the command line and recorded hashes spell it: "fast", "default", "precise".
+/// Its name on the command line and in recorded hashes: "fast", "default", "precise".
 constexpr std::string_view tier_name(Tier tier) {
   constexpr std::array<std::string_view, tiers.size()> names{"fast", "default", "precise"};
   return names[static_cast<size_t>(tier)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stand-ins for float, int, bool and vectors that record what is done with them. A function template of this
-// folder instantiated with `traced::Float` builds IR; instantiated with `float` it computes.
+// Replacements for float, int, bool and vectors that record operations. A function template of this folder builds IR if
+// instantiated with `traced::Float`, and computes if instantiated with `float`.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace isoshade::functions::traced {
 
-/// A value of a builder, or a literal that becomes a constant where it first meets a value.
+/// A value of a builder, or a literal that becomes a constant when it is combined with a value.
 template <class Literal>
 struct Scalar {
   ir::Builder* builder = nullptr;
@@ -67,12 +67,12 @@ ir::Builder* builder_in(const T& value) {
   return value.builder;
 }
 
-/// The builder of the values among these.
+/// The builder of the first argument that is not a literal.
 template <class... T>
 ir::Builder& builder_of(const T&... values) {
   ir::Builder* found = nullptr;
   ((found = found ? found : builder_in(values)), ...);
-  support::assert_that(found != nullptr, "a traced operation on literals alone");
+  support::assert_that(found != nullptr, "a traced operation has only literal operands");
   return *found;
 }
 
@@ -83,7 +83,7 @@ Result record(ir::Opcode op, const T&... operands) {
   return Result(b, b.op(op, {operands.id(b)...}));
 }
 
-/// Records the vector of these components.
+/// Records the construction of a vector.
 ir::ValueId construct(ir::Builder& builder, std::span<const Float> components);
 
 }  // namespace isoshade::functions::traced
@@ -94,7 +94,7 @@ template <>
 struct traits<functions::traced::Float>
     : family<functions::traced::Float, functions::traced::Int, functions::traced::Bool, 1> {};
 
-/// A traced vector is one value of a vector type; components are extracted on demand.
+/// One IR value of a vector type; components are extracted on demand.
 template <int N>
 struct vec<functions::traced::Float, N> {
   using Float = functions::traced::Float;

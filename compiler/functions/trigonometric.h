@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sine, cosine and tangent over all floats. Angles up to `near_angle` are reduced in floats, larger ones in integers;
-// the integers are computed only where a lane has such an angle.
+// Sine, cosine and tangent over all floats. Angles up to `near_angle` are reduced in floats, larger ones in integers,
+// which are computed only if a lane has such an angle.
 #pragma once
 
 #include "compiler/functions/sums.h"
@@ -9,7 +9,7 @@ namespace isoshade::functions {
 
 inline constexpr float near_angle = 0x1p13f;
 
-/// An angle as quarter turns (modulo 4) and a rest r + r_low in about [-pi/4, pi/4].
+/// An angle as quarter turns (modulo 4) and a rest r + r_low, approximately in [-pi/4, pi/4].
 template <class F>
 struct Reduced {
   int_of<F> quadrant;
@@ -17,7 +17,7 @@ struct Reduced {
   F r_low;
 };
 
-/// An angle as a quadrant and a rest in [-pi/4, pi/4], of which these are sine and cosine.
+/// An angle as a quadrant and the sine and cosine of a rest in [-pi/4, pi/4].
 template <class F>
 struct Angle {
   int_of<F> quadrant;
@@ -25,21 +25,21 @@ struct Angle {
   F cosine;
 };
 
-/// The sine of r in [-pi/4, pi/4] is r + r * this, z being r * r.
+/// sin(r) = r + r * sine_excess(r * r) for r in [-pi/4, pi/4].
 /// Source: polynomials by Sollya's fpminimax.
 template <class F>
 F sine_excess(F z) {
   return z * polynomial(z, {-0x1.9ab41ap-13f, 0x1.110be6p-7f, -0x1.555552p-3f});
 }
 
-/// The cosine of r in [-pi/4, pi/4], z being r * r.
+/// cos(r) = cosine_of_square(r * r) for r in [-pi/4, pi/4].
 template <class F>
 F cosine_of_square(F z) {
   return (z * z) * polynomial(z, {0x1.9bc77ap-16f, -0x1.6c129ep-10f, 0x1.555554p-5f}) + (1.0f - z * 0.5f);
 }
 
 /// Reduces an angle in radians, |x| <= near_angle.
-/// Source: Cody and Waite's reduction by pi/2 in four parts, the first three of which give exact products.
+/// Source: Cody and Waite's reduction by pi/2 in four parts; the products with the first three are exact.
 template <class F>
 Reduced<F> reduce_near(F x) {
   const F turns = floor(x * 0.636619747f + 0.5f);
@@ -50,15 +50,15 @@ Reduced<F> reduce_near(F x) {
   return {to_int(turns), r, r_low};
 }
 
-/// Reduces an angle in radians, near_angle <= |x|. Infinities and NaN give some angle.
-/// Source: Payne and Hanek, "Radian reduction for trigonometric functions", 1983. x is an integer m times 2^k. Those
-/// bits of 2/pi are left out that make multiples of 4 in 2^k m 2/pi, and those behind the next 96; m times these is a
-/// fixed-point number with 2 bits for the quadrant and 62 for the rest. No float is nearer to a multiple of pi/2 than
-/// 2^-30 of a quarter turn, so that 32 significant bits are left at least.
+/// Reduces an angle in radians, near_angle <= |x|. Infinities and NaN give an unspecified angle.
+/// Source: Payne and Hanek, "Radian reduction for trigonometric functions", 1983. x is an integer m times 2^k. Of the
+/// bits of 2/pi, those that contribute only multiples of 4 to 2^k m 2/pi and those after the next 96 are dropped; m
+/// times the rest is a fixed-point number with 2 bits for the quadrant and 62 for the fraction. Every float differs
+/// from all multiples of pi/2 by at least 2^-30 of a quarter turn, so at least 32 significant bits remain.
 template <class F>
 Reduced<F> reduce_far(F x) {
   using Int = int_of<F>;
-  // 2/pi, beginning with the bit of weight 2^11, which k = -10 wants first.
+  // 2/pi, beginning with the bit of weight 2^11, the first one needed for k = -10.
   constexpr int two_over_pi[] = {0x000a2f98,  0x36e4e441, 0x529fc275, 0x7d1f534d, static_cast<int>(0xdc0db629u),
                                  0x5993c439,  0x041fe516};
   const Int pattern = bits(x);
@@ -79,7 +79,7 @@ Reduced<F> reduce_far(F x) {
   const Int middle_bits = shifted(1);
   const Int low_bits = shifted(2);
 
-  // The upper 64 of the lower 96 bits of the product: quarter turns modulo 4, times 2^62.
+  // The upper 64 of the lower 96 bits of the product: the quarter turns modulo 4, times 2^62.
   const Int carried = unsigned_mul_hi(low_bits, m);
   const Int lower = middle_bits * m + carried;
   const Int carry = select(unsigned_less(lower, carried), Int(1), Int(0));
@@ -87,7 +87,7 @@ Reduced<F> reduce_far(F x) {
   const Int quadrant = shift_right(upper + 0x20000000, 30);
   const Int rest = upper - shift_left(quadrant, 30);
 
-  // The rest in pieces of 22, 20 and 20 bits, which are exact as floats, and their sum.
+  // Converts the rest in pieces of 22, 20 and 20 bits, each exact as a float, and sums them.
   const F first = to_float(shift_right_signed(rest, 8)) * 0x1p20f;
   const F second = to_float(shift_left(rest & 255, 12) | shift_right(lower, 20));
   const F third = to_float(lower & 0xfffff) * 0x1p-20f;
@@ -108,7 +108,7 @@ Angle<F> angle_of(const Reduced<F>& reduced) {
   return {reduced.quadrant, (sine_excess(z) * reduced.r + reduced.r_low) + reduced.r, cosine_of_square(z)};
 }
 
-/// near() of angles up to near_angle, far() of larger ones, NaN of infinities and NaN.
+/// near() for angles up to near_angle, far() for larger ones, NaN for infinities and NaN.
 template <class F, class Near, class Far>
 F by_size_of_angle(F x, Near near, Far far) {
   const F size = abs(x);
@@ -154,7 +154,7 @@ F tangent_of(const Angle<F>& angle) {
 }
 
 /// The tangent of x in radians.
-/// Domain: all floats; infinities and NaN give NaN. No float is so near to a pole that it overflows.
+/// Domain: all floats; infinities and NaN give NaN. Never overflows: no float is close enough to a pole.
 /// Error: 3.5 ULP.
 template <class F>
 F tan(F x) {
@@ -165,7 +165,7 @@ F tan(F x) {
 
 inline constexpr float near_degrees = 0x1p22f;
 
-/// Splits an angle in degrees, |x| <= near_degrees; quarter turns leave no rest.
+/// Splits an angle in degrees, |x| <= near_degrees; multiples of 90 degrees are exact.
 template <class F>
 Angle<F> split_degrees(F x) {
   const F turns = floor(x * 0.0111111114f + 0.5f);
@@ -181,8 +181,9 @@ Int modulo_720(Int x) {
   return select(rest >= 720, rest - 720, rest);
 }
 
-/// An angle in degrees without its whole turns, exactly, |x| > near_degrees. Infinities and NaN give some angle.
-/// x is an integer times 2^k half degrees, and 2^12 is 1 modulo 45, a sixteenth of a turn's 720 half degrees.
+/// Removes full turns from an angle in degrees, exactly; |x| > near_degrees. Infinities and NaN give an unspecified
+/// angle. x is an integer times 2^k half degrees. As 720 = 16 * 45 and 2^12 = 1 modulo 45, 2^k = 2^(k - 12) modulo 720
+/// if both exponents are at least 4.
 template <class F>
 F without_turns(F x) {
   using Int = int_of<F>;
@@ -196,7 +197,7 @@ F without_turns(F x) {
   return select(pattern < 0, negate(degrees), degrees);
 }
 
-/// v, turned clockwise by an angle of these.
+/// v, rotated clockwise by the angle.
 template <class F>
 vec<F, 2> turned(vec<F, 2> v, const Angle<F>& angle) {
   const F s = sine_of(angle, 0);
@@ -204,7 +205,7 @@ vec<F, 2> turned(vec<F, 2> v, const Angle<F>& angle) {
   return {v[0] * c + v[1] * s, v[1] * c - v[0] * s};
 }
 
-/// v, turned clockwise (from +y to +x) by an angle in degrees. Quarter turns are exact.
+/// v, rotated clockwise (from +y to +x) by an angle in degrees. Multiples of 90 degrees are exact.
 /// Domain: all floats. An infinite or NaN angle gives NaN.
 /// Error: 2.5 ULP of |v.x| + |v.y|, in each component.
 template <class F>
@@ -219,9 +220,9 @@ vec<F, 2> rotate2d(vec<F, 2> v, F degrees) {
       });
 }
 
-/// Texture coordinates that place a picture: turned clockwise by `degrees` and enlarged by `scale` about `pivot`,
-/// then moved by `offset`; ((texcoord - pivot) / scale, rotated) - offset + pivot.
-/// Domain: all floats. A zero in `scale` gives infinities or NaN, an infinite or NaN angle NaN.
+/// Transforms texture coordinates so that the image appears scaled by `scale` and rotated clockwise by `degrees` about
+/// `pivot`, then moved by `offset`: rotate2d((texcoord - pivot) / scale, degrees) - offset + pivot.
+/// Domain: all floats. A zero in `scale` gives infinities or NaN; an infinite or NaN angle gives NaN.
 /// Error: 4 ULP of the sum of the terms' magnitudes, in each component.
 template <class F>
 vec<F, 2> place2d(vec<F, 2> texcoord, vec<F, 2> pivot, vec<F, 2> scale, F degrees, vec<F, 2> offset) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vector overloads of rows that are defined on floats (signatures g_...). Included after the bodies.
+// The vector overloads of rows that are defined on floats (signatures g_...). Include it after the bodies.
 #pragma once
 
 #include "compiler/functions/body.h"

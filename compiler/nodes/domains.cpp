@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "compiler/functions/domains.h"
+#include "compiler/functions/library.h"
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {

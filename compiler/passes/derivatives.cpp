@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/functions/derivatives.h"
+#include "compiler/functions/library.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/passes/tangents.h"
 #include "compiler/support/assert.h"

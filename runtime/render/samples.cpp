@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "compiler/functions/resolve.h"
+#include "compiler/functions/blending.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "runtime/raster/clip.h"

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "compiler/functions/tiers.h"
+#include "compiler/functions/all.h"
 #include "tests/accuracy/samples.h"
 
 namespace isoshade::accuracy {

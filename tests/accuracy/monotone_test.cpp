@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "compiler/functions/all.h"
-#include "compiler/functions/tiers.h"
 #include "tests/accuracy/samples.h"
 
 namespace isoshade::accuracy {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <thread>
 
-#include "compiler/functions/tiers.h"
+#include "compiler/functions/all.h"
 #include "tests/accuracy/measure.h"
 
 namespace isoshade::accuracy {

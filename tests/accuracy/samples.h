@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "compiler/functions/matrix_type.h"
+#include "compiler/functions/body.h"
 
 namespace isoshade::accuracy {
 

@@ -5,7 +5,6 @@
 
 #include "compiler/functions/all.h"
 #include "compiler/functions/library.h"
-#include "compiler/functions/tiers.h"
 #include "compiler/ir/printer.h"
 #include "tests/unit/functions_values.h"
 

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "backends/interpreter/backend.h"
-#include "compiler/functions/resolve.h"
+#include "compiler/functions/blending.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/compare/compare.h"
 #include "runtime/render/render.h"
