@@ -9,7 +9,7 @@ using support::Id;
 
 namespace {
 
-/// Reports what documents may ask for in later versions.
+/// Reports input types that are valid but not supported yet.
 void check_supported(Work& work) {
   const graph::Graph& graph = work.graph();
   for (const graph::Input& input : graph.inputs) {
@@ -18,7 +18,7 @@ void check_supported(Work& work) {
     if (nodes::value_types.has(input.type) && (is_function || !nodes::matrix_types.has(input.type))) continue;
     work.report(Id::unsupported, input.place,
                 std::string(is_function ? "an input" : "a parameter") + " of type " +
-                    std::string(graph::type_name(input.type)) + " cannot be compiled yet");
+                    std::string(graph::type_name(input.type)) + " is not supported yet");
   }
 }
 
@@ -35,7 +35,7 @@ std::shared_ptr<const TypedGraph> check_in(graph::Graph graph, const Scope& scop
   resolve(work);
   order(work);
   infer(work);
-  // What nothing reads is no news while links are broken.
+  // While links are broken, reports about usage would be misleading.
   if (diagnostics.error_count() == errors_before) check_usage(work);
   return diagnostics.error_count() == errors_before ? typed : nullptr;
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/check/links.h"
-#include "compiler/check/literals.h"
 #include "compiler/check/node_inference.h"
 
 namespace isoshade::check {
@@ -13,22 +11,20 @@ using support::quote;
 
 std::string conversion_hint(const Link& link, Type to) {
   if (to == Type::filename) return "link a parameter of type filename, or write a path";
-  if (nodes::matrix_types.has(to)) return "make a matrix of its columns by the node creatematrix";
+  if (nodes::matrix_types.has(to)) return "build a matrix from its columns with a creatematrix node";
   if (link.node != Link::unresolved) return "convert it: " + name_of(to) + "(...)";
   std::string text = link.name;
   for (const std::string& selector : link.selectors) text += "." + selector;
-  return R"(convert it by a node {"type": "convert", "in": ")" + text + R"(", "to": ")" + name_of(to) +
+  return R"(convert it with a node {"type": "convert", "in": ")" + text + R"(", "to": ")" + name_of(to) +
          R"("})";
 }
 
-/// The type that both are taken as.
 std::optional<Type> joined(Type a, Type b) {
   if (converts(a, b)) return b;
   if (converts(b, a)) return a;
   return std::nullopt;
 }
 
-/// What so many numbers are, a colour only where it must be.
 Type tuple_of(size_t numbers, nodes::TypeSet accepts) {
   switch (numbers) {
     case 2: return Type::vector2;
@@ -51,7 +47,7 @@ bool NodeInference::takes(size_t i, Type needed) {
   return converts(operand(i).type, needed) || takes_as_color(work_, operand(i), *given(i).link, needed);
 }
 
-/// Of a row whose output is as wide as an array of numbers that is written in place, of which nothing says what it is.
+/// Whether the output's vector type comes only from literal arrays of numbers or from untyped operands.
 bool NodeInference::makes_untyped() {
   const Variable variable = node_.row->outputs[0].type.variable;
   if (variable == Variable::none || !nodes::vector_types.has(type_of(node_.row->outputs[0].type))) return false;
@@ -97,7 +93,7 @@ void NodeInference::read_text(size_t i) {
   } else if (literal(i)->kind == Literal::Kind::string) {
     text = literal(i)->string;
   } else {
-    report(Id::wrong_type, i, of_node(i) + " is a string, not " + described(*literal(i)));
+    report(Id::wrong_type, i, of_node(i) + " must be a string, not " + described(*literal(i)));
     return;
   }
   if (is_type) return read_type_name(i, text);
@@ -113,7 +109,7 @@ void NodeInference::read_text(size_t i) {
   wrong.note("it can be " + listed(choices, "or"));
 }
 
-/// 0 for the image that a post goes over, else 1 + the number of one of its images.
+/// The index is 0 for the image that the post processes, else 1 + the index in Graph::images.
 void NodeInference::read_image(size_t i, std::string_view name) {
   if (given(i).port == nullptr) return;
   const std::vector<graph::InputImage>& images = work_.graph().images;
@@ -125,7 +121,7 @@ void NodeInference::read_image(size_t i, std::string_view name) {
   }
   support::Diagnostic& wrong = report(Id::unknown_image, i, "the document has no image " + quote(name));
   suggest_nearest(work_.diagnostics, wrong, name, names);
-  wrong.note(names.empty() ? "\"images\" of a document lists those that a scene gives it"
+  wrong.note(names.empty() ? "the key \"images\" of the document declares the images that a scene passes to it"
                            : "its images are " + listed(names));
 }
 
@@ -139,7 +135,7 @@ void NodeInference::read_type_name(size_t i, std::string_view text) {
   }
   support::Diagnostic& wrong =
       report(type ? Id::type_mismatch : Id::unknown_type, i,
-             type ? of_node(i) + " cannot be " + name_of(*type) : "no type " + quote(text));
+             type ? of_node(i) + " cannot be " + name_of(*type) : "there is no type " + quote(text));
   if (!type) suggest_nearest(work_.diagnostics, wrong, text, graph::all_type_names());
   wrong.note("it can be " + described(port(i).type.accepts));
 }
@@ -151,8 +147,8 @@ void NodeInference::read_integer(size_t i) {
     if (!graph::fits(Type::integer, written)) {
       const bool is_number = written.kind == Literal::Kind::number;
       report(Id::wrong_type, i,
-             of_node(i) + " is a whole number that stands in the document, not " +
-                 (is_number ? "one with a fraction or beyond 32 bits" : described(written)));
+             of_node(i) + " must be a literal integer of 32 bits, not " +
+                 (is_number ? "a number with a fraction or beyond 32 bits" : described(written)));
       return;
     }
     index = written.integer;
@@ -171,7 +167,7 @@ void NodeInference::join(size_t i, Type type) {
   const std::optional<Type> both = named && !converts(type, *at.type) ? std::nullopt : joined(*at.type, type);
   if (!both) {
     const std::string other =
-        named ? "it is to be " + name_of(*at.type) : of_other(at.port) + " is " + name_of(*at.type);
+        named ? "it must be " + name_of(*at.type) : of_other(at.port) + " is " + name_of(*at.type);
     support::Diagnostic& wrong =
         report(Id::type_mismatch, i, of_node(i) + " is " + name_of(type) + ", but " + other);
     if (given(i).link != nullptr) wrong.suggest(conversion_hint(*given(i).link, *at.type));
@@ -181,14 +177,14 @@ void NodeInference::join(size_t i, Type type) {
 }
 
 void NodeInference::settle_by_links() {
-  // Arrays are what the rest is, so they come last.
+  // Untyped operands adopt the type of the others, so they come last.
   for (const bool untyped : {false, true}) {
     for (size_t i = 0; i < node_.operand_count && !broken(); ++i) {
       if (!is_value(i) || given(i).link == nullptr || port(i).type.variable == Variable::none) continue;
       if (is_untyped(i) != untyped) continue;
       const std::optional<Type> type = settled(i).type;
       if (type && takes_as_color(work_, operand(i), *given(i).link, *type)) continue;
-      // Colours alone are wanted.
+      // The port accepts only colours.
       for (const Type color : {Type::color3, Type::color4})
         if (port(i).type.accepts.has(color) && !port(i).type.accepts.has(operand(i).type))
           takes_as_color(work_, operand(i), *given(i).link, color);
@@ -198,7 +194,7 @@ void NodeInference::settle_by_links() {
 }
 
 void NodeInference::settle_by_literals() {
-  // Arrays and booleans have a type of their own; numbers take any that is left.
+  // Arrays and booleans determine a type; numbers adopt the type of the others.
   for (size_t i = 0; i < node_.operand_count && !broken(); ++i) {
     const Literal* value = literal(i);
     if (value == nullptr || !is_value(i) || port(i).type.variable == Variable::none) continue;
@@ -235,7 +231,7 @@ void NodeInference::check_settled() {
   }
 }
 
-/// Whether a parameter that takes a file is called so.
+/// Whether `name` is a parameter of type filename.
 bool is_file_parameter(const graph::Graph& graph, const std::string& name) {
   const auto found = graph.names.find(name);
   return found != graph.names.end() && found->second.is_input &&
@@ -252,14 +248,14 @@ void NodeInference::place_value(size_t i) {
         .suggest(conversion_hint(*given(i).link, needed));
   } else if (const Literal* value = literal(i)) {
     if (fits(*value, needed) && needed == Type::filename && is_file_parameter(work_.graph(), value->string)) {
-      report(Id::wrong_type, i, of_node(i) + " is a path, and " + quote(value->string) + " is a parameter")
-          .suggest("write {\"link\": \"" + value->string + "\"}; a file of that name is \"./" + value->string + "\"");
+      report(Id::wrong_type, i, of_node(i) + " is a path, but " + quote(value->string) + " is a parameter")
+          .suggest("write {\"link\": \"" + value->string + "\"}, or \"./" + value->string + "\" for a file of that name");
       return;
     }
     if (fits(*value, needed) && needed == Type::filename)
       return place_file(work_.typed, {value->string, given(i).port->place}, to);
     if (fits(*value, needed)) return place(work_.typed, *value, needed, to);
-    report(Id::wrong_type, i, of_node(i) + " is " + name_of(needed) + ", not " + described(*value));
+    report(Id::wrong_type, i, of_node(i) + " must be " + name_of(needed) + ", not " + described(*value));
   } else {
     place(work_.typed, port(i).value, needed, to);
   }
@@ -279,7 +275,7 @@ void NodeInference::check_condition() {
 
 namespace {
 
-/// What an output of the document needs, given what it reads.
+/// Infers the type of an output of the document.
 void infer_output(Work& work, size_t i) {
   Operand& output = work.typed.outputs[i];
   const Link& link = *work.roots[i];
@@ -288,7 +284,7 @@ void infer_output(Work& work, size_t i) {
   if (work.graph().kind == graph::DocumentKind::function) return;
   if (i >= work.typed.values().size()) {
     if (output.type == Type::vector3) return;
-    work.report(Id::type_mismatch, link.place, "\"position\" is a vector3, not " + name_of(output.type));
+    work.report(Id::type_mismatch, link.place, "\"position\" must be vector3, not " + name_of(output.type));
     return;
   }
   for (const Type color : {Type::color3, Type::color4})
@@ -296,7 +292,7 @@ void infer_output(Work& work, size_t i) {
   if (nodes::color_types.has(output.type)) return;
   output.needed = Type::color3;
   if (converts(output.type, Type::color3)) return;
-  work.report(Id::type_mismatch, link.place, "\"color\" is color3 or color4, not " + name_of(output.type))
+  work.report(Id::type_mismatch, link.place, "\"color\" must be color3 or color4, not " + name_of(output.type))
       .suggest(conversion_hint(link, Type::color3));
 }
 

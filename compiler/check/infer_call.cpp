@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/check/literals.h"
 #include "compiler/check/node_inference.h"
 
 namespace isoshade::check {
@@ -8,7 +7,7 @@ using graph::Literal;
 using support::Id;
 using support::quote;
 
-/// What is linked to inputs of any type tells the type, else literals do.
+/// Infers the type of a generic call from the links to "any" inputs, then from literal arrays, and selects the instance.
 void NodeInference::settle_instance() {
   Settled any;
   const auto join_any = [&](size_t i, Type type) {
@@ -62,7 +61,7 @@ void NodeInference::place_argument(size_t i) {
   }
   const Literal& value = literal(i) != nullptr ? *literal(i) : *input.value;
   if (!fits(value, input.type)) {
-    report(Id::wrong_type, i, of_node(i) + " is " + name_of(input.type) + ", not " + described(value));
+    report(Id::wrong_type, i, of_node(i) + " must be " + name_of(input.type) + ", not " + described(value));
     return;
   }
   check_range(i, input);
@@ -76,11 +75,11 @@ void NodeInference::check_range(size_t i, const graph::Input& input) {
     const bool low = input.min && number < *input.min;
     if (!low && !(input.max && number > *input.max)) return true;
     const std::string fault = !input.names.empty() ? " has no value " + graph::limit_text(input.type, number)
-                              : low ? " is at least " + graph::limit_text(input.type, *input.min)
-                                    : " is at most " + graph::limit_text(input.type, *input.max);
+                              : low ? " must be at least " + graph::limit_text(input.type, *input.min)
+                                    : " must be at most " + graph::limit_text(input.type, *input.max);
     support::Diagnostic& wrong = report(Id::out_of_range, i, of_node(i) + fault);
     if (!input.names.empty()) wrong.note(graph::described_names(input.names));
-    wrong.note(node_.callee->graph.span(input.place), "as declared here");
+    wrong.note(node_.callee->graph.span(input.place), "declared here");
     return false;
   };
   if (value->kind == Literal::Kind::number) check(value->number);

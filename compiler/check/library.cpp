@@ -30,7 +30,7 @@ std::string joined(const std::string& folder, std::string_view name) {
   return (fs::path(folder) / name).lexically_normal().string();
 }
 
-/// "brdf/ggx_d": ids between slashes, so that no library name leads out of the library.
+/// Ids separated by slashes ("brdf/ggx_d"), so that a library name cannot point outside of the library.
 bool is_library_name(std::string_view name) {
   while (true) {
     const size_t slash = name.find('/');
@@ -103,16 +103,16 @@ std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, c
                        reference.find('\0') == std::string_view::npos;
   const Location location = is_path || is_library_name(reference) ? locate(reference, from) : Location{};
   if (is_path && !files_.permits(location.canonical, from.home)) {
-    diagnostics.report(Id::outside_reference, where, quote(reference) + " leads out of the folder tree")
-        .note(std::string(graph::way_inside));
+    diagnostics.report(Id::outside_reference, where, quote(reference) + " is outside of the folder tree")
+        .note(std::string(graph::reference_rule));
     return nullptr;
   }
   if (!is_path && (location.path.empty() || !exists(location))) {
     support::Diagnostic& report = diagnostics.report(Id::unknown_node_type, where,
-                                                     "no node type or library function " + quote(reference));
+                                                     "there is no node type or library function " + quote(reference));
     if (diagnostics.full()) return nullptr;
-    if (const auto other = nodes::called_elsewhere(reference, referred.rows); !other.empty()) {
-      report.suggest("here it is " + quote(other));
+    if (const auto other = nodes::find_synonym(reference, referred.rows); !other.empty()) {
+      report.suggest("its name here is " + quote(other));
       return nullptr;
     }
     const std::vector<std::string> functions = names();
@@ -124,13 +124,13 @@ std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, c
   for (const Scope* user = &from; user != nullptr; user = user->user) {
     if (user->path != location.canonical) continue;
     diagnostics.report(Id::recursion, where,
-                       "the function uses itself: " + cycle_from(from, location.canonical));
+                       "the function is recursive: " + cycle_from(from, location.canonical));
     return nullptr;
   }
   const std::pair key(location.canonical, location.in_library ? files_.library : from.home);
   const auto found = functions_.find(key);
   if (found == functions_.end()) return functions_[key] = load(location, from, where, diagnostics);
-  // Its errors were reported when it was loaded, but maybe to somebody else.
+  // Its errors were reported when it was loaded, but possibly to another Diagnostics.
   if (found->second == nullptr && !diagnostics.has_errors())
     diagnostics.report(Id::broken_function, where, quote(location.path) + " has errors");
   return found->second;
@@ -149,7 +149,7 @@ std::shared_ptr<const TypedGraph> Library::load(const Location& location, const 
   if (scope.depth > max_document_depth) {
     diagnostics.report(
         Id::too_deep, where,
-        "functions use each other more than " + std::to_string(max_document_depth) + " documents deep");
+        "function documents are nested more than " + std::to_string(max_document_depth) + " deep");
     return nullptr;
   }
   const support::Source source = read(location, where, diagnostics);
@@ -160,13 +160,13 @@ std::shared_ptr<const TypedGraph> Library::load(const Location& location, const 
   if (!graph) return nullptr;
   if (graph->kind != graph::DocumentKind::function) {
     diagnostics.report(Id::wrong_kind, where,
-                       "a node can be a function document, but " + quote(location.path) + " is of the kind " +
+                       "a node type must be a function document, but " + quote(location.path) + " is of kind " +
                            std::string(graph::kind_name(graph->kind)));
     return nullptr;
   }
   const bool generic = graph->is_generic();
   std::shared_ptr<const TypedGraph> typed = check_in(std::move(*graph), scope, *this, diagnostics);
-  scope.user = nullptr;  // it lives no longer than this call
+  scope.user = nullptr;  // the user's scope ends with this call
   if (typed != nullptr && generic) generics_[typed.get()] = {scope, {{Type::floating, typed}}};
   return typed;
 }
@@ -187,7 +187,7 @@ std::shared_ptr<const TypedGraph> Library::instance(const std::shared_ptr<const 
   const size_t reports_before = diagnostics.all().size();
   auto typed = check_in(std::move(graph), generic.scope, *this, diagnostics);
   if (typed == nullptr && diagnostics.all().size() > reports_before)
-    diagnostics.all()[reports_before].note(where, "in the function as it is used here, with " + type_name);
+    diagnostics.all()[reports_before].note(where, "in the instance of the function used here, with type " + type_name);
   return generic.instances[type] = std::move(typed);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The function documents that graphs use as nodes: found, loaded and checked, each once.
+// Finds, loads and checks the function documents that graphs use as nodes, each once.
 #pragma once
 
 #include <map>
@@ -14,45 +14,45 @@
 
 namespace isoshade::check {
 
-/// A document being checked, as the place that references start from.
+/// A document being checked; its references are resolved relative to it.
 struct Scope {
   std::string path;             ///< canonical
-  std::string folder;           ///< as the user spelled it
-  std::string home;             ///< canonical; the folder tree that relative references stay in
+  std::string folder;           ///< as spelled by the user
+  std::string home;             ///< canonical; relative references must stay in this folder tree
   std::string document;         ///< TypedGraph::document
   const Scope* user = nullptr;  ///< the document that uses this one
   int depth = 0;
 };
 
-/// What a node's type says: a library name, or a path relative to the document that ends in ".json".
+/// A node type that is not in the node table: a library name, or a path relative to the document that ends in ".json".
 struct Reference {
   std::string_view name;
-  const std::vector<nodes::Row>& rows;  ///< among which the name was looked for before
+  const std::vector<nodes::Row>& rows;  ///< the table that does not contain it; for suggestions
 };
 
 class Library {
  public:
-  /// `root`: the folder of the shipped functions; "brdf/ggx_d" is brdf/ggx_d.json in it. Empty: there are
-  /// none.
+  /// `root`: the folder of the shipped functions ("brdf/ggx_d" is brdf/ggx_d.json in it); empty for none.
   explicit Library(std::string root = {});
 
-  /// Lets documents name files anywhere.
+  /// Lets documents refer to files anywhere.
   void allow_outside(bool on) { files_.allow_outside = on; }
   const graph::FileRule& files() const { return files_; }
 
-  /// A document that is not read from a file but found under `path` all the same.
+  /// Adds an in-memory document that is found under `path` like a file.
   void add(const std::string& path, std::string text);
 
-  /// The scope of a document that the user named. A library for many compilations sees each document once:
-  /// make a new one after files changed.
+  /// The scope of a document that the user named. A Library caches documents: create a new one after files
+  /// change.
   Scope scope_of(const std::string& path) const;
 
-  /// The function that is referred to; where its inputs are of any type, with floats. Reports why there is
-  /// none.
+  /// The function that `reference` names; its generic inputs ("any") have type float. Reports a failure and
+  /// returns null.
   std::shared_ptr<const TypedGraph> function(const Reference& reference, const Scope& from,
                                              const support::Span& where, support::Diagnostics& diagnostics);
 
-  /// A function with inputs of any type, with these of type `type`. Reports what in it has no such type.
+  /// The instance of a generic function whose "any" inputs have type `type`. Reports type errors in it and
+  /// returns null.
   std::shared_ptr<const TypedGraph> instance(const std::shared_ptr<const TypedGraph>& function, Type type,
                                              const support::Span& where, support::Diagnostics& diagnostics);
 
@@ -61,12 +61,12 @@ class Library {
 
  private:
   struct Location {
-    std::string path;  ///< to read and to show
+    std::string path;  ///< for reading and for messages
     std::string canonical;
     bool in_library = false;
   };
   struct Generic {
-    Scope scope;  ///< its own, without a user
+    Scope scope;  ///< of the function; `user` is null
     std::map<Type, std::shared_ptr<const TypedGraph>> instances;
   };
   Location locate(std::string_view reference, const Scope& from) const;
@@ -79,9 +79,9 @@ class Library {
   std::string root_;
   graph::FileRule files_;
   std::map<std::string, support::Source> memory_;  ///< by canonical path
-  /// By canonical path and home, which decides what the document may refer to; null: it has errors.
+  /// By canonical path and by home, because home limits what the document may refer to; null if it has errors.
   std::map<std::pair<std::string, std::string>, std::shared_ptr<const TypedGraph>> functions_;
-  /// Of functions with inputs of any type; these are float in what functions_ has.
+  /// The instances of generic functions, by their float instance, which is the one in functions_.
   std::map<const TypedGraph*, Generic> generics_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The types of one node. infer.cpp has the rows of the node table, infer_call.cpp the functions.
+// Infers the types of one node: infer.cpp for rows of the node table, infer_call.cpp for function documents.
 #pragma once
 
 #include <array>
@@ -7,23 +7,23 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/check/links.h"
-#include "compiler/check/work.h"
+#include "compiler/check/operand.h"
 
 namespace isoshade::check {
 
 inline std::string name_of(Type type) { return std::string(graph::type_name(type)); }
 
-/// Whether a vector whose type arrays of numbers decided is taken as a colour; it is of the type then.
+/// If the operand is untyped (Work::untyped) and `needed` is a colour type of its width, gives it that type. Returns
+/// whether it did.
 bool takes_as_color(const Work& work, Operand& operand, const graph::Link& link, Type needed);
-/// How to make of what is linked what is needed.
+/// Suggests how to convert the linked value to type `to`.
 std::string conversion_hint(const graph::Link& link, Type to);
-/// The type that both are taken as.
+/// The type to which both convert implicitly; nullopt if there is none.
 std::optional<Type> joined(Type a, Type b);
-/// What so many numbers are, a colour only where it must be.
+/// The type of an array of so many numbers: a colour only if no vector is accepted.
 Type tuple_of(size_t numbers, nodes::TypeSet accepts);
 
-/// One node of the table or a function: ports to types, types to outputs.
+/// Infers port types from links and literals, then output types from port types.
 class NodeInference {
  public:
   NodeInference(Work& work, uint32_t index)
@@ -40,7 +40,7 @@ class NodeInference {
  private:
   struct Settled {
     std::optional<Type> type;
-    size_t port = 0;  ///< that settled it
+    size_t port = 0;  ///< the port that determined the type
   };
 
   Given& given(size_t i) { return work_.given[node_.first_operand + i]; }
@@ -56,7 +56,7 @@ class NodeInference {
     const Given& at = given(port);
     return work_.report(id, at.port != nullptr ? at.port->place : source_.id_place, std::move(message));
   }
-  /// `"in1" of "add"`; of what stands in an expression `the left side of "+"`.
+  /// For messages: `"in1" of "add"`, or `the left side of "+"` in an expression.
   std::string of_node(size_t i) {
     const graph::Port* port = given(i).port;
     const std::string_view name = node_.row != nullptr ? node_.row->ports[i].name
@@ -71,7 +71,8 @@ class NodeInference {
 
   // Rows of the node table.
   const nodes::Port& port(size_t i) const { return node_.row->ports[i]; }
-  /// Of a port that nothing has settled: a comparison that chooses between nothing gives its truth.
+  /// The type of a port that neither links nor literals determine: boolean if only boolean defaults share its variable
+  /// (a comparison without results to choose from), else float.
   Type natural_type(size_t i) {
     bool truth = true;
     for (size_t k = 0; k < node_.operand_count; ++k)
@@ -88,7 +89,7 @@ class NodeInference {
     return only;
   }
 
-  /// Whether what is linked to an operand is taken as `needed`; its type is that then, or one that converts to it.
+  /// Whether the linked value is accepted as `needed`; it then has that type or one that converts to it.
   bool takes(size_t i, Type needed);
   bool is_untyped(size_t i) {
     return given(i).link != nullptr && work_.is_untyped(operand(i), *given(i).link);
@@ -105,7 +106,7 @@ class NodeInference {
   void check_settled();
   void place_value(size_t i);
   void check_condition();
-  // Functions.
+  // Function documents.
   void infer_call();
   void settle_instance();
   void place_argument(size_t i);

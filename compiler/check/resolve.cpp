@@ -18,7 +18,7 @@ std::string_view input_word(const graph::Graph& graph) {
   return graph.kind == DocumentKind::function ? "input" : "parameter";
 }
 
-/// Fills in what the link names; its selectors wait for the types.
+/// Resolves the name of a link; its selectors are resolved later, when types are known.
 bool resolve_link(Work& work, const Link& link, Operand& operand) {
   const graph::Graph& graph = work.graph();
   if (link.node != Link::unresolved) {
@@ -33,7 +33,7 @@ bool resolve_link(Work& work, const Link& link, Operand& operand) {
     return true;
   }
   support::Diagnostic& report = work.report(
-      Id::unknown_node, link.place, "no node or " + std::string(input_word(graph)) + " " + quote(link.name));
+      Id::unknown_node, link.place, "there is no node or " + std::string(input_word(graph)) + " " + quote(link.name));
   if (work.diagnostics.full()) return false;
   std::vector<std::string_view> names;
   for (const graph::Input& input : graph.inputs) names.push_back(input.name);
@@ -60,13 +60,14 @@ class NodeResolver {
       node_.callee = function();
       if (node_.callee == nullptr || !passes_few_numbers()) return fail();
     }
-    if (node_.row != nullptr && !at_home(node_.row->home())) {
+    if (node_.row != nullptr && !available(node_.row->availability())) {
       const DocumentKind kind = work_.graph().kind;
       support::Diagnostic& report =
           work_.report(Id::misplaced_node, source_.type_place,
-                       (kind == DocumentKind::effect ? "an " : "a ") + std::string(graph::kind_name(kind)) +
-                           " document cannot have the node " + quote(source_.label()));
-      if (in_function()) report.suggest(way_around());
+                       quote(source_.label()) + " is not available in " +
+                           (kind == DocumentKind::effect ? "an " : "a ") + std::string(graph::kind_name(kind)) +
+                           " document");
+      if (in_function()) report.suggest(function_fix());
       fail();
     }
     add_operands();
@@ -74,7 +75,7 @@ class NodeResolver {
     for (const graph::Port& port : source_.free_keys)
       if (node_.callee != nullptr && find_port(port.name)) match(port);
     for (uint32_t i = 0; i < node_.operand_count; ++i) {
-      if (work_.given[node_.first_operand + i].port == nullptr) check_left_out(i);
+      if (work_.given[node_.first_operand + i].port == nullptr) check_missing(i);
     }
   }
 
@@ -82,21 +83,21 @@ class NodeResolver {
   void fail() { work_.broken[index_] = true; }
   bool is_call() const { return source_.origin == graph::Node::Origin::call; }
   bool in_function() const { return work_.graph().kind == DocumentKind::function; }
-  /// What to do in a function instead of what only the documents that call it can.
-  std::string way_around() const {
+  /// What to do in a function instead of using a node that only effects and posts may use.
+  std::string function_fix() const {
     if (node_.row->is_sum())
-      return "leave the sum to the effect or post that calls the function, and sum what the function gives there";
+      return "compute the sum in the effect or post that calls the function, over the outputs of the function";
     if (node_.row->is<nodes::Image>() || node_.row->is<nodes::Fetch>())
-      return "read the image in the document that calls the function, and make the colour an input of the function";
+      return "read the image in the document that calls the function, and pass the colour as an input";
     if (node_.row->is<nodes::Derivative>())
-      return "take the derivative in the effect that calls the function, and make it an input of the function";
-    return "make it an input of the function";
+      return "take the derivative in the effect that calls the function, and pass it as an input";
+    return "pass it as an input of the function";
   }
-  bool at_home(nodes::Home home) const {
+  bool available(nodes::Availability where) const {
     switch (work_.graph().kind) {
-      case DocumentKind::effect: return home != nodes::Home::posts;
-      case DocumentKind::post: return home != nodes::Home::effects;
-      default: return home == nodes::Home::anywhere;
+      case DocumentKind::effect: return where != nodes::Availability::posts;
+      case DocumentKind::post: return where != nodes::Availability::effects;
+      default: return where == nodes::Availability::anywhere;
     }
   }
   size_t port_count() const {
@@ -107,7 +108,7 @@ class NodeResolver {
                                 : std::string_view(node_.callee->graph.inputs[i].name);
   }
 
-  /// Nobody reads more errors than the limit, so files are not looked for beyond it.
+  /// Once the limit on errors is reached, no further files are searched.
   std::shared_ptr<const TypedGraph> function() {
     std::shared_ptr<const TypedGraph>& found = work_.functions[source_.type];
     if (found == nullptr && !work_.diagnostics.full()) {
@@ -126,7 +127,7 @@ class NodeResolver {
     if (before <= max_passed_numbers) {
       work_.report(Id::too_large, source_.type_place,
                    "the graph passes more than " + std::to_string(max_passed_numbers) +
-                       " numbers to and from functions");
+                       " scalars to and from functions");
     }
     return false;
   }
@@ -161,9 +162,9 @@ class NodeResolver {
     given.port = &port;
     Operand& operand = work_.typed.operands[node_.first_operand + *found];
     if (node_.row != nullptr && node_.row->ports[*found].type.kind != PortType::Kind::value) {
-      if (std::holds_alternative<Literal>(port.value)) return;  // infer looks at it
+      if (std::holds_alternative<Literal>(port.value)) return;  // checked in infer()
       work_.report(Id::not_literal, port.place,
-                   quote(port.name) + " of " + quote(source_.label()) + " is written in place, not linked");
+                   quote(port.name) + " of " + quote(source_.label()) + " must be a literal, not a link");
       return fail();
     }
     given.link = link_in(port, takes_text(*found));
@@ -171,7 +172,7 @@ class NodeResolver {
     if (given.link != nullptr && !resolve_link(work_, *given.link, operand)) fail();
   }
 
-  /// Reports a link to nothing that is the name of one of the values that the port's function takes.
+  /// Reports an unresolvable link that is the name of one of the input's named values.
   bool is_named_value(const Link& link, uint32_t port) {
     if (node_.callee == nullptr || !link.selectors.empty() || work_.graph().names.contains(link.name))
       return false;
@@ -179,8 +180,8 @@ class NodeResolver {
     if (!value) return false;
     work_
         .report(Id::unknown_node, link.place,
-                "a string in a port is a link, and there is no " + quote(link.name))
-        .suggest("write " + std::to_string(value->integer) + ", the value of that name");
+                "a string in a port is a link, but there is no node or input " + quote(link.name))
+        .suggest("write " + std::to_string(value->integer) + ", the number of that value");
     return true;
   }
 
@@ -188,7 +189,7 @@ class NodeResolver {
     return node_.row != nullptr && node_.row->ports[i].type.accepts.has(Type::filename);
   }
 
-  /// The link in a port, if it is one: strings are links where no text is asked for.
+  /// The link in a port, or null: a string is a link unless the port takes text.
   const Link* link_in(const graph::Port& port, bool takes_text) {
     if (const auto* link = std::get_if<Link>(&port.value)) return link;
     const Literal& literal = std::get<Literal>(port.value);
@@ -206,7 +207,7 @@ class NodeResolver {
     fail();
     if (is_call()) {
       work_.report(Id::unknown_port, port.place,
-                   quote(source_.label()) + " takes " + arguments() + ", not more");
+                   quote(source_.label()) + " takes only " + arguments());
       return;
     }
     support::Diagnostic& report = work_.report(Id::unknown_port, port.name_place,
@@ -218,7 +219,7 @@ class NodeResolver {
     report.note(names.empty() ? "it has no ports" : "its ports are " + listed(names));
   }
 
-  void check_left_out(uint32_t i) {
+  void check_missing(uint32_t i) {
     const bool required = node_.row != nullptr
                               ? node_.row->ports[i].required(work_.graph().kind == DocumentKind::effect)
                               : !node_.callee->graph.inputs[i].value.has_value();
@@ -236,7 +237,7 @@ class NodeResolver {
     if (node_.row != nullptr)
       report.note(std::string(port_name(i)) + ": " + std::string(node_.row->ports[i].doc));
     else if (port_name(i) == "type")
-      report.suggest("the key \"type\" of a node is its type: give the input another name, or a \"value\"");
+      report.suggest("the key \"type\" of a node is its type, so rename the input or declare its \"value\"");
   }
 
   /// "3 arguments"
@@ -249,6 +250,38 @@ class NodeResolver {
   const graph::Node& source_;
   uint32_t index_;
 };
+
+enum class State : uint8_t { unseen, open, done };
+
+struct Visit {
+  uint32_t node;
+  uint32_t next_operand;
+};
+
+/// The cycle through `node` as text: "a -> b -> a". All operations of an expression count as one node.
+std::string path_of(const Work& work, const std::vector<Visit>& open, uint32_t node) {
+  size_t first = open.size();
+  while (open[first - 1].node != node) --first;
+  --first;
+  std::vector<std::string_view> ids;
+  for (size_t i = first; i < open.size(); ++i) {
+    const std::string& id = work.graph().nodes[open[i].node].id;
+    if (ids.empty() || ids.back() != id) ids.push_back(id);
+  }
+  const std::string& last = work.graph().nodes[node].id;
+  if (ids.size() > 1 && ids.back() == last) ids.pop_back();
+  const size_t length = ids.size();
+  constexpr size_t shown = 8;
+  std::string path;
+  for (size_t i = 0; i < length; ++i) {
+    if (length > shown && i == shown / 2) {
+      path += "... " + std::to_string(length - shown) + " more ... -> ";
+      i = length - shown / 2;
+    }
+    path += std::string(ids[i]) + " -> ";
+  }
+  return path + last;
+}
 
 }  // namespace
 
@@ -265,6 +298,40 @@ void resolve(Work& work) {
     if (pass.position) work.roots.push_back(&*pass.position);
   work.typed.outputs.resize(work.roots.size());
   for (size_t i = 0; i < work.roots.size(); ++i) resolve_link(work, *work.roots[i], work.typed.outputs[i]);
+}
+
+void order(Work& work) {
+  TypedGraph& typed = work.typed;
+  std::vector<State> states(typed.nodes.size(), State::unseen);
+  std::vector<Visit> open;
+  typed.order.reserve(typed.nodes.size());
+  for (uint32_t root = 0; root < typed.nodes.size(); ++root) {
+    if (states[root] != State::unseen) continue;
+    states[root] = State::open;
+    open.push_back({root, 0});
+    while (!open.empty()) {
+      Visit& visit = open.back();
+      const Node& node = typed.nodes[visit.node];
+      if (visit.next_operand == node.operand_count) {
+        states[visit.node] = State::done;
+        typed.order.push_back(visit.node);
+        open.pop_back();
+        continue;
+      }
+      const uint32_t at = node.first_operand + visit.next_operand++;
+      Operand& operand = typed.operands[at];
+      if (operand.from != Operand::From::node || states[operand.index] == State::done) continue;
+      if (states[operand.index] == State::unseen) {
+        states[operand.index] = State::open;
+        open.push_back({operand.index, 0});
+        continue;
+      }
+      work.report(Id::cycle, work.given[at].link->place,
+                  "the nodes form a cycle: " + path_of(work, open, operand.index));
+      work.broken[visit.node] = true;
+      operand.from = Operand::From::nothing;
+    }
+  }
 }
 
 }  // namespace isoshade::check

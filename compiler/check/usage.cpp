@@ -15,17 +15,17 @@ bool is_summand(const Node& node) { return node.row != nullptr && node.row->is_s
 
 uint64_t size_of(const Node& node) { return node.callee != nullptr ? node.callee->expanded_nodes : 1; }
 
-void mark_per_turn(TypedGraph& typed) {
+void mark_per_iteration(TypedGraph& typed) {
   for (const uint32_t i : typed.order) {
     Node& node = typed.nodes[i];
-    node.per_turn = is_summand(node);
+    node.per_iteration = is_summand(node);
     if (is_sum(node)) continue;
     for (const Operand& operand : typed.operands_of(node))
-      node.per_turn |= operand.from == From::node && typed.nodes[operand.index].per_turn;
+      node.per_iteration |= operand.from == From::node && typed.nodes[operand.index].per_iteration;
   }
 }
 
-/// Reports nodes of lights and taps from which an output is reached on a way without a sum.
+/// Reports light and tap nodes that an output depends on without a sum in between.
 void check_summands(Work& work) {
   const TypedGraph& typed = work.typed;
   const graph::Graph& graph = work.graph();
@@ -49,9 +49,9 @@ void check_summands(Work& work) {
       const bool light = node.row->is<nodes::Light>();
       const std::string sum = light ? "sum_lights" : "sum_taps";
       work.report(light ? Id::light_outside_sum : Id::tap_outside_sum, graph.nodes[*it].type_place,
-                  quote(graph.nodes[*it].type) + " is read outside of " + sum)
-          .note("it reaches an output by " + path)
-          .suggest("sum what depends on it with a node of type " + sum);
+                  quote(graph.nodes[*it].type) + " is used outside of " + sum)
+          .note("an output depends on it: " + path)
+          .suggest("link the value that depends on it to a " + sum + " node");
     }
     if (is_sum(node)) continue;
     for (const Operand& operand : typed.operands_of(node))
@@ -65,17 +65,17 @@ bool is_trilinear_image(const TypedGraph& typed, const Node& node) {
              static_cast<uint32_t>(nodes::Filter::trilinear);
 }
 
-/// What a node speaks of that vertices do not have; nullptr if it has a meaning there.
+/// Why a node is not available in the vertex stage; nullptr if it is.
 const char* missing_at_vertices(const TypedGraph& typed, const Node& node) {
   const nodes::Row& row = *node.row;
-  if (row.is<nodes::Derivative>()) return "derivatives are those of pixels";
+  if (row.is<nodes::Derivative>()) return "derivatives exist only for pixels";
   if (is_trilinear_image(typed, node))
-    return "its mip level is that of pixels; \"closest\" and \"linear\" have none";
-  if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "light falls on pixels";
+    return "its mip level exists only for pixels; \"closest\" and \"linear\" filtering need none";
+  if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "lights exist only for pixels";
   return nullptr;
 }
 
-/// Reports nodes that positions of passes depend on, but that have no meaning at vertices.
+/// Reports nodes that a pass's position depends on, but that are not available in the vertex stage.
 void check_positions(Work& work) {
   const TypedGraph& typed = work.typed;
   const graph::Graph& graph = work.graph();
@@ -92,12 +92,12 @@ void check_positions(Work& work) {
     if (reason == nullptr) continue;
     work.report(Id::misplaced_node, graph.nodes[*it].type_place,
                 "the \"position\" of a pass cannot depend on " + quote(graph.nodes[*it].label()))
-        .note(std::string("it is computed for each vertex: ") + reason)
-        .suggest("compute \"position\" without it; \"color\" may depend on it");
+        .note(std::string("it is computed per vertex, and ") + reason)
+        .suggest("compute \"position\" without it; only \"color\" may depend on it");
   }
 }
 
-/// Reports nodes that colours of passes depend on, but that only vertices have.
+/// Reports nodes that a pass's color depends on, but that are available only in the vertex stage.
 void check_colors(Work& work) {
   const TypedGraph& typed = work.typed;
   std::vector<bool> reached(typed.nodes.size());
@@ -114,15 +114,15 @@ void check_colors(Work& work) {
     const graph::Node& source = work.graph().nodes[*it];
     work.report(Id::misplaced_node, source.type_place,
                 "the \"color\" of a pass cannot depend on " + quote(source.label()))
-        .suggest("only vertices have it: use it for \"position\"");
+        .suggest("it is available only for vertices: use it for \"position\"");
   }
 }
 
-/// Reports derivatives of what depends on a derivative: there are first ones only.
+/// Reports derivatives of values that depend on a derivative: only first derivatives are supported.
 void check_derivatives(Work& work) {
   const TypedGraph& typed = work.typed;
   constexpr uint32_t nothing = ~0u;
-  std::vector<uint32_t> derivative(typed.nodes.size(), nothing);  ///< that each node depends on
+  std::vector<uint32_t> derivative(typed.nodes.size(), nothing);  ///< the derivative that each node depends on
   for (const uint32_t i : typed.order) {
     const Node& node = typed.nodes[i];
     const bool takes_one = node.row != nullptr && node.row->is<nodes::Derivative>();
@@ -132,22 +132,22 @@ void check_derivatives(Work& work) {
     if (takes_one && derivative[i] != nothing) {
       const graph::Node& source = work.graph().nodes[i];
       work.report(Id::second_derivative, source.type_place,
-                  quote(source.type) + " of what depends on the derivative " +
+                  quote(source.type) + " of a value that depends on the derivative " +
                       quote(work.graph().nodes[derivative[i]].id));
     }
     if (takes_one) derivative[i] = i;
     if (!is_trilinear_image(typed, node)) continue;
-    // The mip level comes of derivatives; what comes of the level counts as having none.
+    // The mip level depends on derivatives of texcoord; by definition, the derivative of the level is 0.
     const Operand& texcoord = typed.operands_of(node)[nodes::image_port::texcoord];
     if (texcoord.from != From::node || derivative[texcoord.index] == nothing) continue;
     work.report(Id::second_derivative, work.graph().nodes[i].type_place,
                 "a trilinear image takes derivatives of its \"texcoord\", which depends on the derivative " +
                     quote(work.graph().nodes[derivative[texcoord.index]].id))
-        .suggest("filter it with \"linear\"");
+        .suggest("use the filtertype \"linear\"");
   }
 }
 
-/// How many nodes are computed for each light or tap, over all sums; stops counting beyond the limit.
+/// The number of nodes that all sums together compute per light or tap; stops counting beyond the limit.
 uint64_t nodes_under_sums(const TypedGraph& typed) {
   uint64_t total = 0;
   std::vector<uint32_t> seen_by(typed.nodes.size(), ~0u);
@@ -161,7 +161,7 @@ uint64_t nodes_under_sums(const TypedGraph& typed) {
       total += size_of(node);
       for (const Operand& operand : typed.operands_of(node)) {
         if (operand.from != From::node || seen_by[operand.index] == sum) continue;
-        if (!typed.nodes[operand.index].per_turn) continue;
+        if (!typed.nodes[operand.index].per_iteration) continue;
         seen_by[operand.index] = sum;
         waiting.push_back(operand.index);
       }
@@ -184,7 +184,7 @@ void check_size(Work& work) {
 void warn_unused(Work& work) {
   const TypedGraph& typed = work.typed;
   std::vector<bool> used(typed.nodes.size());
-  // Of an expression only the node that the author wrote is named.
+  // For an expression, report only the node that the author wrote.
   for (const graph::Expression& expression : work.graph().expressions)
     std::fill(used.begin() + expression.first, used.begin() + expression.end, true);
   const auto use = [&](const Operand& operand) {
@@ -203,7 +203,7 @@ void warn_unused(Work& work) {
 }  // namespace
 
 void check_usage(Work& work) {
-  mark_per_turn(work.typed);
+  mark_per_iteration(work.typed);
   check_summands(work);
   check_positions(work);
   check_colors(work);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One document on its way through checking, and the steps in the order that check.cpp takes them.
+// The state of checking one document, and the steps in the order in which check.cpp runs them.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace isoshade::check {
 
-/// What the author wrote for an operand; both null: nothing.
+/// What the author wrote for an operand; both are null if nothing.
 struct Given {
   const graph::Port* port = nullptr;
   const graph::Link* link = nullptr;
@@ -25,22 +25,22 @@ struct Work {
   const Scope& scope;
   Library& library;
   support::Diagnostics& diagnostics;
-  std::vector<Given> given = {};               ///< of TypedGraph::operands
-  std::vector<const graph::Link*> roots = {};  ///< of TypedGraph::outputs
-  std::deque<graph::Link> links = {};          ///< those made of strings in ports
-  /// What node types that are not in the table refer to.
+  std::vector<Given> given = {};               ///< parallel to TypedGraph::operands
+  std::vector<const graph::Link*> roots = {};  ///< parallel to TypedGraph::outputs
+  std::deque<graph::Link> links = {};          ///< parsed from strings in ports
+  /// The function documents that the graph uses, by node type.
   std::unordered_map<std::string_view, std::shared_ptr<const TypedGraph>> functions = {};
-  uint64_t passed_numbers = 0;  ///< to and from functions
-  /// Nodes whose output is a vector only because arrays of numbers are: it is taken where a colour is needed, too.
+  uint64_t passed_numbers = 0;  ///< scalars passed to and from functions
+  /// Nodes whose output is a vector only because literal arrays default to vectors; it is accepted as a colour, too.
   std::vector<bool> untyped = {};
-  /// Nodes with errors. Their outputs have no type, and what reads them is not complained about again.
+  /// Nodes with errors. Their outputs have no type, and nodes that read them report no further errors.
   std::vector<bool> broken = {};
 
   const graph::Graph& graph() const { return typed.graph; }
   bool is_untyped(const Operand& operand, const graph::Link& link) const {
     return operand.from == Operand::From::node && link.selectors.empty() && untyped[operand.index];
   }
-  /// Whether a document with inputs of any type is checked again, with another type than float.
+  /// Whether this is an instance of a generic function other than the one for float, which was checked first.
   bool is_instance() const {
     return std::ranges::any_of(
         graph().inputs, [](const graph::Input& input) { return input.any && input.type != Type::floating; });
@@ -51,24 +51,24 @@ struct Work {
   }
 };
 
-/// Finds what every node is, which ports are given, and which node or input each link names.
+/// Finds the row or function document of every node, and resolves the links.
 void resolve(Work& work);
-/// Orders the nodes; reports cycles.
+/// Sorts the nodes topologically; reports cycles.
 void order(Work& work);
-/// Settles all types, literals and defaults.
+/// Infers all types, and stores literals and defaults.
 void infer(Work& work);
-/// Reports light nodes outside of sums, graphs that expand without measure, and unused nodes.
+/// Reports misplaced nodes, second derivatives and graphs that expand too far, and warns about unused nodes.
 void check_usage(Work& work);
 
 /// Checks a document in its scope.
 std::shared_ptr<const TypedGraph> check_in(graph::Graph graph, const Scope& scope, Library& library,
                                            support::Diagnostics& diagnostics);
 
-/// Suggests the nearest of `candidates`, if one is near.
+/// Suggests the candidate nearest to `word`, if one is close enough.
 void suggest_nearest(support::Diagnostics& diagnostics, support::Diagnostic& report, std::string_view word,
                      const std::vector<std::string_view>& candidates);
 
-/// `"a", "b" and "c"`; `last` stands in the place of "and".
+/// `"a", "b" and "c"`; `last` replaces "and".
 std::string listed(const std::vector<std::string_view>& words, std::string_view last = "and");
 
 }  // namespace isoshade::check

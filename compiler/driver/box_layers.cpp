@@ -11,7 +11,7 @@ constexpr int column_width = 220, row_height = 17, gap = 14;
 
 }  // namespace
 
-std::vector<BoxLayers::BoxPosition> BoxLayers::places() const {
+std::vector<BoxLayers::BoxPosition> BoxLayers::positions() const {
   const size_t count = rows_.size();
   std::vector<std::vector<size_t>> followers(count);
   std::vector<size_t> awaited(count), column(count);
@@ -19,7 +19,7 @@ std::vector<BoxLayers::BoxPosition> BoxLayers::places() const {
     followers[link.from].push_back(link.to);
     ++awaited[link.to];
   }
-  // Boxes in an order in which links lead forwards; `ready` grows while it is gone through.
+  // The boxes in topological order; `ready` grows during the traversal.
   std::vector<size_t> ready;
   for (size_t box = 0; box < count; ++box)
     if (awaited[box] == 0) ready.push_back(box);
@@ -34,8 +34,8 @@ std::vector<BoxLayers::BoxPosition> BoxLayers::places() const {
     if (column[box] >= columns.size()) columns.resize(column[box] + 1);
     columns[column[box]].push_back(box);
   }
-  // A box lies beside the mean of what it reads, as far as those above it in its column leave room.
-  std::vector<BoxPosition> places(count, BoxPosition{0, 0});
+  // Align each box with the mean of the boxes that it reads, as far as the boxes above it in its column leave room.
+  std::vector<BoxPosition> positions(count, BoxPosition{0, 0});
   std::vector<double> sum(count), wanted(count);
   std::vector<size_t> read(count);
   for (size_t c = 0; c < columns.size(); ++c) {
@@ -48,14 +48,14 @@ std::vector<BoxLayers::BoxPosition> BoxLayers::places() const {
       const int height = static_cast<int>(rows_[box]) * row_height;
       const int y = std::max(below, static_cast<int>(wanted[box]) - height / 2) + height / 2;
       below = y + height / 2 + gap;
-      places[box] = {static_cast<int>(c) * column_width, -y};
+      positions[box] = {static_cast<int>(c) * column_width, -y};
       for (const size_t next : followers[box]) {
         sum[next] += y;
         ++read[next];
       }
     }
   }
-  return places;
+  return positions;
 }
 
 }  // namespace isoshade::driver

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the boxes of a large picture go.
+// Layout of large diagrams.
 #pragma once
 
 #include <cstddef>
@@ -7,20 +7,20 @@
 
 namespace isoshade::driver {
 
-/// Boxes in columns, each to the right of all that link to it, in time linear in boxes and links (but for a sort of
-/// each column). Graphviz finds shorter ways, in minutes for some hundred boxes.
+/// Arranges boxes in columns, each to the right of all boxes that link to it, in linear time except for a sort of each
+/// column. Graphviz finds shorter links, but takes minutes for some hundred boxes.
 class BoxLayers {
  public:
-  /// A box with so many rows of text; boxes are numbered from 0.
+  /// Adds a box with this number of text rows; boxes are numbered from 0.
   void add_box(size_t rows) { rows_.push_back(rows); }
   void add_link(size_t from, size_t to) { links_.push_back({from, to}); }
 
-  /// The middle of a box, in points, y upwards.
+  /// The centre of a box, in points, y upwards.
   struct BoxPosition {
     int x, y;
   };
-  /// Of each box. Links must form no circle.
-  std::vector<BoxPosition> places() const;
+  /// The position of each box. Links must be acyclic.
+  std::vector<BoxPosition> positions() const;
 
  private:
   struct Link {

@@ -29,7 +29,7 @@ constexpr std::string_view head = R"(digraph {
   edge [fontname="DejaVu Sans" fontsize=8 arrowsize=0.6 color="#4a5568" fontcolor="#4a5568"]
 )";
 
-/// For text between tags: nothing in it is a tag, an entity or an escape of Graphviz.
+/// Escapes text for Graphviz's HTML labels: tags, entities and escape sequences.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : support::visible(text)) {
@@ -45,7 +45,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// A colour for each kind of type, readable with black text.
+/// A background colour by type, readable with black text.
 std::string_view color_of(Type type) {
   switch (type) {
     case Type::boolean: return "#fbd5d5";
@@ -59,10 +59,10 @@ std::string_view color_of(Type type) {
   }
 }
 
-/// One document's boxes. Names in DOT are `prefix` and a number.
-class Picture {
+/// Draws the boxes and links of a document and of the functions that it calls. Names in DOT are "n" and a number.
+class Diagram {
  public:
-  explicit Picture(int depth) : deepest_(depth) {}
+  explicit Diagram(int depth) : deepest_(depth) {}
 
   std::string draw(const TypedGraph& graph) {
     out_ = head;
@@ -91,7 +91,7 @@ class Picture {
 
  private:
   using Names = std::vector<std::string>;
-  /// Where links to a document's nodes begin: "n3:out", for each node and output.
+  /// The start points of links, by node and output: "n3:out".
   using Drawn = std::vector<Names>;
 
   size_t new_box(size_t rows) {
@@ -100,15 +100,15 @@ class Picture {
   }
   bool full() const { return boxes_ > most_drawn_nodes; }
 
-  /// Says where each box is: Graphviz then only draws. In a picture of dots it has at most 60 inches a side.
+  /// Adds the position of each box, so that Graphviz only draws. Raster output is at most 60 inches wide and high.
   void place_boxes() {
     out_ += "  layout=nop\n  splines=line\n  size=\"60,60\"\n";
-    const std::vector<BoxLayers::BoxPosition> places = layers_.places();
-    for (size_t i = 0; i < places.size(); ++i)
-      out_ += fmt::format("  n{} [pos=\"{},{}\"]\n", i, places[i].x, places[i].y);
+    const std::vector<BoxLayers::BoxPosition> positions = layers_.positions();
+    for (size_t i = 0; i < positions.size(); ++i)
+      out_ += fmt::format("  n{} [pos=\"{},{}\"]\n", i, positions[i].x, positions[i].y);
   }
 
-  /// The number of the box that an end of a link names: "n12:i0".
+  /// The number of the box at the end of a link: 12 for "n12:i0".
   static size_t box_of(std::string_view end) {
     size_t number = 0;
     std::from_chars(end.data() + 1, end.data() + end.size(), number);
@@ -153,7 +153,7 @@ class Picture {
     return "[" + text + "]";
   }
 
-  /// Values that were written or are defaults.
+  /// Formats a literal or default value.
   static std::string words_text(const TypedGraph& graph, const Operand& operand) {
     const uint32_t* words = graph.words.data() + operand.index;
     if (operand.needed == Type::boolean) return words[0] != 0 ? "true" : "false";
@@ -187,7 +187,7 @@ class Picture {
     return names;
   }
 
-  /// The box of a node of the table, or of a function whose inside is not drawn.
+  /// The box of a node, or of a function whose contents are not drawn.
   std::string node_box(const TypedGraph& graph, uint32_t index) {
     const check::Node& node = graph.nodes[index];
     const graph::Node& source = graph.graph.nodes[index];
@@ -253,10 +253,10 @@ class Picture {
         fmt::format("  {} -> {}{}\n", from, to, label.empty() ? "" : fmt::format(" [label=\"{}\"]", label));
   }
 
-  /// Draws all nodes of a document; `inputs` is where links to its inputs begin.
+  /// Draws all nodes of a document; `inputs` are the start points of links from its inputs.
   Drawn body(const TypedGraph& graph, const Names& inputs, int depth) {
     Drawn drawn(graph.nodes.size());
-    // Nodes that stand for a part of an expression, and those that stand for the whole.
+    // The nodes that are parts of an expression, and the roots of expressions.
     constexpr uint32_t none = ~0u;
     std::vector<uint32_t> expression_at(graph.nodes.size(), none);
     std::vector<bool> is_part(graph.nodes.size());
@@ -288,7 +288,7 @@ class Picture {
                        const Names& inputs) {
     const std::string name = expression_box(graph, expression);
     drawn[expression.root] = {name + ":o0"};
-    // The nodes that hand on a port are called after it.
+    // Pass-through nodes have the name of their port.
     const auto link = [&](uint32_t part) {
       for (const Operand& operand : graph.operands_of(graph.nodes[part])) {
         const bool inner =
@@ -303,7 +303,7 @@ class Picture {
     link(expression.root);
   }
 
-  /// A called document: its inputs, nodes and outputs in a frame.
+  /// Draws a called document: its inputs, nodes and outputs in a frame.
   void draw_cluster(const TypedGraph& graph, uint32_t index, Drawn& drawn, const Names& inputs, int depth) {
     const check::Node& node = graph.nodes[index];
     const TypedGraph& callee = *node.callee;
@@ -329,7 +329,7 @@ class Picture {
       edge(source_of(callee.outputs[i], inner, own), drawn[index].back(), callee.outputs[i]);
     }
     out_ += "  }\n";
-    // What leads into the frame stands outside of it, or Graphviz would draw its beginning inside.
+    // Links into the frame must be declared outside of it; otherwise Graphviz draws their source inside.
     for (size_t i = 0; i < operands.size(); ++i)
       edge(source_of(operands[i], drawn, inputs), own[i], operands[i]);
   }
@@ -342,6 +342,6 @@ class Picture {
 
 }  // namespace
 
-std::string draw(const TypedGraph& graph, int depth) { return Picture(depth).draw(graph); }
+std::string draw(const TypedGraph& graph, int depth) { return Diagram(depth).draw(graph); }
 
 }  // namespace isoshade::driver

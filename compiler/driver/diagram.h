@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph as a picture, in the language of Graphviz.
+// Draws a graph as a diagram, in the DOT language of Graphviz.
 #pragma once
 
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace isoshade::driver {
 
-/// More boxes than this are no picture.
+/// The maximum number of boxes in a diagram.
 inline constexpr size_t most_drawn_nodes = 2000;
-/// Up to so many boxes Graphviz finds where they go. It takes more than 10 s for 500 that link to any before them (dot
-/// 2.43, with straight lines or not), and hangs over 2,000; with more than this the text says where they are, and 2,000
-/// take 0.5 s.
+/// Graphviz lays out diagrams of up to this many boxes. For 500 boxes with random links it takes more than 10 s (dot
+/// 2.43, also with straight lines), and it hangs for 2,000. Larger diagrams contain positions (box_layers.h); 2,000
+/// boxes then take 0.5 s.
 inline constexpr size_t most_laid_out_nodes = 200;
 
-/// The graph in DOT: nodes with their types, ports and literals, links with their swizzles and types, and
-/// called function documents as clusters with their own nodes, up to `depth` inside each other. Text of the
-/// document is escaped. Stops at most_drawn_nodes and says so in the picture. A picture of more than
-/// most_laid_out_nodes has its boxes in columns, each to the right of what it reads, and shows no frames.
+/// The graph in DOT: nodes with their types, ports and literals, links with their swizzles and types, and called
+/// function documents as clusters with their own nodes, nested up to `depth`. Text of the document is escaped. Stops at
+/// most_drawn_nodes boxes and notes that in the diagram. A diagram of more than most_laid_out_nodes boxes arranges them
+/// in columns, each to the right of the boxes that it reads, without cluster frames.
 std::string draw(const check::TypedGraph& graph, int depth);
 
 }  // namespace isoshade::driver

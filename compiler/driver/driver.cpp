@@ -15,7 +15,7 @@ namespace {
 
 using support::Diagnostics;
 
-/// JSON text -> Document -> Graph -> TypedGraph; of the kind `wanted`, if there is one.
+/// JSON text -> Document -> Graph -> TypedGraph. Reports a document that is not of kind `wanted`, if given.
 std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& source,
                                                     std::optional<graph::DocumentKind> wanted,
                                                     const CompileOptions& options, Diagnostics& diagnostics) {
@@ -29,7 +29,7 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
     diagnostics.report(support::Id::wrong_kind,
                        document->span(*document->root.find(graph::kind_name(graph->kind))),
                        "this is a document of kind \"" + std::string(graph::kind_name(graph->kind)) +
-                           "\"; a \"" + std::string(graph::kind_name(*wanted)) + "\" is needed here");
+                           "\", but \"" + std::string(graph::kind_name(*wanted)) + "\" is needed here");
     return nullptr;
   }
   auto typed = check::check(std::move(*graph), *options.library, diagnostics);
@@ -38,8 +38,8 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
   return typed;
 }
 
-/// What lowering made, through all passes. The reference takes it as authored, but for the positions of vertices: these
-/// are what every backend has.
+/// Runs all passes on a lowered program. The reference leaves it as lowered, except for vertex positions, which must be
+/// those of every backend.
 void finish(Program& program, uint32_t kernel, const CompileOptions& options,
             support::Source source = nullptr) {
   program.entry = kernel;
@@ -71,7 +71,7 @@ graph::Type graph_type(ir::Type type) {
   return type == ir::int_type ? graph::Type::integer : floats[type.width - 1];
 }
 
-/// A parameter's value as an object's record has it: floats, also for booleans (0, 1) and integers.
+/// The words of a parameter's value in a record: floats, also for booleans (0, 1) and integers.
 std::vector<float> record_words(const graph::Literal& literal, int words) {
   if (literal.kind == graph::Literal::Kind::boolean) return {literal.boolean ? 1.0f : 0.0f};
   if (literal.kind == graph::Literal::Kind::numbers) return literal.numbers;
@@ -101,13 +101,12 @@ std::vector<Image> images_of(const check::TypedGraph& typed) {
   return images;
 }
 
-/// Where each value of a block lies in a record in which `first` words stand before the block. `sums` are those that
-/// the block's taps are of.
+/// The layout of a block in a record, in which it begins at word `first`. `sums` are the sums of the block's taps.
 interface::RecordLayout layout_of(const ParameterBlock& block, const std::vector<lower::TapSum>& sums,
                                   size_t first) {
   interface::RecordLayout layout;
   for (size_t i = 0; i < block.fields.size(); ++i) {
-    const bool has_words = block.fields[i].words > 0;  // the name of a file has none
+    const bool has_words = block.fields[i].words > 0;  // filenames have none
     layout.inputs.push_back(has_words ? static_cast<int>(first + block.word_of(i)) : -1);
   }
   for (size_t i = 0; i < block.images.size(); ++i)
@@ -120,7 +119,7 @@ interface::RecordLayout layout_of(const Effect& effect) {
   return layout_of(effect.parameters, {}, lower::object_word::parameters);
 }
 
-/// The module of what a document computes, with the buffers that kernels load from.
+/// Lowers a document into a module with the buffers that kernels load from.
 lower::Lowered lower_with_buffers(const check::TypedGraph& typed, const lower::LowerOptions& options = {}) {
   lower::Lowered lowered = lower::lower(typed, options);
   lowered.module.buffers = lower::frame_module().buffers;

@@ -17,19 +17,18 @@
 
 namespace isoshade::driver {
 
-/// Called with what a stage made, as text. Stages: document, graph, typed, lower, then each pass by its name.
+/// Receives the result of a stage as text. Stages: document, graph, typed, lower, then the name of each pass.
 using Dump = std::function<void(std::string_view stage, const std::function<std::string()>& text)>;
 
 struct CompileOptions {
-  check::Library* library = nullptr;  ///< where sub-graphs come from; required
+  check::Library* library = nullptr;  ///< of function documents; required
   lower::LightKinds lights;           ///< the kinds that the scene has
-  /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and no optimisation;
-  /// only ddx and ddy are gone.
+  /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and without
+  /// optimisation; only ddx and ddy are replaced.
   bool reference = false;
-  /// Of functions and of what pixels compute. Vertices are always transformed by the default's functions, so that the
-  /// same pixels are visible in every tier.
+  /// Of eval and pixel programs. Vertex programs always use the default tier, so that every tier shows the same pixels.
   functions::Tier tier = functions::Tier::standard;
-  Dump dump;  ///< empty: nothing is dumped
+  Dump dump;  ///< may be empty
 };
 
 /// One pass of an effect.
@@ -37,7 +36,7 @@ struct EffectPass {
   std::string name;
   interface::PassState state;
   bool moves_vertices = false;
-  std::optional<size_t> enabled;  ///< of the parameters' fields; the pass is drawn where it is not 0
+  std::optional<size_t> enabled;  ///< index of a parameter field; the pass is drawn if it is not 0
   Program vertex;
   Program pixel;
 };
@@ -45,7 +44,7 @@ struct EffectPass {
 struct Effect {
   std::string name;
   std::string document;
-  ParameterBlock parameters;  ///< in an object's record from object_word::parameters on
+  ParameterBlock parameters;  ///< in the object's record, from object_word::parameters
   std::vector<EffectPass> passes;
 };
 
@@ -54,17 +53,16 @@ struct Post {
   std::string name;
   std::string document;
   ParameterBlock parameters;        ///< its whole record; without images
-  std::vector<std::string> images;  ///< that it asks for by name
-  std::vector<bool> reads;          ///< of the image that it goes over, then of `images`: whether it reads it
+  std::vector<std::string> images;  ///< names of further input images
+  std::vector<bool> reads;          ///< whether it reads the image that it processes, then each of `images`
   bool reads_depth = false;
-  std::optional<size_t> enabled;  ///< of the parameters' fields; where it is 0, the post does nothing
+  std::optional<size_t> enabled;  ///< index of a parameter field; the post is skipped if it is 0
   Program program;
 };
 
-/// Which kind of document a source holds.
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
-/// The graph of a function or effect document, checked: the front half of the pipeline.
+/// The front end: parses and checks a function, effect or post document.
 std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source,
                                                         const CompileOptions& options,
                                                         support::Diagnostics& diagnostics);
@@ -81,10 +79,10 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
 std::optional<Program> compile_function(const support::Source& source, const CompileOptions& options,
                                         support::Diagnostics& diagnostics);
 
-/// The visibility pass's program, the same for every scene.
+/// The program of the visibility pass, the same for every scene.
 const Program& depth_program();
 
-/// An eval program of a function of a module that frame_module() began.
+/// Makes an eval program of a function of a module created by frame_module().
 Program finish_eval(ir::Module module, uint32_t function, std::string name,
                     functions::Tier tier = functions::Tier::standard);
 

@@ -113,7 +113,7 @@ std::string dump_typed(const check::TypedGraph& graph) {
       out += fmt::format(" ({})", text(graph, operand));
     out += " :";
     for (const check::Type type : graph.types_of(node)) out += fmt::format(" {}", graph::type_name(type));
-    out += node.per_turn ? "  each turn\n" : "\n";
+    out += node.per_iteration ? "  each iteration\n" : "\n";
   }
   for (const check::Operand& operand : graph.outputs)
     out += fmt::format("output ({})\n", text(graph, operand));

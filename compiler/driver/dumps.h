@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the stages made, as text for --dump-after: for people, and for tests of a stage.
+// The results of the stages as text, for --dump-after and for tests.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace isoshade::driver {
 
-/// A line a key or element: its place, its JSON pointer, its value.
+/// One line per key or element: position, JSON pointer, value.
 std::string dump_document(const graph::Document& document);
-/// A line a node with its ports as written.
+/// One line per node, with its ports as written.
 std::string dump_graph(const graph::Graph& graph);
-/// A line a node, each after those it reads, with settled operands and types.
+/// One line per node in topological order, with resolved operands and types.
 std::string dump_typed(const check::TypedGraph& graph);
 /// Text IR.
 std::string dump_module(const ir::Module& module);

@@ -7,7 +7,7 @@
 namespace isoshade::driver {
 namespace {
 
-/// "0 to 1", "from 0 on", `"world" (0) or "screen" (1)`; empty if the input may be anything.
+/// "0 to 1", "at least 0", "0 (world) or 1 (screen)"; empty if the range is unlimited.
 std::string range_text(const graph::Input& input) {
   if (!input.names.empty()) {
     std::string text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node of the table costs and how exact it is, measured on what it compiles to.
+// The cost and error of a node, determined from its compiled program.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,15 @@
 namespace isoshade::driver {
 
 struct NodeCost {
-  int64_t operations =
-      0;  ///< on single floats, integers and booleans, of all functions it calls, after all passes
-  int own_operations = 0;          ///< of the node itself, before it calls
+  int64_t operations = 0;          ///< scalar operations after all passes, including called functions
+  int own_operations = 0;          ///< of the node itself, without called functions
   std::vector<std::string> calls;  ///< rows of functions.def
 };
 
-/// The row must not belong to effects.
+/// The row must be available in function documents.
 NodeCost cost_of(const nodes::Example& example, functions::Tier tier);
 
-/// "0 ULP", "1.75 ULP", or what it is made of.
+/// "exact", "0 ULP", "1.75 ULP", or the errors of the functions that it calls.
 std::string error_of(const NodeCost& cost, functions::Tier tier);
 
 }  // namespace isoshade::driver

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program: what a backend runs. One kernel at the end of the pipeline, and what is told of it.
+// A program: one kernel at the end of the pipeline, with its reflection. Backends run programs.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ namespace isoshade::driver {
 
 using lower::Stage;
 
-/// One effect parameter or eval column, as reflection tells it.
+/// An effect parameter or an eval column, in the reflection.
 struct Field {
   std::string name;
-  std::string type;  ///< as documents spell it: "float", "color3", ...
+  std::string type;  ///< its name in documents: "float", "color3", ...
   int words = 1;
   std::vector<float> value;             ///< the default, `words` long; empty for eval columns
   std::optional<float> min, max;        ///< of each component
-  std::vector<std::string> names = {};  ///< of the values 0, 1, ... of an integer, if they have names
+  std::vector<std::string> names = {};  ///< of the values 0, 1, ... of an integer ("enum"); empty if it has none
 };
 
 struct Program {
@@ -37,22 +37,22 @@ struct Program {
   std::vector<Field> inputs;   ///< eval: input columns
   std::vector<Field> results;  ///< eval: output columns
   functions::Tier tier = functions::Tier::standard;
-  support::Source source = nullptr;  ///< of the document, for messages; null: it has none
-  /// What the document's function takes, as lowered; empty where there is none.
+  support::Source source = nullptr;  ///< of the document, for messages; null if there is none
+  /// The bindings of the document's function, as lowered; empty if there is none.
   std::vector<interface::Binding> bindings = {};
 };
 
-/// How `/` and `sqrt` are computed: by the device, or by Newton steps and an exact integer residual.
+/// Whether the device computes `/` and `sqrt`, or Newton steps with an exact integer remainder do.
 enum class Division : uint8_t { native, exact };
 
-/// What it is, for messages: `the pixel stage of "fur" (fur.json)`.
+/// For messages: `the pixel stage of "fur" (fur.json)`.
 std::string description(const Program& program);
 
-/// The program as a Vulkan shader of its stage; emit/stages.h tells the interface.
+/// The program as a Vulkan shader of its stage; see emit/stages.h for its interface.
 std::string glsl(const Program& program, Division division);
 /// The same, but an eval program becomes a vertex shader.
 std::string glsl_with_vertex_eval(const Program& program, Division division);
-/// The program as C++ that exports its entry point; emit/stages.h. Not for Stage::depth.
+/// The program as C++ that exports its entry point; see emit/stages.h. Not for Stage::depth.
 std::string cpp(const Program& program);
 
 }  // namespace isoshade::driver

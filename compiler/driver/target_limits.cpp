@@ -17,37 +17,36 @@ constexpr uint64_t operations_of_exact_division = 40;
 struct Limit {
   std::string_view name;
   uint64_t most;
-  std::string_view way_out;
+  std::string_view fix;
 };
 
 Limit limit_of(Target target) {
   switch (target) {
     case Target::vulkan:
       return {"a Vulkan driver, which expands all calls,", most_operations_on_vulkan,
-              "call less inside what is called several times; or use --backend cpu (compile: --target cpp), "
-              "which "
-              "keeps large functions as calls"};
+              "make functions that are called several times smaller; or use --backend cpu (compile: --target cpp), "
+              "which keeps large functions as calls"};
     case Target::cpu:
-      return {"the cpu backend", most_operations_on_cpu, "call less inside what is called several times"};
+      return {"the cpu backend", most_operations_on_cpu, "make functions that are called several times smaller"};
     case Target::interpreter: break;
   }
   return {"the interpreter", most_operations_on_interpreter,
-          "call less inside what is called several times; or use --backend cpu"};
+          "make functions that are called several times smaller; or use --backend cpu"};
 }
 
-/// A node and what the values that come of it cost.
+/// A node, and the number of operations that it lowers to.
 struct Heaviest {
   const ir::Origin* node = nullptr;
   uint64_t operations = 0;
 };
 
-/// In the function, the origin of most operations.
+/// The node of the function with the most operations.
 Heaviest heaviest_node(const ir::Function& function, const std::vector<uint64_t>& of_functions) {
   std::vector<uint64_t> sums(function.origins.size());
   for (const ir::Block& block : function.blocks)
     for (const ir::InstructionId id : block.instructions) {
       const ir::Instruction& made = function.instructions[id];
-      // What is in its blocks is gone through by itself.
+      // The instructions of nested blocks are visited separately.
       if (made.blocks[0] == ir::none)
         sums[made.origin] += ir::expanded_operations(function, made, of_functions);
     }
@@ -56,7 +55,7 @@ Heaviest heaviest_node(const ir::Function& function, const std::vector<uint64_t>
   return {&function.origins[static_cast<size_t>(most - sums.begin())], *most};
 }
 
-/// The call of most operations in a function; null if it calls nothing.
+/// The call with the most operations in a function; null if there are no calls.
 const ir::Instruction* heaviest_call(const ir::Function& function,
                                      const std::vector<uint64_t>& of_functions) {
   const ir::Instruction* most = nullptr;
@@ -80,7 +79,7 @@ const ir::Function* authored(const Program& program, const std::vector<uint64_t>
   return function;
 }
 
-/// Where a line of the document names a node.
+/// The span of the node's name in the document.
 support::Span place_of(const support::Source& source, const ir::Origin& node) {
   if (source == nullptr || node.line == 0) return {};
   const std::string_view line = source->line(node.line);
@@ -97,7 +96,7 @@ support::Span place_of(const support::Source& source, const ir::Origin& node) {
 
 bool within_limits(const Program& program, Target target, Division division,
                    support::Diagnostics& diagnostics) {
-  if (program.module.functions.empty()) return true;  // a text without a module: nothing to count
+  if (program.module.functions.empty()) return true;  // only text, no module to count
   const uint64_t of_division = division == Division::exact ? operations_of_exact_division : 1;
   const std::vector<uint64_t> of_functions =
       ir::expanded_operations(program.module, program.entry, of_division);
@@ -115,16 +114,16 @@ bool within_limits(const Program& program, Target target, Division division,
               support::Id::too_large, known ? place_of(program.source, *heaviest.node) : support::Span{},
               operations <= limit.most
                   ? fmt::format(
-                        "the C++ of the {} program of {} has {} operations; a compiler bears at most {}",
+                        "the C++ of the {} program of {} has {} operations; the limit for a compiler is {}",
                         name(program.stage), support::quote(program.name), in_text, most_operations_in_cpp)
-                  : fmt::format("with all calls expanded, the {} program of {} has {} operations; {} bears "
-                                "at most {}",
+                  : fmt::format("with all calls expanded, the {} program of {} has {} operations; the limit for {} "
+                                "is {}",
                                 name(program.stage), support::quote(program.name), operations, limit.name,
                                 limit.most))
-          .suggest(operations <= limit.most ? "use --backend interpreter" : std::string(limit.way_out));
+          .suggest(operations <= limit.most ? "use --backend interpreter" : std::string(limit.fix));
   if (known)
     report.note(
-        fmt::format("{} of them are of node {}", heaviest.operations, support::quote(heaviest.node->node)));
+        fmt::format("{} of them belong to node {}", heaviest.operations, support::quote(heaviest.node->node)));
   return false;
 }
 

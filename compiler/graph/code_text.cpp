@@ -10,11 +10,11 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// How many bytes of UTF-8 begin with `lead`.
+/// Length in bytes of the UTF-8 sequence that begins with `lead`.
 size_t utf8_length(unsigned char lead) { return lead < 0x80 ? 1 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4; }
 
-/// How many bytes an escape takes whose character is `length` bytes of UTF-8: characters beyond the basic
-/// plane are two escapes.
+/// Length in bytes of the escape of a character that is `length` bytes of UTF-8: characters beyond the basic
+/// multilingual plane are written as two \u escapes.
 size_t escape_length(std::string_view raw, size_t length) { return raw[1] != 'u' ? 2 : length == 4 ? 12 : 6; }
 
 size_t end_of_number(std::string_view text, size_t at) {
@@ -63,7 +63,7 @@ CodeText::CodeText(const Document& document, const Json& string) : text_(string.
     for (size_t i = 0; i < length && offsets_.size() < text_.size(); ++i)
       offsets_.push_back(string.begin + static_cast<uint32_t>(at));
     at += written;
-    support::assert_that(at < raw.size(), "a string is longer than it is written");
+    support::assert_that(at < raw.size(), "a decoded string is longer than its JSON text");
   }
   offsets_.push_back(string.begin + static_cast<uint32_t>(at));
 }

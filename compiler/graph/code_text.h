@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The string that an expression is written in: its tokens, and where they stand in the document.
+// The lexer of expressions: tokens, and their ranges in the document.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,12 @@ class CodeText {
   const std::string& text() const { return text_; }
   /// The first token at or after `from`, an offset in the decoded string.
   Token next(uint32_t from) const;
-  /// Bytes of the decoded string as a place in the document, whatever escapes stand before and in them.
+  /// Maps a range of the decoded string to the document, accounting for escapes.
   TextRange place(uint32_t begin, uint32_t end) const { return {offsets_[begin], offsets_[end]}; }
 
  private:
   const std::string& text_;
-  std::vector<uint32_t> offsets_;  ///< of each byte in the document, and of the closing quote
+  std::vector<uint32_t> offsets_;  ///< document offset of each decoded byte and of the closing quote
 };
 
 }  // namespace isoshade::graph

@@ -40,7 +40,7 @@ std::string_view kind_name(Json::Kind kind) {
 }
 
 float Document::to_float(const Json& number) const {
-  // Every JSON number is one that parse_float takes.
+  // parse_float accepts every JSON number.
   return support::parse_float(text(number)).value_or(0.0f);
 }
 

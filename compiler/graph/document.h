@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A JSON text with the place of every key and value, and a reader that reports what an author gets wrong.
+// A JSON document with the source range of every key and value: parsing, merging, formatting.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@ namespace isoshade::graph {
 
 struct Member;
 
-/// One JSON value. Numbers keep their text's exact double; integers are numbers with `integral` set.
+/// One JSON value. `number` is the double nearest to the text; integers are numbers with `integral` set.
 struct Json {
   enum class Kind : uint8_t { null, boolean, number, string, array, object };
   Kind kind = Kind::null;
   bool boolean = false;
-  bool integral = false;  ///< the number was written without fraction or exponent and fits int64
-  uint32_t source = 0;    ///< which of the document's sources it stands in
+  bool integral = false;  ///< the number has no fraction or exponent and fits int64
+  uint32_t source = 0;    ///< 0: Document::source; n: Document::others[n - 1]
   double number = 0;
   std::string string;
   std::vector<Json> items;      ///< of an array
-  std::vector<Member> members;  ///< of an object, in the order written
+  std::vector<Member> members;  ///< of an object, in document order
   uint32_t begin = 0, end = 0;  ///< byte range in its source
 
   const Json* find(std::string_view key) const;
@@ -42,25 +42,24 @@ std::string_view kind_name(Json::Kind kind);
 
 /// Limits that keep hostile documents harmless.
 inline constexpr int max_depth = 64;
-inline constexpr size_t max_document_bytes = 32u << 20;  ///< a graph of 100,000 nodes has some 10 MiB
-inline constexpr size_t max_values =
-    1'000'000;  ///< each takes some 300 bytes, its part of the Graph included
+inline constexpr size_t max_document_bytes = 32u << 20;  ///< a graph of 100,000 nodes has about 10 MiB
+inline constexpr size_t max_values = 1'000'000;          ///< each takes about 300 bytes, with its share of the Graph
 
 struct Document {
   support::Source source;
   Json root;
-  std::vector<support::Source> others{};  ///< sources 1, 2, ... of values that came from elsewhere: merge.h
+  std::vector<support::Source> others{};  ///< sources 1, 2, ... of values from merged documents
 
   const support::Source& source_of(const Json& value) const {
     return value.source == 0 ? source : others[value.source - 1];
   }
   support::Span span(const Json& value) const { return {source_of(value), value.begin, value.end}; }
-  /// The value as it is written, quotes and escapes included.
+  /// The source text of the value, with quotes and escapes.
   std::string_view text(const Json& value) const {
     return std::string_view(source_of(value)->text()).substr(value.begin, value.end - value.begin);
   }
-  /// A number's text rounded once to float: through Json::number it would be rounded twice. Denormals are
-  /// zeros; what is beyond the range is infinite.
+  /// The text of a number rounded once to float (Json::number would round twice). Denormals flush to zero;
+  /// overflow gives infinity.
   float to_float(const Json& number) const;
   /// The exact value of an integral number.
   int64_t to_integer(const Json& number) const;
@@ -69,14 +68,13 @@ struct Document {
   }
 };
 
-/// Parses JSON text (RFC 8259, UTF-8). Reports syntax errors, duplicate keys, nesting beyond max_depth,
-/// numbers that no double holds, and bytes that are not UTF-8; a text that is no JSON ends at its first
-/// error. A byte order mark at the head is skipped.
+/// Parses JSON (RFC 8259, UTF-8). Reports syntax errors, duplicate keys, nesting beyond max_depth, numbers
+/// beyond the range of double, and invalid UTF-8; stops at the first syntax error. Skips a byte order mark.
 std::optional<Document> parse_document(support::Source source, support::Diagnostics& diagnostics);
 
-/// Reads a file ("-" is standard input); reports a file that is missing, unreadable or too large, and then
-/// returns nothing. `where` is the place that names the file, if a document does, which can name regular files
-/// only.
+/// Reads a file ("-" is standard input). Reports a missing, unreadable or too large file and returns null.
+/// `where` is the location in a document that refers to the file, if any; documents may refer only to regular
+/// files.
 support::Source read_source(const std::string& path, support::Diagnostics& diagnostics,
                             const support::Span& where = {});
 
@@ -86,5 +84,21 @@ std::string pointer_at(const Document& document, uint32_t offset);
 
 /// Fills in the pointer of every diagnostic that lies in `document` and has none. For --diagnostics json.
 void add_pointers(const Document& document, support::Diagnostics& diagnostics);
+
+/// Copies `value`, which stands in `source`, so that it can be inserted into the document.
+Json adopt(Document& document, support::Source source, Json value);
+
+/// Applies `changes` to `base` as a JSON Merge Patch (RFC 7386): objects are merged member by member, null removes a
+/// member, anything else replaces the old value. Two additions: an object with a "type" replaces the old object as a
+/// whole, because the keys of another type have no meaning in it; and a null that removes nothing is an error, except
+/// in "extras". Every value keeps its source, so that diagnostics point there and paths are relative to it; source 0 of
+/// the result is that of `changes`.
+Document merge(Document base, Document changes, support::Diagnostics& diagnostics);
+
+/// The document in canonical layout, at most 120 columns wide: two spaces per indent; a value stays on one line if it
+/// fits, otherwise each member has its own line, as do the members of objects of objects at the top level. Keeps the
+/// order of keys, the spelling of strings and numbers, and one blank line wherever members were separated by blank
+/// lines. Idempotent.
+std::string format(const Document& document);
 
 }  // namespace isoshade::graph

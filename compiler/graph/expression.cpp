@@ -28,12 +28,12 @@ Literal boolean_literal(bool value) {
   return literal;
 }
 
-/// Components, not the name of an output.
+/// Whether a selector is a swizzle and not the name of an output.
 bool is_swizzle(std::string_view selector) {
   return selector.size() <= 4 && selector.find_first_not_of("xyzwrgba") == std::string_view::npos;
 }
 
-/// An operator between two operands. What it does stands in the node library, under its own text.
+/// A binary operator. The node library has a row of the same name, which defines it.
 struct Binary {
   std::string_view text;
   int precedence;
@@ -56,7 +56,7 @@ ExpressionParser::Operand ExpressionParser::fail(TextRange place, std::string me
   return {};
 }
 
-std::string_view ExpressionParser::way_out() const {
+std::string_view ExpressionParser::foreign_operator_fix() const {
   if (token_.text == "%") return "write mod(x, y)";
   if (token_.text == "^") return "write pow(x, y)";
   if (token_.text == "=") return "compare with ==";
@@ -66,15 +66,15 @@ std::string_view ExpressionParser::way_out() const {
 void ExpressionParser::expect(std::string_view symbol, std::string_view why) {
   if (take(symbol)) return;
   const std::string found =
-      token_.kind == CodeText::Kind::end ? "the code ends" : quote(token_.text) + " stands";
-  fail(place_of(token_), found + " where " + quote(symbol) + " " + std::string(why) + " is needed",
-       way_out());
+      token_.kind == CodeText::Kind::end ? "the end of the code" : std::string(quote(token_.text));
+  fail(place_of(token_), "expected " + quote(symbol) + " " + std::string(why) + ", but found " + found,
+       foreign_operator_fix());
 }
 
 bool ExpressionParser::too_deep() {
   if (depth_ <= max_expression_depth) return false;
-  fail(place_of(token_), "expressions are nested at most " + std::to_string(max_expression_depth) + " deep",
-       "make a part of it a node of its own");
+  fail(place_of(token_), "the expression is nested more than " + std::to_string(max_expression_depth) + " deep",
+       "move a part of it to another node");
   return true;
 }
 
@@ -134,15 +134,15 @@ ExpressionParser::Operand ExpressionParser::postfix() {
   while (is(".")) {
     advance();
     if (token_.kind != CodeText::Kind::name)
-      return fail(place_of(token_), "components or the name of an output stand after \".\"");
+      return fail(place_of(token_), "expected a swizzle or the name of an output after \".\"");
     const std::string selector(advance().text);
     auto* link = std::get_if<Link>(&operand.value);
     if (link == nullptr || link->selectors.size() == 2 ||
         (link->selectors.size() == 1 && is_swizzle(link->selectors[0]))) {
       ++depth_;
       if (too_deep()) break;
-      // Messages show no more of it, and each of very many nodes keeps a copy.
-      operand = handed_on(std::move(operand.value), code_.text().substr(0, 100), operand.place);
+      // Messages show no more, and each of possibly many nodes keeps a copy.
+      operand = pass_through(std::move(operand.value), code_.text().substr(0, 100), operand.place);
       link = &std::get<Link>(operand.value);
     }
     link->selectors.push_back(selector);
@@ -163,17 +163,17 @@ ExpressionParser::Operand ExpressionParser::primary() {
     case CodeText::Kind::symbol:
       if (take("(")) {
         Operand inner = choice();
-        expect(")", "after the parenthesis");
+        expect(")", "to close the parenthesis");
         inner.place = since(start);
         return inner;
       }
-      return fail(start, "a value is needed before " + quote(token_.text));
+      return fail(start, "expected a value before " + quote(token_.text));
     case CodeText::Kind::end:
       return fail(start,
-                  code_.text().empty() ? "the code is empty" : "the code ends where a value is needed");
+                  code_.text().empty() ? "the code is empty" : "expected a value, but the code ends");
     case CodeText::Kind::unknown: break;
   }
-  return fail(start, quote(token_.text) + " means nothing in an expression");
+  return fail(start, quote(token_.text) + " is not valid in an expression");
 }
 
 ExpressionParser::Operand ExpressionParser::number() {
@@ -201,21 +201,21 @@ ExpressionParser::Operand ExpressionParser::port_or_constant(const Token& name) 
     diagnostics_
         .report_unknown(Id::unknown_port, graph_.span(place),
                         "the expression has no port " + quote(name.text), name.text, names)
-        .note("a name in the code is a key of the node: \"" + std::string(name.text.substr(0, 40)) +
+        .note("names in the code are keys of the node: \"" + std::string(name.text.substr(0, 40)) +
               "\": \"node.port\"");
     failed_ = true;
     return fail(place, {});
   }
   const auto index = static_cast<size_t>(found - made_.ports.begin());
   used_[index] = true;
-  // A number fits any type where it is read; a link is resolved once, at the port.
+  // A number adapts to the type of each use, so it is copied; a link is resolved once, through one node.
   const auto* literal = std::get_if<Literal>(&found->value);
   if (literal != nullptr && literal->kind != Literal::Kind::string && !is(".")) return {found->value, place};
-  if (handed_on_[index] == Link::unresolved) {
-    const Operand at_port = handed_on(found->value, found->name, found->place);
-    handed_on_[index] = std::get<Link>(at_port.value).node;
+  if (pass_through_[index] == Link::unresolved) {
+    const Operand at_port = pass_through(found->value, found->name, found->place);
+    pass_through_[index] = std::get<Link>(at_port.value).node;
   }
-  return link_to(handed_on_[index], place);
+  return link_to(pass_through_[index], place);
 }
 
 ExpressionParser::Operand ExpressionParser::call(const Token& name) {
@@ -239,7 +239,7 @@ ExpressionParser::Operand ExpressionParser::call(const Token& name) {
   const uint32_t node = add(reference, Node::Origin::call, name.text, place_of(name));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const std::string position = std::to_string(i + 1);
-    give(node, position, "argument " + position, std::move(arguments[i]));
+    add_port(node, position, "argument " + position, std::move(arguments[i]));
   }
   return link_to(node, place);
 }
@@ -247,7 +247,7 @@ ExpressionParser::Operand ExpressionParser::call(const Token& name) {
 void ExpressionParser::parse() {
   Operand result = choice();
   if (!failed_ && token_.kind != CodeText::Kind::end)
-    fail(place_of(token_), "an operator is needed before " + quote(token_.text), way_out());
+    fail(place_of(token_), "expected an operator before " + quote(token_.text), foreign_operator_fix());
   for (size_t i = 0; i < used_.size() && !failed_; ++i) {
     if (used_[i]) continue;
     diagnostics_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The code of an expression node, as the nodes that it stands for:
+// Expands the code of an expression node into ordinary nodes:
 //
 //     {"type": "expression", "code": "a*a / (pi * t*t)", "a": "alpha", "t": "slope"}
 //
@@ -16,7 +16,7 @@
 //     name      id {"::" id}: a function of the library ("mix"), a type ("color3"), or a function document
 //               ("brdf::ggx_d")
 //
-// Types are none of its business: what it makes is checked and lowered like nodes that an author wrote.
+// It does not know types: the nodes are checked and lowered like nodes that an author wrote.
 #pragma once
 
 #include "compiler/graph/graph.h"
@@ -25,13 +25,14 @@ namespace isoshade::graph {
 
 inline constexpr std::string_view expression_type = "expression";
 inline constexpr std::string_view expression_doc =
-    "A formula: its `code` is arithmetic over values that the other keys name.";
-/// Limits that keep hostile code harmless: parentheses and signs inside each other, and nodes a document.
+    "A formula: `code` is an arithmetic expression over the ports, which are the other keys of the node.";
+/// Limits that keep hostile code harmless: nesting depth of an expression, and expanded nodes per document.
 inline constexpr int max_expression_depth = 100;
 inline constexpr size_t max_expression_nodes = 200'000;
 
-/// Makes graph.nodes[root], the node as it is written, what its code computes last, and appends the rest.
-/// `code` is the value of its key. Reports code that is malformed, and warns of ports that it does not read.
+/// Replaces graph.nodes[root], the expression node, by the last operation of its code and appends the other
+/// nodes. `code` is the value of the key "code". Reports malformed code, and warns about ports that it does not
+/// read.
 void expand_expression(Graph& graph, uint32_t root, const Document& document, const Json& code,
                        support::Diagnostics& diagnostics);
 

@@ -20,7 +20,7 @@ uint32_t ExpressionParser::add(std::string_view type, Node::Origin origin, std::
                                TextRange place) {
   if (graph_.expression_nodes == max_expression_nodes && !failed_) {
     diagnostics_.report(Id::too_large, graph_.span(place),
-                        "the expressions of a document are more than " +
+                        "the expressions of the document have more than " +
                             std::to_string(max_expression_nodes) + " operations");
     failed_ = true;
     fail(place, {});
@@ -37,7 +37,7 @@ uint32_t ExpressionParser::add(std::string_view type, Node::Origin origin, std::
   return static_cast<uint32_t>(graph_.nodes.size() - 1);
 }
 
-void ExpressionParser::give(uint32_t node, std::string_view port, std::string_view shown, Operand operand) {
+void ExpressionParser::add_port(uint32_t node, std::string_view port, std::string_view shown, Operand operand) {
   if (failed_) return;
   graph_.nodes[node].ports.push_back(
       {std::string(port), std::move(operand.value), operand.place, operand.place, std::string(shown)});
@@ -47,9 +47,9 @@ ExpressionParser::Operand ExpressionParser::link_to(uint32_t node, TextRange pla
   return {Link{graph_.nodes[node].shown, {}, place, node}, place};
 }
 
-ExpressionParser::Operand ExpressionParser::handed_on(Value value, std::string_view shown, TextRange place) {
+ExpressionParser::Operand ExpressionParser::pass_through(Value value, std::string_view shown, TextRange place) {
   const uint32_t node = add("constant", Node::Origin::operation, shown, place);
-  give(node, "value", "the value", {std::move(value), place});
+  add_port(node, "value", "the value", {std::move(value), place});
   return link_to(node, place);
 }
 
@@ -57,7 +57,7 @@ ExpressionParser::Operand ExpressionParser::operation(std::string_view row, cons
                                                       std::vector<Part> parts) {
   const uint32_t node = add(row, Node::Origin::call, row == "?:" ? row : sign.text, place_of(sign));
   for (size_t i = 0; i < parts.size(); ++i)
-    give(node, std::to_string(i + 1), parts[i].shown, std::move(parts[i].operand));
+    add_port(node, std::to_string(i + 1), parts[i].shown, std::move(parts[i].operand));
   return link_to(node, place);
 }
 
@@ -68,25 +68,25 @@ ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type ty
   const bool tuple = count >= 2 && count <= 4;
   const bool matrix = type == Type::matrix33 || type == Type::matrix44;
   if (!tuple && !matrix && type != Type::floating && type != Type::integer && type != Type::boolean)
-    return fail(place_of(name), "an expression makes no " + type_text, "give the expression a port for it");
+    return fail(place_of(name), "an expression cannot construct a " + type_text, "add a port for it");
   if (matrix) {
     const size_t columns = type == Type::matrix33 ? 3 : 4;
     if (arguments.size() != columns)
       return fail(place_of(name), type_text + " takes " + std::to_string(columns) + " arguments, its columns, not " +
                                       std::to_string(arguments.size()));
-    return made_of("creatematrix", name, std::move(arguments));
+    return construct("creatematrix", name, std::move(arguments));
   }
   if (arguments.size() == 1) {
     const uint32_t node = add("convert", Node::Origin::operation, name.text, place_of(name));
-    give(node, "in", "the argument", std::move(arguments[0]));
-    give(node, "to", "the type", {string_literal(name.text), place_of(name)});
+    add_port(node, "in", "the argument", std::move(arguments[0]));
+    add_port(node, "to", "the type", {string_literal(name.text), place_of(name)});
     return link_to(node, place);
   }
-  // Two arguments are two numbers, or all components but the last, and that.
+  // Two arguments: two numbers, or all components but the last one, and the last one.
   const bool all = tuple && arguments.size() == static_cast<size_t>(count);
   if (all || (tuple && arguments.size() == 2)) {
     const std::string row = "combine" + std::to_string(arguments.size());
-    return made_of(row, name, std::move(arguments));
+    return construct(row, name, std::move(arguments));
   }
   return fail(place_of(name), type_text + " takes 1" +
                                   (count > 2  ? ", 2 or " + std::to_string(count) + " arguments"
@@ -95,15 +95,15 @@ ExpressionParser::Operand ExpressionParser::type_call(const Token& name, Type ty
                                   ", not " + std::to_string(arguments.size()));
 }
 
-ExpressionParser::Operand ExpressionParser::made_of(std::string_view row, const Token& name,
+ExpressionParser::Operand ExpressionParser::construct(std::string_view row, const Token& name,
                                                     std::vector<Operand> arguments) {
   const TextRange place = since(place_of(name));
   const uint32_t node = add(row, Node::Origin::operation, name.text, place_of(name));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const std::string position = std::to_string(i + 1);
-    give(node, "in" + position, "argument " + position, std::move(arguments[i]));
+    add_port(node, "in" + position, "argument " + position, std::move(arguments[i]));
   }
-  give(node, "to", "the type", {string_literal(name.text), place_of(name)});
+  add_port(node, "to", "the type", {string_literal(name.text), place_of(name)});
   return link_to(node, place);
 }
 
@@ -111,10 +111,10 @@ void ExpressionParser::become_root(Operand result) {
   auto* link = std::get_if<Link>(&result.value);
   const auto last = static_cast<uint32_t>(graph_.nodes.size() - 1);
   if (link == nullptr || link->node != last || !link->selectors.empty() || last == root_) {
-    result = handed_on(std::move(result.value), code_.text(), result.place);
+    result = pass_through(std::move(result.value), code_.text(), result.place);
     return become_root(std::move(result));
   }
-  // What is computed last was appended last.
+  // The last operation was appended last.
   Node& root = graph_.nodes[root_];
   Node& made = graph_.nodes[last];
   root.type = std::move(made.type);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser of expressions. expression.cpp has the grammar, expression_nodes.cpp the nodes that it makes.
+// The parser of expressions: expression.cpp parses, expression_nodes.cpp creates the nodes.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ class ExpressionParser {
     made_.code = code.text();
     made_.ports = std::move(graph.nodes[root].ports);
     used_.resize(made_.ports.size());
-    handed_on_.resize(made_.ports.size(), Link::unresolved);
+    pass_through_.resize(made_.ports.size(), Link::unresolved);
     token_ = code_.next(0);
   }
 
@@ -47,19 +47,19 @@ class ExpressionParser {
   Operand type_call(const Token& name, Type type, std::vector<Operand> arguments, TextRange place);
 
   /// A node of `row` with the arguments as in1, in2, ... and the type `name` as "to".
-  Operand made_of(std::string_view row, const Token& name, std::vector<Operand> arguments);
+  Operand construct(std::string_view row, const Token& name, std::vector<Operand> arguments);
 
-  /// Appends a node; `shown` is what stands for it in the code.
+  /// Appends a node; `shown` is its name in messages.
   uint32_t add(std::string_view type, Node::Origin origin, std::string_view shown, TextRange place);
-  void give(uint32_t node, std::string_view port, std::string_view shown, Operand operand);
-  /// An operator's node; `shown` has what its operands are called.
+  void add_port(uint32_t node, std::string_view port, std::string_view shown, Operand operand);
+  /// Appends the node of an operator.
   struct Part {
-    std::string_view shown;
+    std::string_view shown;  ///< name of the operand in messages
     Operand operand;
   };
   Operand operation(std::string_view row, const Token& sign, TextRange place, std::vector<Part> parts);
-  /// A node that hands on a value, so that it can be linked to.
-  Operand handed_on(Value value, std::string_view shown, TextRange place);
+  /// A `constant` node that passes a value through, so that links can refer to it.
+  Operand pass_through(Value value, std::string_view shown, TextRange place);
   Operand link_to(uint32_t node, TextRange place) const;
   void become_root(Operand result);
 
@@ -76,9 +76,9 @@ class ExpressionParser {
     return true;
   }
   void expect(std::string_view symbol, std::string_view why);
-  /// What to write for a sign of other languages that stands here.
-  std::string_view way_out() const;
-  /// Reports the first error only: what follows is read in a wrong light.
+  /// A suggestion if the current token is an operator of other languages, such as "%".
+  std::string_view foreign_operator_fix() const;
+  /// Reports only the first error: later ones would be consequences of it.
   Operand fail(TextRange place, std::string message, std::string_view fix = {});
   bool too_deep();
   TextRange place_of(const Token& token) const { return code_.place(token.begin, token.end); }
@@ -90,8 +90,8 @@ class ExpressionParser {
   support::Diagnostics& diagnostics_;
   std::string id_;
   Expression made_;
-  std::vector<bool> used_;           ///< of the ports
-  std::vector<uint32_t> handed_on_;  ///< the node that hands on a port
+  std::vector<bool> used_;              ///< by port
+  std::vector<uint32_t> pass_through_;  ///< by port: its pass-through node, or unresolved
   Token token_;
   uint32_t last_end_ = 0;
   int depth_ = 0;

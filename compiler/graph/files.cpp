@@ -44,8 +44,8 @@ bool may_read(const std::string& path, const support::Span& where, const FileRul
     return true;
   }
   diagnostics
-      .report(support::Id::outside_reference, where, support::quote(path) + " leads out of the folder tree")
-      .note(std::string(way_inside));
+      .report(support::Id::outside_reference, where, support::quote(path) + " is outside of the folder tree")
+      .note(std::string(reference_rule));
   return false;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/graph/format.h"
+#include "compiler/graph/document.h"
 
 #include <algorithm>
 
@@ -24,7 +24,7 @@ class Formatter {
     return source().substr(member.key_begin, member.key_end - member.key_begin);
   }
 
-  /// Appends a value on one line. Stops when the line is longer than `most`; returns whether it was not.
+  /// Appends a value on one line. Returns false, with the line incomplete, if it gets longer than `most`.
   bool append_inline(const Json& json, size_t most, std::string& line) const {
     if (json.kind == Json::Kind::object) {
       line += '{';
@@ -47,7 +47,7 @@ class Formatter {
     return line.size() <= most;
   }
 
-  /// `used`: columns of the line before the value; `after`: of what follows it.
+  /// `used`: columns before the value on its line; `after`: columns after it.
   void append(const Json& json, size_t depth, size_t used, size_t after, bool inline_allowed) {
     const bool compound = json.kind == Json::Kind::object
                               ? !json.members.empty()

@@ -42,20 +42,20 @@ constexpr std::array<std::string_view, 4> kinds = {"function", "effect", "post",
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
 
-/// Reports a missing or other version than ours; keys and meanings of another version would be guessed at.
+/// Reports a missing or unsupported version.
 bool check_version(const Document& document, Diagnostics& diagnostics) {
   const Json& root = document.root;
   const Json* version = root.find("isoshade");
   if (version == nullptr) {
     diagnostics
         .report(Id::missing_key, {document.source, root.begin, root.begin + 1},
-                "a document needs its version")
+                "the document has no version")
         .suggest("add \"isoshade\": 1");
     return false;
   }
   if (version->kind == Json::Kind::number && version->number == 1) return true;
   diagnostics.report(Id::wrong_version, document.span(*version),
-                     "this isoshade reads documents of version 1");
+                     "this version of isoshade reads documents of version 1 only");
   return false;
 }
 
@@ -92,7 +92,7 @@ std::optional<DocumentKind> document_kind(const Document& document, Diagnostics&
   const Json& root = document.root;
   if (root.kind != Json::Kind::object) {
     diagnostics.report(Id::wrong_type, document.span(root),
-                       "a document is an object, not " + std::string(kind_name(root.kind)));
+                       "a document must be an object, not " + std::string(kind_name(root.kind)));
     return std::nullopt;
   }
   const bool version_fits = check_version(document, diagnostics);
@@ -102,8 +102,8 @@ std::optional<DocumentKind> document_kind(const Document& document, Diagnostics&
     for (size_t i = 0; i < kinds.size(); ++i) {
       if (member.key != kinds[i]) continue;
       if (named != nullptr) {
-        diagnostics.report(Id::wrong_kind, document.key_span(member), "a document is of one kind only")
-            .note(document.key_span(*named), "its kind was given here");
+        diagnostics.report(Id::wrong_kind, document.key_span(member), "a document has only one kind")
+            .note(document.key_span(*named), "the first kind is here");
         return std::nullopt;
       }
       named = &member;
@@ -113,12 +113,60 @@ std::optional<DocumentKind> document_kind(const Document& document, Diagnostics&
   if (named == nullptr) {
     diagnostics
         .report(Id::wrong_kind, {document.source, root.begin, root.begin + 1},
-                "a document is a function, effect, post or scene")
+                "a document must be a function, effect, post or scene")
         .suggest("add \"effect\": \"its_name\", or another of these keys");
     return std::nullopt;
   }
   if (!version_fits) return std::nullopt;
   return kind;
+}
+
+std::optional<Literal> parse_literal(const Document& document, const Json& json, std::string_view key,
+                                     Diagnostics& diagnostics) {
+  Literal literal;
+  const auto finite = [&](const Json& number) {
+    if (std::isfinite(document.to_float(number))) return true;
+    diagnostics.report(Id::out_of_range, document.span(number), quote(key) + " is beyond the range of float");
+    return false;
+  };
+  switch (json.kind) {
+    case Json::Kind::boolean:
+      literal.kind = Literal::Kind::boolean;
+      literal.boolean = json.boolean;
+      return literal;
+    case Json::Kind::number:
+      if (!finite(json)) return std::nullopt;
+      literal.number = document.to_float(json);
+      literal.integral = json.integral;
+      if (json.integral) literal.integer = document.to_integer(json);
+      return literal;
+    case Json::Kind::string:
+      literal.kind = Literal::Kind::string;
+      literal.string = json.string;
+      return literal;
+    case Json::Kind::array:
+      literal.kind = Literal::Kind::numbers;
+      if (json.items.empty() || json.items.size() > max_literal_numbers) break;
+      for (const Json& item : json.items) {
+        if (item.kind != Json::Kind::number) {
+          diagnostics.report(
+              Id::wrong_type, document.span(item),
+              quote(key) + " must be an array of numbers, but contains " + std::string(kind_name(item.kind)));
+          return std::nullopt;
+        }
+        if (!finite(item)) return std::nullopt;
+        literal.numbers.push_back(document.to_float(item));
+      }
+      return literal;
+    case Json::Kind::null:
+    case Json::Kind::object: break;
+  }
+  const bool array = json.kind == Json::Kind::array;
+  diagnostics.report(Id::wrong_type, document.span(json),
+                     array ? quote(key) + " must be an array of 1 to " + std::to_string(max_literal_numbers) +
+                                 " numbers, not of " + std::to_string(json.items.size())
+                           : quote(key) + " cannot be " + std::string(kind_name(json.kind)));
+  return std::nullopt;
 }
 
 std::optional<Link> parse_link(const support::Source& source, std::string_view text, TextRange place,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The graph of one document as its author wrote it: shape and names are checked, links and types are not.
+// The graph of one document as its author wrote it: structure and names are checked, links and types are not.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ enum class DocumentKind : uint8_t { function, effect, post, scene };
 
 std::string_view kind_name(DocumentKind kind);
 
-/// The kind of a document, after its version was checked. Reports a root that is no object, a missing or
-/// wrong "isoshade": 1, and a document that has not exactly one of the keys function, effect, post, scene.
+/// Checks the version and returns the kind of a document. Reports a root that is not an object, a missing or
+/// wrong "isoshade": 1, and a document without exactly one of the keys function, effect, post, scene.
 std::optional<DocumentKind> document_kind(const Document& document, support::Diagnostics& diagnostics);
 
 enum class Type : uint8_t {
@@ -40,79 +40,79 @@ enum class Type : uint8_t {
 };
 
 std::string_view type_name(Type type);
-/// How a document writes the type of inputs that each call settles.
+/// The type name of generic inputs, whose type is inferred at each call.
 inline constexpr std::string_view any_type_name = "any";
 std::optional<Type> find_type(std::string_view name);
 std::vector<std::string_view> all_type_names();
-/// Floats in a value of the type: 1, 2, 3, 4, 9 or 16; 0 if it is not made of floats.
+/// The number of floats in a value of the type: 1, 2, 3, 4, 9 or 16; 0 if it does not consist of floats.
 int float_count(Type type);
 
-/// Names of inputs, parameters, nodes, ports, passes: [A-Za-z_][A-Za-z0-9_]{0,127}.
+/// Whether `text` is a valid name of an input, parameter, node, port or pass: [A-Za-z_][A-Za-z0-9_]{0,127}.
 bool is_id(std::string_view text);
 
-/// A range of bytes in the document; Graph::span makes a Span of it.
+/// A byte range in the document; Graph::span makes it a Span.
 struct TextRange {
   uint32_t begin = 0, end = 0;
 };
 
-/// A value written in the document. Floats are rounded once from the text, denormals are zeros; none is NaN
-/// or infinite.
+/// A literal value in the document. Floats are rounded once from the text, denormals flush to zero; all are
+/// finite.
 struct Literal {
   enum class Kind : uint8_t { boolean, number, numbers, string };
   Kind kind = Kind::number;
   bool boolean = false;
-  bool integral = false;       ///< a number written without fraction or exponent that fits int64
+  bool integral = false;       ///< the number has no fraction or exponent and fits int64
   float number = 0;            ///< of a number
   int64_t integer = 0;         ///< of an integral number
   std::vector<float> numbers;  ///< of an array: at most max_literal_numbers
   std::string string;
 };
 
-inline constexpr size_t max_literal_numbers = 16;  ///< a matrix has so many
+inline constexpr size_t max_literal_numbers = 16;  ///< a 4x4 matrix
 
-/// Reports what is no literal; `key` is what messages call it.
+/// Reports a value that is not a literal; `key` names it in messages.
 std::optional<Literal> parse_literal(const Document& document, const Json& json, std::string_view key,
                                      support::Diagnostics& diagnostics);
 
-/// "node", "node.port", "node.xyz" or "node.port.xyz", taken apart at the dots but not resolved.
+/// "node", "node.port", "node.xyz" or "node.port.xyz", split at the dots but not resolved.
 struct Link {
   static constexpr uint32_t unresolved = ~0u;
 
   std::string name;                    ///< of a node, input or parameter
-  std::vector<std::string> selectors;  ///< at most two: an output port, a swizzle, or both in this order
-  TextRange place;                         ///< of the string
-  uint32_t node = unresolved;          ///< or inside of an expression, the node itself
+  std::vector<std::string> selectors;  ///< an output port, a swizzle, or both in this order
+  TextRange place;                     ///< of the string
+  uint32_t node = unresolved;          ///< set instead of `name` inside an expression
 };
 
-/// What stands in a port. A string is a Literal here: in a port of type string or filename it is the text
-/// itself, and parse_link makes the link that it is elsewhere. {"link": "x"} is a Link.
+/// The value of a port. A string is a Literal here: ports of type string and filename use it as text, all others
+/// parse it with parse_link. {"link": "x"} is a Link.
 struct Port {
   std::string name;
   std::variant<Literal, Link> value;
   TextRange name_place, place;
-  std::string shown = {};  ///< inside of an expression: "the left side"
+  std::string shown = {};  ///< its name in messages inside an expression: "the left side"
 };
 
 struct Node {
-  /// What an author wrote for it.
+  /// What the author wrote.
   enum class Origin : uint8_t {
     node,       ///< a node
     operation,  ///< an operator, a constructor or a name in an expression
-    call        ///< name(...) in an expression: its ports are called by their position, from "1"
+    call        ///< an operator or name(...) in an expression; its ports are numbered from "1"
   };
-  std::string id, type, doc;  ///< type: of the node library, or a function document's name or path
-  std::vector<Port> ports;    ///< in the order written
+  std::string id, type, doc;  ///< type: a row of the node library, or the name or path of a function document
+  std::vector<Port> ports;    ///< in document order
   TextRange id_place, type_place, place;
   Origin origin = Origin::node;
-  std::string shown = {};  ///< inside of an expression: "*"; else its type tells
-  /// "doc" and "extras" as ports: they are that only where the type is a function with inputs of these names.
+  std::string shown = {};  ///< its name in messages inside an expression: "*"
+  /// The keys "doc" and "extras" as ports, for functions with inputs of these names.
   std::vector<Port> free_keys = {};
 
-  /// How messages name what it is.
+  /// Its type, as messages name it.
   const std::string& label() const { return origin == Origin::node ? type : shown; }
 };
 
-/// The nodes that the code of one node stands for: nodes[root] and those of [first, end).
+/// The nodes that one expression expands to: nodes[root] and nodes[first] to nodes[end - 1].
 struct Expression {
   uint32_t root = 0, first = 0, end = 0;
   std::string code;
@@ -123,12 +123,11 @@ struct Expression {
 struct Input {
   std::string name, doc;
   Type type = Type::floating;
-  bool any = false;               ///< of a function: float, a vector or a colour, as the call has it
-  bool unit = false;              ///< of a function, a vector: its length is 1
-  std::optional<Literal> value;   ///< always there in a parameter; fits the type and the range
-  std::optional<float> min, max;  ///< of each component
-  std::vector<std::string>
-      names;  ///< of the values 0, 1, ... of an integer, which has no others then; or none
+  bool any = false;                ///< generic: each call infers float, a vector or a colour (functions only)
+  bool unit = false;               ///< a vector of length 1 (functions only)
+  std::optional<Literal> value;    ///< the default; parameters always have one; fits the type and the range
+  std::optional<float> min, max;   ///< of each component
+  std::vector<std::string> names;  ///< of the values 0, 1, ... of an integer ("enum"); empty if it has none
   TextRange name_place, place, value_place;
 };
 
@@ -139,24 +138,24 @@ struct Output {
   TextRange name_place;
 };
 
-/// What the coordinates of a pass's `position` count from.
+/// The coordinate space of a pass's `position`.
 enum class PositionSpace : uint8_t { world, object, view };
 
-/// One drawing of the mesh by an effect.
+/// One pass of an effect over the mesh.
 struct Pass {
   std::string name;
   interface::PassState state;
-  std::optional<Link> position;  ///< vertex output; without it the mesh's own position
+  std::optional<Link> position;  ///< vertex output; default: the position of the mesh
   PositionSpace position_space = PositionSpace::world;
-  std::optional<uint32_t> enabled;  ///< in Graph::inputs: it is drawn where that parameter is not 0
+  std::optional<uint32_t> enabled;  ///< in Graph::inputs: the pass is drawn if this parameter is not 0
   Link color;                       ///< surface output
   TextRange place;
 };
 
-/// The output of a post, and the image that it goes over.
+/// The name of a post's output and of the image that it processes.
 inline constexpr std::string_view post_output = "color";
 
-/// An image that a post reads beside the one that it goes over.
+/// A further image that a post reads.
 struct InputImage {
   std::string name;
   TextRange place;
@@ -169,15 +168,14 @@ struct Graph {
   TextRange name_place;
   std::vector<Input> inputs;
   std::vector<Node> nodes;
-  std::vector<Output> outputs;          ///< of a function or post, at least one
-  std::vector<Pass> passes;             ///< of an effect, at least one
-  std::vector<InputImage> images = {};  ///< of a post
-  std::optional<uint32_t> enabled =
-      {};  ///< of a post: the parameter in `inputs` that is 0 where it does nothing
+  std::vector<Output> outputs;           ///< of a function or post, at least one
+  std::vector<Pass> passes;              ///< of an effect, at least one
+  std::vector<InputImage> images = {};   ///< of a post
+  std::optional<uint32_t> enabled = {};  ///< in `inputs`: a post is skipped if this parameter is 0
   std::vector<Expression> expressions = {};
-  uint32_t expression_nodes = 0;  ///< that expressions stand for, beside the nodes that were written
+  uint32_t expression_nodes = 0;  ///< the number of nodes that expressions were expanded to
 
-  /// Inputs and nodes share their names.
+  /// Inputs and nodes share one namespace.
   struct Name {
     bool is_input;
     uint32_t index;
@@ -185,28 +183,28 @@ struct Graph {
   std::unordered_map<std::string, Name> names;
 
   support::Span span(TextRange place) const { return {source, place.begin, place.end}; }
-  /// Whether it has inputs of any type: these are all of one type, which each call settles.
+  /// Whether it has generic inputs ("any"). They all have the same type, inferred at each call.
   bool is_generic() const { return std::ranges::any_of(inputs, &Input::any); }
 };
 
-/// Reports everything wrong with the shape of a function, effect or post document.
+/// Reads a function, effect or post document and reports all errors in its structure.
 std::optional<Graph> build_graph(const Document& document, support::Diagnostics& diagnostics);
 
-/// Takes a string apart as a link; reports one that has not the form of a link.
+/// Parses a string as a link; reports a malformed one.
 std::optional<Link> parse_link(const support::Source& source, std::string_view text, TextRange place,
                                support::Diagnostics& diagnostics);
 
-/// The number that is meant by the name of one of an input's values, as a literal; nothing for other names.
+/// The integer value called `name` ("enum"), as a literal; nullopt if there is none.
 std::optional<Literal> named_value(const std::vector<std::string>& names, std::string_view name);
 
-/// For messages about the values of an integer that have names: "it is 0 (soft), 1 (hard) or 2 (none)".
+/// A note that lists the named values of an integer: "it is 0 (soft), 1 (hard) or 2 (none)".
 std::string described_names(const std::vector<std::string>& names);
 
-/// For messages about a number outside of a range: a limit as a value of the type is written.
+/// A limit of a range as text, formatted as a value of the type.
 std::string limit_text(Type type, float limit);
 
-/// Whether a literal is a value of the type as it stands: a boolean, an integer in 32 bits, a number, an
-/// array of as many numbers as the type has floats, a string.
+/// Whether a literal is a value of the type without conversion: a boolean, a 32-bit integer, a number, an array
+/// with as many numbers as the type has floats, a string.
 bool fits(Type type, const Literal& literal);
 
 }  // namespace isoshade::graph

@@ -16,20 +16,20 @@ using Need = ObjectReader::Need;
 
 void GraphBuilder::check_id(std::string_view id, TextRange place, std::string_view what) {
   if (is_id(id)) return;
-  diagnostics_.report(Id::bad_id, graph_.span(place), quote(id) + " cannot name " + std::string(what))
+  diagnostics_.report(Id::bad_id, graph_.span(place), quote(id) + " is not a valid name of " + std::string(what))
       .note(id.size() > 128 ? "names have at most 128 characters"
-                            : "names are letters, digits and '_', and begin with no digit");
+                            : "names consist of letters, digits and '_', and do not begin with a digit");
 }
 
 void GraphBuilder::enter(const Member& member, std::string_view what, Graph::Name name) {
   check_id(member.key, key_place(member), what);
   const auto [found, is_new] = graph_.names.emplace(member.key, name);
   if (is_new) return;
-  // An object has no key twice, so it is an input that the node repeats.
+  // Keys of one object are unique, so a node repeats the name of an input.
   diagnostics_
       .report(Id::duplicate_name, document_.key_span(member),
-              std::string(what) + " is called " + quote(member.key) + ", as an input or parameter is")
-      .note(graph_.span(graph_.inputs[found->second.index].name_place), "which is named here");
+              std::string(what) + " has the name " + quote(member.key) + " of an input or parameter")
+      .note(graph_.span(graph_.inputs[found->second.index].name_place), "declared here");
 }
 
 std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
@@ -45,7 +45,7 @@ std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
     return parse_link(document_.source, target->string, place_of(*target), diagnostics_);
   }
   diagnostics_.report(Id::wrong_type, document_.span(json),
-                      quote(key) + " is a link, not " + std::string(kind_name(json.kind)));
+                      quote(key) + " must be a link, not " + std::string(kind_name(json.kind)));
   return std::nullopt;
 }
 
@@ -56,7 +56,7 @@ std::optional<Link> GraphBuilder::color(const Json& json) {
   const size_t count = value->kind == Literal::Kind::numbers ? value->numbers.size() : 3;
   if (count != 3 && count != 4) {
     diagnostics_.report(Id::wrong_type, document_.span(json),
-                        "\"color\" has 3 or 4 numbers, not " + std::to_string(count));
+                        "\"color\" must have 3 or 4 numbers, not " + std::to_string(count));
     return std::nullopt;
   }
   Literal type;
@@ -82,10 +82,10 @@ void GraphBuilder::read_node(const Member& member) {
   if (json.kind != Json::Kind::object) {
     diagnostics_.report(
         Id::wrong_type, document_.span(json),
-        "node " + quote(member.key) + " is an object, not " + std::string(kind_name(json.kind)));
+        "node " + quote(member.key) + " must be an object, not " + std::string(kind_name(json.kind)));
     return;
   }
-  // Not by ObjectReader: all other keys are ports, and which there are depends on the node's type.
+  // Without ObjectReader: all other keys are ports, and the node's type determines which ports exist.
   const Json* type = nullptr;
   const Json* code = nullptr;
   const Json* written_type = json.find("type");
@@ -98,7 +98,7 @@ void GraphBuilder::read_node(const Member& member) {
     if (entry.key == "type" || entry.key == "doc") {
       if (value.kind != Json::Kind::string) {
         diagnostics_.report(Id::wrong_type, document_.span(value),
-                            quote(entry.key) + " of node " + quote(member.key) + " is a string, not " +
+                            quote(entry.key) + " of node " + quote(member.key) + " must be a string, not " +
                                 std::string(kind_name(value.kind)));
       }
       (entry.key == "type" ? node.type : node.doc) = value.string;
@@ -129,7 +129,7 @@ void GraphBuilder::read_node(const Member& member) {
 }
 
 void GraphBuilder::read_free_key(const Member& entry, Node& node) {
-  Diagnostics unheard;  // it may be anything
+  Diagnostics unheard;  // any value is allowed
   Port port{entry.key, Literal{}, key_place(entry), place_of(entry.value)};
   const Json* target = entry.value.kind == Json::Kind::object ? entry.value.find("link") : nullptr;
   if (target != nullptr && target->kind == Json::Kind::string) {
@@ -149,11 +149,11 @@ void GraphBuilder::read_code(const Member& member, const Json* code) {
     diagnostics_
         .report(Id::missing_key, {document_.source, member.value.begin, member.value.begin + 1},
                 "expression " + quote(member.key) + " needs the key \"code\"")
-        .suggest("write \"code\": \"a * b\" and what a and b are as keys beside it");
+        .suggest("write \"code\": \"a * b\", with a and b as further keys");
   } else if (code->kind != Json::Kind::string) {
     diagnostics_.report(
         Id::wrong_type, document_.span(*code),
-        "\"code\" of node " + quote(member.key) + " is a string, not " + std::string(kind_name(code->kind)));
+        "\"code\" of node " + quote(member.key) + " must be a string, not " + std::string(kind_name(code->kind)));
   } else {
     const auto root = static_cast<uint32_t>(graph_.nodes.size() - 1);
     expand_expression(graph_, root, document_, *code, diagnostics_);
@@ -171,7 +171,7 @@ void GraphBuilder::read_nodes(const Json& nodes) {
 
 void GraphBuilder::read_outputs(const Json& outputs) {
   if (outputs.members.empty()) {
-    diagnostics_.report(Id::missing_key, document_.span(outputs), "there must be at least one output");
+    diagnostics_.report(Id::missing_key, document_.span(outputs), "a document needs at least one output");
   }
   for (const Member& member : outputs.members) {
     check_id(member.key, key_place(member), "an output");
@@ -220,7 +220,7 @@ std::optional<Graph> build_graph(const Document& document, Diagnostics& diagnost
   if (!kind) return std::nullopt;
   if (*kind == DocumentKind::scene) {
     diagnostics.report(Id::wrong_kind, document.span(*document.root.find("scene")),
-                       "a scene is not a graph; a function, effect or post is needed here");
+                       "a scene is not a graph; use a function, effect or post here");
     return std::nullopt;
   }
   return GraphBuilder(document, diagnostics).build(*kind);

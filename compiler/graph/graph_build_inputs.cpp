@@ -25,31 +25,31 @@ std::string types_note() {
 
 }  // namespace
 
-/// "enum": what the values 0, 1, ... of an integer are called.
+/// "enum": the names of the values 0, 1, ... of an integer.
 void GraphBuilder::read_names(const Json& json, Input& input) {
   constexpr size_t most = 64;
   if (input.type != Type::integer) {
     diagnostics_.report(
         Id::wrong_type, document_.span(json),
-        "\"enum\" names the values of an integer, not of a " + std::string(type_name(input.type)));
+        "\"enum\" is only for integers, not for " + std::string(type_name(input.type)));
     return;
   }
   if (json.items.empty() || json.items.size() > most) {
     diagnostics_.report(Id::wrong_type, document_.span(json),
-                        "\"enum\" is an array of 1 to " + std::to_string(most) + " names, not of " +
+                        "\"enum\" must be an array of 1 to " + std::to_string(most) + " names, not of " +
                             std::to_string(json.items.size()));
     return;
   }
   for (const Json& item : json.items) {
     if (item.kind != Json::Kind::string) {
       diagnostics_.report(Id::wrong_type, document_.span(item),
-                          "\"enum\" is an array of names, not with " + std::string(kind_name(item.kind)));
+                          "\"enum\" must be an array of names, but contains " + std::string(kind_name(item.kind)));
       continue;
     }
     check_id(item.string, place_of(item), "a value");
     if (std::ranges::find(input.names, item.string) != input.names.end()) {
       diagnostics_.report(Id::duplicate_name, document_.span(item),
-                          "two values of " + quote(input.name) + " are called " + quote(item.string));
+                          "two values of " + quote(input.name) + " have the name " + quote(item.string));
     }
     input.names.push_back(item.string);
   }
@@ -60,7 +60,7 @@ void GraphBuilder::read_names(const Json& json, Input& input) {
 void GraphBuilder::check_value(const Input& input, const Json& json) {
   if (!fits(input.type, *input.value)) {
     diagnostics_.report(Id::wrong_type, document_.span(json),
-                        "the value of " + quote(input.name) + " is no " + std::string(type_name(input.type)));
+                        "the value of " + quote(input.name) + " must be " + std::string(type_name(input.type)));
     return;
   }
   const auto check = [&](float value, const Json& at) {
@@ -98,9 +98,9 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
     input.any = !is_parameter && type->string == any_type_name;
     if (!found && !input.any) {
       diagnostics_
-          .report_unknown(Id::unknown_type, document_.span(*type), "no type " + quote(type->string),
+          .report_unknown(Id::unknown_type, document_.span(*type), "there is no type " + quote(type->string),
                           type->string, all_type_names())
-          .note(type->string == any_type_name ? "only inputs of functions are of any type" : types_note());
+          .note(type->string == any_type_name ? "only inputs of functions can have type \"any\"" : types_note());
     }
   }
   if (const Json* names = reader.array("enum", Need::optional)) {
@@ -126,7 +126,7 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
       if (!input.value)
         diagnostics_
             .report_unknown(Id::unknown_choice, document_.span(*value),
-                            "no value of " + quote(input.name) + " is called " + quote(value->string),
+                            quote(input.name) + " has no value named " + quote(value->string),
                             value->string, names)
             .note(described_names(input.names));
     }

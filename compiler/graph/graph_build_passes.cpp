@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The passes of an effect.
+// The passes of an effect, and the images and outputs of a post.
+#include <algorithm>
+
 #include "compiler/graph/graph_builder.h"
 #include "compiler/support/visible.h"
 
@@ -9,11 +11,10 @@ using support::Id;
 using support::quote;
 using Need = ObjectReader::Need;
 
-/// The parameter that switches a pass: the text of "enabled".
-std::optional<uint32_t> GraphBuilder::switch_of(const Json& json) {
+std::optional<uint32_t> GraphBuilder::read_enabled(const Json& json) {
   if (json.kind != Json::Kind::string) {
     diagnostics_.report(Id::wrong_type, document_.span(json),
-                        "\"enabled\" is the name of a parameter, not " + std::string(kind_name(json.kind)));
+                        "\"enabled\" must be the name of a parameter, not " + std::string(kind_name(json.kind)));
     return std::nullopt;
   }
   std::vector<std::string_view> names;
@@ -26,10 +27,10 @@ std::optional<uint32_t> GraphBuilder::switch_of(const Json& json) {
     if (one) return i;
     diagnostics_
         .report(Id::type_mismatch, document_.span(json),
-                "a " + std::string(graph_.kind == DocumentKind::post ? "post" : "pass") +
-                    " is switched by a boolean, an integer or a float, not by a " +
+                "\"enabled\" of a " + std::string(graph_.kind == DocumentKind::post ? "post" : "pass") +
+                    " must name a boolean, integer or float parameter, not a " +
                     std::string(type_name(input.type)))
-        .note(graph_.span(input.name_place), "the parameter");
+        .note(graph_.span(input.name_place), "the parameter is declared here");
     return std::nullopt;
   }
   diagnostics_.report_unknown(
@@ -53,10 +54,10 @@ void GraphBuilder::read_pass(const Json& json) {
   if (const Json* space = json.find("position_space"); space != nullptr && position == nullptr) {
     diagnostics_
         .report(Id::missing_key, document_.span(*space),
-                "\"position_space\" says nothing without \"position\"")
-        .suggest("link \"position\" to where vertices go, or leave this out");
+                "\"position_space\" has no effect without \"position\"")
+        .suggest("add \"position\", or remove this key");
   }
-  if (const Json* enabled = reader.value("enabled", Need::optional)) pass.enabled = switch_of(*enabled);
+  if (const Json* enabled = reader.value("enabled", Need::optional)) pass.enabled = read_enabled(*enabled);
   if (const Json* color = reader.value("color")) {
     if (std::optional<Link> found = this->color(*color)) pass.color = std::move(*found);
   }
@@ -67,8 +68,8 @@ void GraphBuilder::read_pass(const Json& json) {
     for (const Pass& other : graph_.passes) {
       if (other.name != pass.name) continue;
       diagnostics_
-          .report(Id::duplicate_name, document_.span(*name), "two passes are called " + quote(pass.name))
-          .note(graph_.span(other.place), "the other one");
+          .report(Id::duplicate_name, document_.span(*name), "two passes have the name " + quote(pass.name))
+          .note(graph_.span(other.place), "the other one is here");
       break;
     }
   }
@@ -76,7 +77,7 @@ void GraphBuilder::read_pass(const Json& json) {
 }
 
 void GraphBuilder::read_passes(const Json& passes) {
-  // Few enough to compare each with each; nobody draws a mesh so often.
+  // A generous limit, small enough for the quadratic search for duplicate names.
   constexpr size_t most = 64;
   if (passes.items.empty()) {
     diagnostics_.report(Id::missing_key, document_.span(passes), "an effect needs at least one pass");
@@ -85,6 +86,46 @@ void GraphBuilder::read_passes(const Json& passes) {
                         "an effect has at most " + std::to_string(most) + " passes");
   } else {
     for (const Json& pass : passes.items) read_pass(pass);
+  }
+}
+
+void GraphBuilder::read_images(const Json& images) {
+  constexpr size_t most = 8;
+  if (images.items.size() > most) {
+    diagnostics_.report(Id::too_large, document_.span(images),
+                        "\"images\" of a post has at most " + std::to_string(most) + " names");
+    return;
+  }
+  for (const Json& item : images.items) {
+    if (item.kind != Json::Kind::string) {
+      diagnostics_.report(Id::wrong_type, document_.span(item),
+                          "\"images\" must be an array of names, but contains " + std::string(kind_name(item.kind)));
+      continue;
+    }
+    check_id(item.string, place_of(item), "an image");
+    const auto same = std::ranges::find(graph_.images, item.string, &InputImage::name);
+    const bool reserved = item.string == post_output;
+    if (same != graph_.images.end() || reserved) {
+      support::Diagnostic& report =
+          diagnostics_.report(Id::duplicate_name, document_.span(item),
+                              reserved ? "\"color\" is reserved for the image that the post processes"
+                                       : "two images have the name " + quote(item.string));
+      if (!reserved) report.note(graph_.span(same->place), "the other one is here");
+      continue;
+    }
+    graph_.images.push_back({item.string, place_of(item)});
+  }
+}
+
+void GraphBuilder::read_post(ObjectReader& reader) {
+  if (const Json* images = reader.array("images", Need::optional)) read_images(*images);
+  if (const Json* enabled = reader.value("enabled", Need::optional)) graph_.enabled = read_enabled(*enabled);
+  for (const Output& output : graph_.outputs) {
+    if (output.name == post_output) continue;
+    diagnostics_
+        .report(Id::unknown_output, graph_.span(output.name_place),
+                "a post has no output " + quote(output.name))
+        .note("its only output is \"color\"");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The builder of build_graph: one class, whose methods stand in graph_build*.cpp.
+// The class behind build_graph; graph_build*.cpp define its methods.
 #pragma once
 
 #include <optional>
@@ -24,11 +24,11 @@ class GraphBuilder {
 
  private:
   void check_id(std::string_view id, TextRange place, std::string_view what);
-  /// Enters an input or a node under its name.
+  /// Adds an input or a node to the namespace.
   void enter(const Member& member, std::string_view what, Graph::Name name);
 
   std::optional<Link> link(const Json& json, std::string_view key);
-  /// A link, or a colour that is written in place.
+  /// A link or a literal colour.
   std::optional<Link> color(const Json& json);
 
   void read_inputs(const Json& inputs, bool are_parameters);
@@ -37,13 +37,14 @@ class GraphBuilder {
   void check_value(const Input& input, const Json& json);
   void read_nodes(const Json& nodes);
   void read_node(const Member& member);
-  /// A key that is free, as a port; nothing if what stands in it could not stand in one.
+  /// Adds "doc" or "extras" to Node::free_keys if its value can be a port.
   void read_free_key(const Member& entry, Node& node);
   void read_code(const Member& member, const Json* code);
   void read_outputs(const Json& outputs);
   void read_passes(const Json& passes);
   void read_pass(const Json& json);
-  std::optional<uint32_t> switch_of(const Json& json);
+  /// The parameter that "enabled" of a pass or post names.
+  std::optional<uint32_t> read_enabled(const Json& json);
   void read_post(ObjectReader& reader);
   void read_images(const Json& images);
 

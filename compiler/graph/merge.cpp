@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/graph/merge.h"
+#include "compiler/graph/document.h"
 
 #include <algorithm>
 #include <iterator>
@@ -13,7 +13,7 @@ namespace {
 
 bool is_null(const Member& member) { return member.value.kind == Json::Kind::null; }
 
-/// Merges values of a base, whose sources are numbered from 1, and changes, whose source is 0.
+/// Merges values of a base, which have sources from 1, and changes, which have source 0.
 class Merger {
  public:
   Merger(const Document& changes, support::Diagnostics& diagnostics)
@@ -54,7 +54,7 @@ class Merger {
   }
 
  private:
-  /// While it lives and the key is "extras", what is merged is free.
+  /// Sets extras_ during its lifetime if the key is "extras".
   class Extras {
    public:
     Extras(Merger& merger, std::string_view key) : extras_(merger.extras_), before_(extras_) {
@@ -75,7 +75,7 @@ class Merger {
                                 "there is no " + support::quote(change.key) + " to remove", change.key, keys);
   }
 
-  /// A null in what is new removes nothing.
+  /// Removes nulls from a new value, and reports them: there is nothing to remove.
   Json without_nulls(Json value) {
     for (Member& member : value.members) {
       if (is_null(member)) report_nothing_removed(member, Json{});
@@ -91,7 +91,7 @@ class Merger {
   bool extras_ = false;
 };
 
-/// The sources of the value and of all in it, each as many further.
+/// Adds `by` to the source index of the value and of all values in it.
 void renumber(Json& value, uint32_t by) {
   value.source += by;
   for (Json& item : value.items) renumber(item, by);
@@ -100,14 +100,14 @@ void renumber(Json& value, uint32_t by) {
 
 }  // namespace
 
-Json adopted(Document& document, support::Source source, Json value) {
+Json adopt(Document& document, support::Source source, Json value) {
   document.others.push_back(std::move(source));
   renumber(value, static_cast<uint32_t>(document.others.size()));
   return value;
 }
 
 Document merge(Document base, Document changes, support::Diagnostics& diagnostics) {
-  Json root = adopted(changes, base.source, std::move(base.root));
+  Json root = adopt(changes, base.source, std::move(base.root));
   changes.others.insert(changes.others.end(), base.others.begin(), base.others.end());
   Merger(changes, diagnostics).merge(root, std::move(changes.root));
   return {std::move(changes.source), std::move(root), std::move(changes.others)};

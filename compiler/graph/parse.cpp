@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON text -> Document: nlohmann's lexer and grammar, our places, limits and messages.
+// JSON text -> Document: nlohmann's lexer and grammar with our source ranges, limits and messages.
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -17,7 +17,7 @@ using support::Id;
 using support::Source;
 using support::Span;
 
-/// Walks the text and tells how far the lexer has read, which nlohmann does not.
+/// Iterates over the text and records how far the lexer has read, which nlohmann does not report.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -52,34 +52,34 @@ struct Extent {
   uint32_t begin, end;
 };
 
-/// What nlohmann says of a syntax error, and what we say instead.
+/// nlohmann's message for a syntax error, and ours.
 struct Explanation {
-  std::string_view theirs;  ///< how the reason begins
+  std::string_view theirs;  ///< prefix of nlohmann's message
   Id id;
   std::string_view ours;
   std::string_view fix;
 };
 constexpr Explanation explanations[] = {
-    {"invalid string: missing closing quote", Id::syntax, "this string has no end", "add the closing quote"},
-    {"invalid string: control character", Id::syntax, "a control character in a string",
+    {"invalid string: missing closing quote", Id::syntax, "unterminated string", "add the closing quote"},
+    {"invalid string: control character", Id::syntax, "control character in a string",
      "write it as an escape"},
     {"invalid string: ill-formed UTF-8", Id::bad_utf8, "the text is not UTF-8 here", ""},
-    {"invalid string: surrogate", Id::bad_utf8, "an escape is half a surrogate pair",
-     "escapes from \\ud800 to \\udfff come in pairs"},
-    {"invalid string: forbidden character", Id::syntax, "no such escape",
-     "a backslash itself is written \\\\"},
+    {"invalid string: surrogate", Id::bad_utf8, "lone surrogate in an escape",
+     "escapes from \\ud800 to \\udfff must come in pairs"},
+    {"invalid string: forbidden character", Id::syntax, "unknown escape",
+     "write a backslash as \\\\"},
     {"invalid string: '\\u'", Id::syntax, "\\u needs four hex digits", ""},
     {"invalid BOM", Id::bad_utf8, "the text is not UTF-8 here", ""},
-    {"invalid number", Id::bad_number, "a malformed number", "numbers are written as 1, -0.5, 1e-4"},
-    {"number overflow", Id::bad_number, "a number beyond the range of a double", ""},
-    {"unexpected string literal; expected '}'", Id::syntax, "a comma is missing before this key", ""},
-    {"unexpected string literal; expected ']'", Id::syntax, "a comma is missing before this value", ""},
-    {"unexpected '{'; expected ']'", Id::syntax, "a comma is missing before this value", ""},
-    {"unexpected '['; expected ']'", Id::syntax, "a comma is missing before this value", ""},
-    {"unexpected number literal; expected ']'", Id::syntax, "a comma is missing before this value", ""},
+    {"invalid number", Id::bad_number, "malformed number", "write numbers as 1, -0.5, 1e-4"},
+    {"number overflow", Id::bad_number, "number beyond the range of a double", ""},
+    {"unexpected string literal; expected '}'", Id::syntax, "missing comma before this key", ""},
+    {"unexpected string literal; expected ']'", Id::syntax, "missing comma before this value", ""},
+    {"unexpected '{'; expected ']'", Id::syntax, "missing comma before this value", ""},
+    {"unexpected '['; expected ']'", Id::syntax, "missing comma before this value", ""},
+    {"unexpected number literal; expected ']'", Id::syntax, "missing comma before this value", ""},
 };
 
-/// Takes nlohmann's events. Each method returns whether to go on.
+/// Handles nlohmann's SAX events. Each method returns whether to continue.
 class Builder {
  public:
   Builder(Document& document, const char* const* reached, Diagnostics& diagnostics)
@@ -101,7 +101,7 @@ class Builder {
     if (json != nullptr) json->string = std::move(value);
     return json != nullptr;
   }
-  bool binary(nlohmann::json::binary_t&) { return false; }  // not in JSON texts
+  bool binary(nlohmann::json::binary_t&) { return false; }  // does not occur in JSON text
   bool start_object(size_t) { return open(Json::Kind::object); }
   bool start_array(size_t) { return open(Json::Kind::array); }
   bool end_object() {
@@ -120,7 +120,7 @@ class Builder {
 
   bool parse_error(size_t, const std::string&, const nlohmann::json::exception& error);
 
-  /// nlohmann takes a NUL for the end of the text.
+  /// nlohmann stops at a NUL; reports any text after it.
   void check_rest() {
     const uint32_t rest = skip(last_end_, " \t\r\n");
     if (rest < text_.size())
@@ -134,12 +134,12 @@ class Builder {
     return static_cast<uint32_t>(std::min(text_.find_first_not_of(what, at), text_.size()));
   }
 
-  /// Where the token lies that nlohmann has just read: between it and the one before are only blanks and the
-  /// separators, which have no events.
+  /// The range of the token that nlohmann has just read. Only whitespace and separators, which cause no events,
+  /// lie between it and the previous token.
   Extent token() {
     Extent extent{skip(last_end_, " \t\r\n,:"), reached()};
     const char first = text_[extent.begin];
-    // A number is known to have ended only when the character after it has been read.
+    // The lexer reads one character beyond a number to find its end.
     if ((is_digit(first) || first == '-') && !is_digit(text_[extent.end - 1])) --extent.end;
     last_begin_ = extent.begin;
     last_end_ = extent.end;
@@ -166,7 +166,7 @@ class Builder {
   bool add_number(double value, bool integral) {
     Json* json = add(Json::Kind::number, token());
     if (json == nullptr) return false;
-    // As an integer, -0 has lost its sign.
+    // nlohmann reports -0 as the integer 0, without its sign.
     json->number = value == 0 && text_[json->begin] == '-' ? -0.0 : value;
     json->integral = integral;
     return true;
@@ -180,7 +180,7 @@ class Builder {
       return false;
     }
     Json* json = add(kind, extent);
-    // The address lasts while the value is open: its parent grows only afterwards.
+    // The pointer stays valid while the value is open: its parent grows only after it is closed.
     if (json != nullptr) open_.push_back(json);
     return json != nullptr;
   }
@@ -207,8 +207,8 @@ class Builder {
 };
 
 void Builder::report_duplicates(const Json& object) {
-  // By sorting: a hash table could be made slow by a document. By hash first, because most keys then need not
-  // be looked at.
+  // Sort instead of using a hash table, which a hostile document could make slow; compare hashes first, because that
+  // is faster.
   struct Entry {
     size_t hash;
     const Member* member;
@@ -222,7 +222,7 @@ void Builder::report_duplicates(const Json& object) {
     const int order = a.member->key.compare(b.member->key);
     return order != 0 ? order < 0 : a.member < b.member;
   });
-  std::vector<std::pair<const Member*, const Member*>> twice;  // again, first
+  std::vector<std::pair<const Member*, const Member*>> twice;  // the repeated member, the first one
   for (size_t i = 1, first = 0; i < sorted.size(); ++i) {
     const bool same =
         sorted[i].hash == sorted[first].hash && sorted[i].member->key == sorted[first].member->key;
@@ -233,14 +233,14 @@ void Builder::report_duplicates(const Json& object) {
   for (const auto& [again, first] : twice) {
     diagnostics_
         .report(Id::duplicate_key, document_.key_span(*again),
-                "the key " + support::quote(again->key) + " is given twice")
-        .note(document_.key_span(*first), "first given here");
+                "duplicate key " + support::quote(again->key))
+        .note(document_.key_span(*first), "the first one is here");
   }
 }
 
 bool Builder::parse_error(size_t, const std::string&, const nlohmann::json::exception& error) {
   // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value -
-  // REASON; last read: '...'". An overflow has only the last part.
+  // REASON; last read: '...'". The message for an overflow has no " - REASON" part.
   std::string_view reason = error.what();
   const size_t overflow = reason.find("number overflow");
   const size_t dash = reason.find(" - ");
@@ -260,8 +260,8 @@ bool Builder::parse_error(size_t, const std::string&, const nlohmann::json::exce
 
   const bool begins_number = is_digit(first) || first == '-';
   if (begins("unexpected number literal") && (!begins_number || extent.begin < last_end_)) {
-    // After a leading zero the grammar ends the number; its last event took the next digit for its end.
-    report_syntax({last_begin_, last_end_}, "a number with a leading zero", Id::bad_number);
+    // The grammar ends a number after a leading zero, and the last event included the next digit.
+    report_syntax({last_begin_, last_end_}, "number with a leading zero", Id::bad_number);
     return false;
   }
   if (count_ > 0 && open_.empty()) {
@@ -270,16 +270,16 @@ bool Builder::parse_error(size_t, const std::string&, const nlohmann::json::exce
   }
   if (begins("unexpected end of input")) {
     if (last < size && text_[last] == '\0') {
-      report_syntax({last, end}, "a NUL byte");
+      report_syntax({last, end}, "NUL byte in the document");
     } else if (skip(0, " \t\r\n") == size || text_ == "\xef\xbb\xbf") {
       report_syntax({0, 0}, "the document is empty");
     } else {
-      Diagnostic& report = report_syntax({size, size}, "the document ends too early");
+      Diagnostic& report = report_syntax({size, size}, "unexpected end of the document");
       if (!open_.empty()) {
         const Json& unclosed = *open_.back();
         const bool array = unclosed.kind == Json::Kind::array;
         report.note(span({unclosed.begin, unclosed.begin + 1}),
-                    array ? "this '[' has no ']'" : "this '{' has no '}'");
+                    array ? "this '[' is not closed" : "this '{' is not closed");
       }
     }
     return false;
@@ -288,17 +288,17 @@ bool Builder::parse_error(size_t, const std::string&, const nlohmann::json::exce
     const size_t before = text_.find_last_not_of(" \t\r\n", extent.begin - (extent.begin > 0));
     if (extent.begin > 0 && before != std::string_view::npos && text_[before] == ',') {
       const auto comma = static_cast<uint32_t>(before);
-      report_syntax({comma, comma + 1}, std::string("a comma before '") + first + "'").suggest("remove it");
+      report_syntax({comma, comma + 1}, std::string("trailing comma before '") + first + "'").suggest("remove it");
       return false;
     }
   }
   if (begins("invalid literal")) {
-    // The lexer stops at the first wrong character; the author sees a word.
+    // The lexer stops at the first wrong character; report the whole word.
     while (is_word(first) && extent.end < size && is_word(text_[extent.end])) ++extent.end;
     const bool comment = first == '/' || first == '#';
     Diagnostic& report = report_syntax(extent, comment ? "JSON has no comments" : "not a JSON value");
-    if (first == '\'' || is_word(first)) report.suggest("strings and keys stand in double quotes");
-    if (comment) report.suggest("remarks may stand under \"doc\" or \"extras\"");
+    if (first == '\'' || is_word(first)) report.suggest("put strings and keys in double quotes");
+    if (comment) report.suggest("put remarks under \"doc\" or \"extras\"");
     return false;
   }
   if (begins("invalid string") && !begins("invalid string: missing closing quote")) extent.begin = last;
@@ -325,7 +325,7 @@ std::optional<Document> parse_document(Source source, Diagnostics& diagnostics) 
                        "the document has more than " + std::to_string(max_document_bytes >> 20) + " MiB");
     return std::nullopt;
   }
-  // nlohmann keeps blanks with the token after them, and spends a tenth of a microsecond on each in an error.
+  // nlohmann keeps whitespace with the next token, and in an error spends 0.1 us per character on it.
   constexpr size_t most_blanks = 1 << 16;
   size_t blanks = 0;
   for (size_t i = 0; i < text.size(); ++i) {

@@ -17,7 +17,7 @@ using support::quote;
 namespace {
 
 std::string decimal(double value) {
-  // Limits are round numbers: as integers where they are some.
+  // Most limits are integers; print them without a fraction.
   if (value == std::floor(value) && std::abs(value) < 1e15)
     return std::to_string(static_cast<int64_t>(value));
   return support::format_float(static_cast<float>(value));
@@ -33,7 +33,7 @@ std::string join(const std::vector<std::string_view>& words) {
 
 bool is_whole(const Json& json) {
   if (json.kind != Json::Kind::number) return false;
-  constexpr double limit = 0x1p53;  // up to which a double is the number that was written
+  constexpr double limit = 0x1p53;  // doubles represent all integers up to this exactly
   return json.integral || (std::abs(json.number) <= limit && json.number == std::floor(json.number));
 }
 
@@ -46,10 +46,10 @@ ObjectReader::ObjectReader(const Document& document, const Json& json, std::stri
       errors_before_(diagnostics.error_count()),
       read_(json.members.size()) {
   ignore("extras");
-  known_.clear();  // free everywhere, so no suggestion names it
+  known_.clear();  // "extras" is always allowed, so it is not worth suggesting
   if (json.kind == Json::Kind::object) return;
   diagnostics.report(Id::wrong_type, document.span(json),
-                     what_ + " is an object, not " + std::string(kind_name(json.kind)));
+                     what_ + " must be an object, not " + std::string(kind_name(json.kind)));
 }
 
 const Json* ObjectReader::value(std::string_view key, Need need) {
@@ -68,12 +68,12 @@ const Json* ObjectReader::value(std::string_view key, Need need) {
 
 void ObjectReader::report_wrong(std::string_view key, const Json& json, std::string_view expected) {
   diagnostics_.report(Id::wrong_type, document_.span(json),
-                      quote(key) + " of " + what_ + " is " + std::string(expected) + ", not " +
+                      quote(key) + " of " + what_ + " must be " + std::string(expected) + ", not " +
                           std::string(kind_name(json.kind)));
 }
 
 bool ObjectReader::check_range(std::string_view key, const Json& number, Range range) {
-  // A number that only its rounding takes out of the range is in it. One beyond float is in none.
+  // Compare before rounding, which may move a number out of the range. Numbers beyond float are never in range.
   if (number.number >= range.low && number.number <= range.high &&
       std::isfinite(document_.to_float(number))) {
     return true;
@@ -137,7 +137,7 @@ int64_t ObjectReader::integer(std::string_view key, Range range, std::optional<i
   if (!is_whole(*found)) {
     if (found->kind == Json::Kind::number) {
       diagnostics_.report(Id::wrong_type, document_.span(*found),
-                          quote(key) + " of " + what_ + " is an integer, and this is none");
+                          quote(key) + " of " + what_ + " must be an integer");
     } else {
       report_wrong(key, *found, "an integer");
     }
@@ -155,7 +155,7 @@ void ObjectReader::read_numbers(std::string_view key, float* values, size_t coun
   if (found->items.size() != count) {
     diagnostics_.report(
         Id::wrong_type, document_.span(*found),
-        quote(key) + " of " + what_ + " is " + expected + ", not of " + std::to_string(found->items.size()));
+        quote(key) + " of " + what_ + " must be " + expected + ", not of " + std::to_string(found->items.size()));
     return;
   }
   for (size_t i = 0; i < count; ++i) {
@@ -175,7 +175,7 @@ size_t ObjectReader::choice(std::string_view key, const std::vector<std::string_
   if (place != choices.end()) return static_cast<size_t>(place - choices.begin());
   diagnostics_.report_unknown(
       Id::unknown_choice, document_.span(*found),
-      quote(key) + " of " + what_ + " is one of " + join(choices) + ", not " + quote(found->string),
+      quote(key) + " of " + what_ + " must be one of " + join(choices) + ", not " + quote(found->string),
       found->string, choices);
   return fallback.value_or(0);
 }

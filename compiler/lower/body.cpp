@@ -303,7 +303,7 @@ std::vector<uint32_t> Body::nodes_under(uint32_t sum) {
   for (size_t next = 0; next < found.size(); ++next) {
     for (const Operand& operand : graph_.operands_of(graph_.nodes[found[next]])) {
       if (operand.from != From::node || summed_by_[operand.index] == sum) continue;
-      if (!graph_.nodes[operand.index].per_turn) continue;
+      if (!graph_.nodes[operand.index].per_iteration) continue;
       summed_by_[operand.index] = sum;
       found.push_back(operand.index);
     }
@@ -448,7 +448,7 @@ std::vector<Value> build_body(ir::Builder& builder, const check::TypedGraph& gra
   Body body(builder, graph, environment);
   // Nodes that depend on the light or the tap are made inside of the loops that sum them.
   for (const uint32_t node : graph.order)
-    if (needs.nodes[node] && !graph.nodes[node].per_turn) body.make(node);
+    if (needs.nodes[node] && !graph.nodes[node].per_iteration) body.make(node);
   std::vector<Value> values;
   for (const Operand& result : results) values.push_back(body.read(result));
   return values;

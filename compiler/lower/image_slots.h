@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
-#include "compiler/nodes/image.h"
+#include "compiler/nodes/row.h"
 
 namespace isoshade::lower {
 

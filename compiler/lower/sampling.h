@@ -11,7 +11,7 @@
 
 #include "compiler/interface/binding.h"
 #include "compiler/ir/builder.h"
-#include "compiler/nodes/image.h"
+#include "compiler/nodes/row.h"
 
 namespace isoshade::lower {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adjusting colours. Alpha stays what it is.
+// Colour adjustments. They keep alpha unchanged.
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
 namespace {
 
-/// The first three components, and back with the fourth of `in` if it has one.
+/// The first three components of `in`; with_alpha() appends the fourth, if `in` has one.
 ir::ValueId rgb_of(Site& s) {
   return s.b.construct(std::array{s.b.extract(s[0], 0), s.b.extract(s[0], 1), s.b.extract(s[0], 2)});
 }
@@ -36,27 +36,27 @@ std::vector<Row> color_rows() {
   constexpr std::array rec709{0.2126f, 0.7152f, 0.0722f};
   return {
       {"luminance",
-       "How bright `in` is, as a grey.",
+       "The luminance of `in`, as a grey colour.",
        {{"in", Color, "a linear colour"},
-        {"lumacoeffs", Color3, "the weights of red, green and blue; left out, those of Rec. 709 and sRGB",
+        {"lumacoeffs", Color3, "the weights of red, green and blue; default: those of Rec. 709 and sRGB",
          rec709}},
        Color,
        luminance},
       {"contrast",
        "(`in` - `pivot`) * `amount` + `pivot`.",
        {{"in", AnyFloat, "the value"},
-        {"amount", AnyFloat, "above 1 away from `pivot`, below 1 towards it", 1.0f},
-        {"pivot", AnyFloat, "the value that stays", 0.5f}},
+        {"amount", AnyFloat, "above 1: away from `pivot`; below 1: towards it", 1.0f},
+        {"pivot", AnyFloat, "the value that does not change", 0.5f}},
        AnyFloat,
        Function{"contrast"}},
       {"rgbtohsv",
-       "Red, green and blue as hue, saturation and value; a hue of 1 is the whole circle.",
+       "RGB to HSV (hue, saturation, value); a full turn of hue is 1.",
        {{"in", Color, "red, green, blue"}},
        Color,
        convert_rgb<to_hsv>},
       {"hsvtorgb",
-       "Hue, saturation and value as red, green and blue.",
-       {{"in", Color, "hue, of which 1 is the whole circle, saturation, value"}},
+       "HSV (hue, saturation, value) to RGB.",
+       {{"in", Color, "hue (a full turn is 1), saturation, value"}},
        Color,
        convert_rgb<to_rgb>},
   };

@@ -9,7 +9,7 @@ namespace {
 
 std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
-/// The setting that a port has when nothing is given.
+/// The setting that a port has by default.
 uint32_t default_setting(const Port& port) {
   const auto* text = std::get_if<std::string_view>(&port.value);
   if (text == nullptr) return static_cast<uint32_t>(std::get<float>(port.value));
@@ -17,7 +17,7 @@ uint32_t default_setting(const Port& port) {
   return static_cast<uint32_t>(found - port.choices.begin());
 }
 
-/// The types that a variable of the row can have, or one that is never looked at.
+/// The types that a variable of the row can have; a single dummy if the row does not use the variable.
 std::vector<Type> choices_of(const Row& row, Variable variable) {
   for (const Port& port : row.ports)
     if (port.type.variable == variable) return types_in(port.type.accepts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Documents that use the node table: what is tested, measured and told of a row is done by them.
+// Generated documents that use rows of the node table, for tests, measurements and the manual.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace isoshade::nodes {
 
-/// A row at one choice of types for its variables.
+/// A row with one choice of types for its type variables.
 struct Example {
   const Row* row = nullptr;
   Type t = Type::floating;
@@ -21,15 +21,15 @@ struct Example {
   bool accepted() const;
 };
 
-/// The types of a set, in the order of their declaration.
+/// The types of a set, in declaration order.
 std::vector<Type> types_in(TypeSet set);
 
-/// A row at all types that its ports accept.
+/// A row with all combinations of types that it accepts.
 std::vector<Example> examples_of(const Row& row);
 
-/// A function document with a node for each example, "n0", "n1", ... The k-th value port of a type reads the
-/// input of that type and number: "float_0", "vector3_1". Outputs are called as the nodes, or "n0_outx" where
-/// there are several. The rows must not belong to effects.
+/// A function document with one node per example, "n0", "n1", ... The k-th value port of a type reads the input named
+/// after type and k: "float_0", "vector3_1". Outputs have the names of the nodes, or "n0_outx" for nodes with several
+/// outputs. The rows must be available in function documents.
 std::string function_document(std::span<const Example> examples);
 
 }  // namespace isoshade::nodes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the code of expressions may call: operators, functions.def and three ops as rows, with ports from the
+// The operators and functions of expressions as rows: rows of functions.def and three ops, with ports derived from the
 // signatures.
 #include <algorithm>
 #include <array>
@@ -13,8 +13,8 @@
 namespace isoshade::nodes {
 namespace {
 
-/// The type that a code of a signature stands for (functions.def). Vectors are colours too: (r, g, b) has a
-/// dot product. Null: nodes have no such type.
+/// The type of a code in a signature (functions.def); nullopt if nodes have no such type. Vector types include colours,
+/// so that functions like `dot` accept them.
 std::optional<PortType> type_of(std::string_view code) {
   constexpr PortType matrix{matrix_types, Variable::t};
   constexpr auto tuple_of = [](Type vector, Type color) {
@@ -34,7 +34,7 @@ std::optional<PortType> type_of(std::string_view code) {
   return std::nullopt;
 }
 
-/// "g_ggh" as g, g, g, h: the result first.
+/// Splits "g_ggh" into g, g, g, h; the result comes first.
 std::vector<std::string_view> codes_of(std::string_view signature) {
   std::vector<std::string_view> codes;
   for (size_t at = 0; at < signature.size();) {
@@ -46,26 +46,26 @@ std::vector<std::string_view> codes_of(std::string_view signature) {
   return codes;
 }
 
-/// The last argument is a float or as wide as the result.
+/// The last argument must be a float or have the type of the result.
 std::optional<Refusal> last_fits(std::span<const Type> types, std::span<const uint32_t>, Type out) {
   if (types.back() == Type::floating || types.back() == out) return std::nullopt;
   return Refusal{support::Id::type_mismatch, types.size() - 1,
-                 "the last argument is float or " + std::string(graph::type_name(out)) + ", not " +
+                 "the last argument must be float or " + std::string(graph::type_name(out)) + ", not " +
                      std::string(graph::type_name(types.back()))};
 }
 
-/// A matrix takes vectors as tall as it is.
+/// A matrix multiplies vectors of its own height.
 std::optional<Refusal> vector_fits(std::span<const Type> types, std::span<const uint32_t>, Type) {
   const int rows = types[0] == Type::matrix33 ? 3 : 4;
   if (graph::float_count(types[1]) == rows) return std::nullopt;
   return Refusal{support::Id::type_mismatch, 1,
-                 "a " + std::string(graph::type_name(types[0])) + " takes a vector" + std::to_string(rows) +
+                 "a " + std::string(graph::type_name(types[0])) + " multiplies a vector" + std::to_string(rows) +
                      ", not a " + std::string(graph::type_name(types[1]))};
 }
 
 void add_row(std::vector<Row>& rows, std::string_view name, std::string_view signature, Lowering lowering) {
   constexpr std::array<std::string_view, 8> names = {"x", "y", "z", "w", "a", "b", "c", "d"};
-  if (name.ends_with("_exact")) return;  // the text of `/` and sqrt on some devices
+  if (name.ends_with("_exact")) return;  // implementations of `/` and sqrt
   const std::vector<std::string_view> codes = codes_of(signature);
   std::vector<PortType> types;
   for (const std::string_view code : codes) {
@@ -73,7 +73,7 @@ void add_row(std::vector<Row>& rows, std::string_view name, std::string_view sig
     support::assert_that(type.has_value(), code);
     types.push_back(*type);
   }
-  // A result that no argument settles is no colour.
+  // A result whose type no argument determines is a vector, not a colour.
   const bool settled = std::any_of(types.begin() + 1, types.end(),
                                    [&](PortType type) { return type.variable == types[0].variable; });
   if (!settled && types[0].variable != Variable::none) types[0] = Vector3;
@@ -107,7 +107,7 @@ void compare_equal(Site& s, bool equal) {
   }
 }
 
-/// The operators by their text; a minus with one operand is "negate".
+/// The operators, named by their text; unary minus is "negate".
 std::vector<Row> operator_rows() {
   using enum ir::Opcode;
   constexpr PortType Boolean{only(Type::boolean)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface point that is shaded. Only in effects: a function takes what it needs as inputs.
+// The shaded surface point. Only in effects; functions take attributes as inputs.
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
 
@@ -10,7 +10,7 @@ namespace {
 template <size_t port>
 std::optional<Refusal> set_exists(std::span<const Type>, std::span<const uint32_t> settings, Type) {
   if (settings[port] == 0) return std::nullopt;
-  return Refusal{support::Id::out_of_range, port, "meshes have the set 0 and no other"};
+  return Refusal{support::Id::out_of_range, port, "meshes have only set 0"};
 }
 
 void facing_ratio(Site& s) {
@@ -27,7 +27,7 @@ Row surface_row(Surface attribute) {
   const interface::SurfaceRow& row = interface::row(attribute);
   Row node{row.node, row.doc, {}, types[row.width - 1], attribute};
   if (row.has_spaces)
-    node.ports.push_back({"space", Choice, "the space that it is given in; \"model\" is \"object\"", "world", space_names});
+    node.ports.push_back({"space", Choice, "the coordinate space; \"model\" is \"object\"", "world", space_names});
   if (row.sets.empty()) return node;
   node.condition = row.has_spaces ? set_exists<1> : set_exists<0>;
   node.ports.push_back({"index", WholeNumber, row.sets, 0.0f});
@@ -42,28 +42,27 @@ std::vector<Row> geometry_rows() {
        "The cosine of the angle between `viewdirection` and `normal`.",
        {{"viewdirection", Vector3, "unit length", SurfaceValue{Surface::view_direction}},
         {"normal", Vector3, "unit length", SurfaceValue{Surface::normal}},
-        {"faceforward", Boolean, "without its sign, so that a back is like a front", true},
-        {"invert", Boolean, "1 - the cosine", false}},
+        {"faceforward", Boolean, "take the absolute value, so that back faces look like front faces", true},
+        {"invert", Boolean, "1 minus the cosine", false}},
        Float,
        facing_ratio},
       {"ddx",
-       "What `in` changes by from a pixel to the next on its right: its derivative, not a difference, along "
-       "the "
-       "triangle that the pixel shows.",
+       "The screen-space derivative of `in` in x: its change per pixel to the right, along the triangle. Exact, not a "
+       "finite difference.",
        {{"in", AnyFloat, "the value"}},
        AnyFloat,
        Derivative::x},
       {"ddy",
-       "What `in` changes by from a pixel to the next below: its derivative along the triangle.",
+       "The screen-space derivative of `in` in y: its change per pixel downwards, along the triangle.",
        {{"in", AnyFloat, "the value"}},
        AnyFloat,
        Derivative::y},
       {"fwidth",
-       "The magnitude of `ddx` plus that of `ddy`: about what `in` changes by across a pixel.",
+       "The magnitude of `ddx` plus that of `ddy`: approximately the change of `in` across a pixel.",
        {{"in", AnyFloat, "the value"}},
        AnyFloat,
        Derivative::width},
-      {"time", "Seconds since the beginning: the scene's \"time\".", {}, Float, Time{}},
+      {"time", "The \"time\" of the scene, in seconds.", {}, Float, Time{}},
   };
   for (size_t i = 0; i < interface::surface_count; ++i) rows.push_back(surface_row(static_cast<Surface>(i)));
   return rows;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights. What a light gives is only known under a sum over all lights.
+// Lights. Their properties exist only under a sum over all lights.
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
@@ -7,18 +7,18 @@ namespace isoshade::nodes {
 std::vector<Row> light_rows() {
   return {
       {"lightdirection",
-       "The unit vector from the point towards the light, in world space. Only under sum_lights.",
+       "The unit vector from the surface point towards the light, in world space. Only under sum_lights.",
        {},
        Vector3,
        Light::direction},
       {"lightcolor",
-       "The light that arrives, linear, falloff included. Only under sum_lights.",
+       "The linear colour of the light that arrives at the surface point, including falloff. Only under sum_lights.",
        {},
        Color3,
        Light::color},
       {"sum_lights",
-       "The sum of `in` over the lights of the scene, from 0, in scene order.",
-       {{"in", AnyFloat, "what one light adds"}},
+       "The sum of `in` over the lights of the scene, in scene order, starting from 0.",
+       {{"in", AnyFloat, "the contribution of one light"}},
        AnyFloat,
        SumLights{}},
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truth, and choosing between values: both are computed and one is taken.
+// Booleans and selection: both values are computed, and one is selected.
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
 
@@ -34,31 +34,31 @@ std::vector<Row> logic_rows() {
   const PortType equatable{only(Type::boolean) | only(Type::integer) | only(Type::floating), Variable::u};
   const Port value1{"value1", Float, "the left side of the comparison"};
   const Port value2{"value2", Float, "the right side of the comparison"};
-  // With neither given, the result is the truth itself.
-  const Port in1{"in1", Any, "the result where it holds; true, or else 0, if it is left out", true};
-  const Port in2{"in2", Any, "the result where it does not, or where a side is NaN", false};
-  const Port truth1{"in1", Boolean, "the first truth"};
-  const Port truth2{"in2", Boolean, "the second truth"};
+  // Without both, the result is the boolean of the comparison.
+  const Port in1{"in1", Any, "the result if the comparison is true; default: true, or 0 for other types", true};
+  const Port in2{"in2", Any, "the result if the comparison is false, or if a side is NaN", false};
+  const Port truth1{"in1", Boolean, "the first boolean"};
+  const Port truth2{"in2", Boolean, "the second boolean"};
   return {
       {"ifgreater",
-       "`in1` where `value1` > `value2`, else `in2`; without them whether it is so.",
+       "`in1` if `value1` > `value2`, else `in2`; without `in1` and `in2`, the boolean of the comparison.",
        {value1, value2, in1, in2},
        Any,
        choose_by<Opcode::fgt>},
       {"ifgreatereq",
-       "`in1` where `value1` >= `value2`, else `in2`; without them whether it is so.",
+       "`in1` if `value1` >= `value2`, else `in2`; without `in1` and `in2`, the boolean of the comparison.",
        {value1, value2, in1, in2},
        Any,
        choose_by<Opcode::fge>},
       {"ifequal",
-       "`in1` where `value1` equals `value2`, else `in2`; without them whether it is so.",
+       "`in1` if `value1` equals `value2`, else `in2`; without `in1` and `in2`, the boolean of the comparison.",
        {{"value1", equatable, "the left side"}, {"value2", equatable, "the right side"}, in1, in2},
        Any,
        choose_equal},
-      {"and", "Whether both hold.", {truth1, truth2}, Boolean, Opcode::band},
-      {"or", "Whether at least one holds.", {truth1, truth2}, Boolean, Opcode::bor},
-      {"xor", "Whether exactly one holds.", {truth1, truth2}, Boolean, Opcode::bxor},
-      {"not", "Whether `in` does not hold.", {{"in", Boolean, "a truth"}}, Boolean, Opcode::bnot},
+      {"and", "Whether both are true.", {truth1, truth2}, Boolean, Opcode::band},
+      {"or", "Whether at least one is true.", {truth1, truth2}, Boolean, Opcode::bor},
+      {"xor", "Whether exactly one is true.", {truth1, truth2}, Boolean, Opcode::bxor},
+      {"not", "Whether `in` is false.", {{"in", Boolean, "a boolean"}}, Boolean, Opcode::bnot},
   };
 }
 

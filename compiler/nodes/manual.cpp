@@ -147,7 +147,7 @@ std::string row_text(const Row& row) {
       std::string(row.name) + " (" + std::string(row.group) + ")\n  " + std::string(row.doc) + "\n";
   constexpr std::string_view homes[] = {"", "  Only in effects and posts.\n", "  Only in effects.\n",
                                         "  Only in posts.\n"};
-  text += homes[static_cast<size_t>(row.home())];
+  text += homes[static_cast<size_t>(row.availability())];
   text += domain_text(row);
   size_t width = 0;
   for (const Port& port : row.ports) width = std::max(width, port.name.size() + 2);

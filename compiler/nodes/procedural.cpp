@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values made from texture coordinates and positions.
+// Patterns over texture coordinates and positions.
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
 
@@ -8,14 +8,14 @@ namespace {
 
 using ir::Opcode;
 
-/// `value_b` where the `axis` of the texture coordinates is 1, `value_a` where it is 0.
+/// Port 0 where texture coordinate `axis` is 0, port 1 where it is 1, interpolated in between.
 template <uint32_t axis>
 void ramp(Site& s) {
-  const Value share = s.call("saturate", {Value(s.b.extract(s[2], axis))});
-  s.out[0] = s.call("mix", {s.in[0], s.in[1], share});
+  const Value weight = s.call("saturate", {Value(s.b.extract(s[2], axis))});
+  s.out[0] = s.call("mix", {s.in[0], s.in[1], weight});
 }
 
-/// `value_a` below the centre.
+/// Port 0 where texture coordinate `axis` is below the centre, else port 1.
 template <uint32_t axis>
 void split(Site& s) {
   const ir::ValueId below = s.op(Opcode::flt, {s.b.extract(s[3], axis), s[2]});
@@ -36,14 +36,14 @@ void place2d(Site& s) {
 
 std::optional<Refusal> order_exists(std::span<const Type>, std::span<const uint32_t> settings, Type) {
   if (settings[5] <= 1) return std::nullopt;
-  return Refusal{support::Id::out_of_range, 5, "\"operationorder\" is 0 or 1"};
+  return Refusal{support::Id::out_of_range, 5, "\"operationorder\" must be 0 or 1"};
 }
 
-/// A noise of functions.def at `at`, with as many components as the type has. `row` is that of one component;
-/// the second and third are those of the row for vector3, the fourth is taken elsewhere, as in MaterialX.
+/// A noise of functions.def at `at` with the components of `type`. `row` has one component and `row`_vector3 three; the
+/// fourth is `row` at an offset, as in MaterialX.
 ir::ValueId noise_of_type(Site& s, std::string row, Type type, ir::ValueId at, std::vector<Value> settings) {
-  const auto call = [&](const std::string& name, ir::ValueId place) {
-    std::vector<Value> arguments{place};
+  const auto call = [&](const std::string& name, ir::ValueId point) {
+    std::vector<Value> arguments{point};
     arguments.insert(arguments.end(), settings.begin(), settings.end());
     return call_function(s.b, name, arguments).id();
   };
@@ -54,8 +54,8 @@ ir::ValueId noise_of_type(Site& s, std::string row, Type type, ir::ValueId at, s
   std::array<ir::ValueId, 4> components;
   for (uint32_t i = 0; i < 3; ++i) components[i] = s.b.extract(three, i);
   if (width == 4) {
-    const std::array away{s.b.constant(19.0f), s.b.constant(73.0f), s.b.constant(29.0f)};
-    const ir::ValueId offset = s.b.construct(std::span(away).first(s.b.type(at).width));
+    const std::array offsets{s.b.constant(19.0f), s.b.constant(73.0f), s.b.constant(29.0f)};
+    const ir::ValueId offset = s.b.construct(std::span(offsets).first(s.b.type(at).width));
     components[3] = call(row, s.op(Opcode::fadd, {at, offset}));
   }
   return s.b.construct(std::span<const ir::ValueId>(components).first(width));
@@ -89,80 +89,80 @@ void worley(Site& s) {
 }  // namespace
 
 std::vector<Row> procedural_rows() {
-  const Port texcoord{"texcoord", Vector2, "where it is asked for", SurfaceValue{Surface::texcoord}};
-  const Port position{"position", Vector3, "where it is asked for",
-                      SurfaceValue{Surface::position, Space::object}};
-  const Port amplitude{"amplitude", AnyFloat, "how far it goes to either side", 1.0f};
-  const Port pivot{"pivot", Float, "the value in the middle", 0.0f};
-  const Port to{"to", name_of(AnyFloat), "the type of the result, where `amplitude` does not tell", ""};
+  const Port texcoord{"texcoord", Vector2, "the texture coordinates", SurfaceValue{Surface::texcoord}};
+  const Port position{"position", Vector3, "the position", SurfaceValue{Surface::position, Space::object}};
+  const Port amplitude{"amplitude", AnyFloat, "the maximum deviation from the centre value", 1.0f};
+  const Port pivot{"pivot", Float, "the centre value", 0.0f};
+  const Port to{"to", name_of(AnyFloat), "the type of the result; default: that of `amplitude`", ""};
   constexpr PortType distances{only(Type::floating) | only(Type::vector2) | only(Type::vector3), Variable::t};
-  const Port left{"valuel", AnyFloat, "the value at the left, where u is 0"};
-  const Port right{"valuer", AnyFloat, "the value at the right, where u is 1"};
-  const Port top{"valuet", AnyFloat, "the value at the top, where v is 0"};
-  const Port bottom{"valueb", AnyFloat, "the value at the bottom, where v is 1"};
+  const Port left{"valuel", AnyFloat, "the value at the left, where u = 0"};
+  const Port right{"valuer", AnyFloat, "the value at the right, where u = 1"};
+  const Port top{"valuet", AnyFloat, "the value at the top, where v = 0"};
+  const Port bottom{"valueb", AnyFloat, "the value at the bottom, where v = 1"};
   return {
-      {"ramplr", "From `valuel` to `valuer` in proportion to u.", {left, right, texcoord}, AnyFloat, ramp<0>},
-      {"ramptb", "From `valuet` to `valueb` in proportion to v.", {top, bottom, texcoord}, AnyFloat, ramp<1>},
+      {"ramplr", "A linear ramp from `valuel` to `valuer` along u.", {left, right, texcoord}, AnyFloat, ramp<0>},
+      {"ramptb", "A linear ramp from `valuet` to `valueb` along v.", {top, bottom, texcoord}, AnyFloat, ramp<1>},
       {"splitlr",
        "`valuel` where u is below `center`, else `valuer`.",
-       {left, right, {"center", Float, "where they meet", 0.5f}, texcoord},
+       {left, right, {"center", Float, "the boundary in u", 0.5f}, texcoord},
        AnyFloat,
        split<0>},
       {"splittb",
        "`valuet` where v is below `center`, else `valueb`.",
-       {top, bottom, {"center", Float, "where they meet", 0.5f}, texcoord},
+       {top, bottom, {"center", Float, "the boundary in v", 0.5f}, texcoord},
        AnyFloat,
        split<1>},
       {"noise2d",
-       "Perlin noise over the plane, in [-1, 1] times `amplitude`, plus `pivot`; each component another.",
+       "2D Perlin noise in [-1, 1], times `amplitude`, plus `pivot`; every component is different.",
        {amplitude, pivot, texcoord, to},
        AnyFloat,
        [](Site& s) { noise(s, "noise2d"); }},
       {"noise3d",
-       "Perlin noise in space, in [-1, 1] times `amplitude`, plus `pivot`; each component another.",
+       "3D Perlin noise in [-1, 1], times `amplitude`, plus `pivot`; every component is different.",
        {amplitude, pivot, position, to},
        AnyFloat,
        [](Site& s) { noise(s, "noise3d"); }},
       {"fractal3d",
-       "A sum of noise3d, each octave `lacunarity` times as fine and `diminish` times as strong as the last.",
+       "A sum of octaves of noise3d. Each octave has `lacunarity` times the frequency and `diminish` times the amplitude "
+       "of the previous one.",
        {amplitude,
-        {"octaves", Integer, "how many are summed, 0 to 16", 3.0f},
-        {"lacunarity", Float, "how much finer each is than the last", 2.0f},
-        {"diminish", Float, "how much weaker", 0.5f},
+        {"octaves", Integer, "the number of octaves, 0 to 16", 3.0f},
+        {"lacunarity", Float, "the frequency ratio of successive octaves", 2.0f},
+        {"diminish", Float, "the amplitude ratio of successive octaves", 0.5f},
         position,
         to},
        AnyFloat,
        fractal},
       {"cellnoise2d",
-       "A random number in [0, 1) for each square of side 1.",
+       "A random number in [0, 1) for each unit square.",
        {texcoord},
        Float,
        Function{"cellnoise2d"}},
       {"cellnoise3d",
-       "A random number in [0, 1) for each cube of side 1.",
+       "A random number in [0, 1) for each unit cube.",
        {position},
        Float,
        Function{"cellnoise3d"}},
       {"worleynoise2d",
-       "The distance to the nearest of points scattered one in each square of side 1; to the nearest two or "
-       "three as vector2 or vector3.",
+       "The distance to the nearest of random points, one per unit square; as vector2 or vector3, the distances to the "
+       "nearest two or three.",
        {texcoord,
-        {"jitter", Float, "how far points are off the middle of their square", 1.0f},
+        {"jitter", Float, "how far points deviate from the centre of their square", 1.0f},
         {"to", name_of(distances), "float, vector2 or vector3", "float"}},
        distances,
        worley},
       {"rotate2d",
-       "`in` turned about the origin by `amount` degrees, from the second axis towards the first.",
-       {{"in", Vector2, "the vector"}, {"amount", Float, "degrees", 0.0f}},
+       "`in`, rotated about the origin by `amount` degrees, from the second axis towards the first.",
+       {{"in", Vector2, "the vector"}, {"amount", Float, "the angle in degrees", 0.0f}},
        Vector2,
        Function{"rotate2d"}},
       {"place2d",
-       "Texture coordinates for a picture that is scaled, rotated and moved.",
+       "Texture coordinates that scale, rotate and move an image.",
        {texcoord,
-        {"pivot", Vector2, "the point that it is scaled and rotated about", 0.0f},
-        {"scale", Vector2, "how large the picture is", 1.0f},
-        {"rotate", Float, "degrees that the picture turns, from u towards v", 0.0f},
-        {"offset", Vector2, "how far the picture is moved", 0.0f},
+        {"pivot", Vector2, "the centre of scaling and rotation", 0.0f},
+        {"scale", Vector2, "the size of the image", 1.0f},
+        {"rotate", Float, "the rotation of the image in degrees, from u towards v", 0.0f},
+        {"offset", Vector2, "the displacement of the image", 0.0f},
         {"operationorder", WholeNumber, "0: scale, rotate, move; 1: move, rotate, scale", 0.0f}},
        Vector2,
        place2d,

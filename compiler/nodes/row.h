@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node table's columns. A node of the language is one row: checking, lowering, the manual and the JSON
-// schema all come from it.
+// The columns of the node table. Each node of the language is one row; checking, lowering, the manual and the JSON
+// schema derive from it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,6 @@
 
 #include "compiler/interface/binding.h"
 #include "compiler/ir/op.h"
-#include "compiler/nodes/image.h"
 #include "compiler/nodes/type_set.h"
 #include "compiler/support/diagnostics.h"
 
@@ -27,13 +26,13 @@ using interface::Space;
 using interface::Surface;
 using interface::SurfaceValue;
 
-/// What ports that ask for a space can be. MaterialX calls object space also "model".
+/// The choices of a port for a space. "model" is MaterialX's other name of object space.
 inline const std::vector<std::string_view> space_names{"world", "object", "view", "model"};
 constexpr Space space_of(uint32_t choice) { return choice == 3 ? Space::object : static_cast<Space>(choice); }
 
-/// What a port has that is neither linked nor given: nothing (then it must be), a number in every component
-/// (of a matrix: of the diagonal), a boolean (0 where another type is needed), three numbers, a text, or an
-/// attribute of the surface (in a function document, which has none, it must be linked or given).
+/// The default of a port: none (the port is required), a number for every component (for a matrix: for the diagonal), a
+/// boolean (0 for other types), three numbers, a text, or a surface attribute (required in function documents, which
+/// have no surface).
 using Default =
     std::variant<std::monostate, float, bool, std::array<float, 3>, std::string_view, SurfaceValue>;
 
@@ -42,9 +41,9 @@ struct Port {
   PortType type;
   std::string_view doc;
   Default value = {};
-  std::vector<std::string_view> choices = {};  ///< of a PortType::Kind::choice
+  std::vector<std::string_view> choices = {};  ///< for PortType::Kind::choice
 
-  /// `has_surface`: in an effect.
+  /// `has_surface`: the document is an effect.
   bool required(bool has_surface) const {
     return value.index() == 0 || (!has_surface && std::holds_alternative<SurfaceValue>(value));
   }
@@ -61,88 +60,110 @@ struct Outputs : std::vector<Output> {
   Outputs(std::initializer_list<Output> outputs) : vector(outputs) {}
 };
 
-/// A row of functions.def; one that only takes floats is called for each component.
+/// Calls a row of functions.def, componentwise if the row has only floats.
 struct Function {
   std::string_view row;
 };
 
-/// What a light gives at the surface point.
+/// Samples a texture.
+struct Image {};
+
+/// The ports of the row `image`, in order.
+namespace image_port {
+inline constexpr size_t file = 0, default_value = 1, texcoord = 2, uaddressmode = 3, vaddressmode = 4,
+                        filtertype = 5, colorspace = 6;
+}  // namespace image_port
+
+// The enumerations below have the order of the ports' choices.
+
+/// Addressing outside of a texture; `constant` is the port `default`.
+enum class AddressMode : uint8_t { periodic, clamp, mirror, constant };
+
+/// The nearest texel; bilinear interpolation of four texels; the same, interpolated between the two mip levels whose
+/// texels are nearest to the size of the pixel.
+enum class Filter : uint8_t { closest, linear, trilinear };
+
+/// The colour space of a file. `automatic`: sRGB if it has 8 bits per channel and is read as a colour, else linear.
+enum class ColorSpace : uint8_t { automatic, srgb, linear };
+
+/// Reads a property of the current light at the surface point.
 enum class Light : uint8_t {
   direction,  ///< vec3, unit, world space, towards the light
-  color       ///< vec3, linear, with all falloff
+  color       ///< vec3, linear, including all falloff
 };
 
 /// Sums its input over the lights.
 struct SumLights {};
 
-/// Reads an image of the post chain, or the scene's depth, near the pixel.
+/// Reads an image of the post chain, or the scene's depth, at an offset from the pixel.
 enum class Fetch : uint8_t { color, depth };
 
-/// What is read beyond an image.
+/// The value outside of an image.
 enum class Edge : uint8_t { clamp, mirror, constant };
 inline const std::vector<std::string_view> edge_names{"clamp", "mirror", "constant"};
 
-inline constexpr int64_t max_taps = 64;  ///< of a sum
+inline constexpr int64_t max_taps = 64;  ///< per sum_taps
 
-/// The point that the pixel shows.
+/// The world-space position of the visible surface at the pixel.
 struct WorldPosition {};
 
-/// Sums its input over taps, and the number of the tap below such a sum.
+/// Sums its input over taps; the index of the current tap.
 struct SumTaps {};
 struct TapIndex {};
 
-/// Takes its first port from the space of the second to that of the third.
+/// Transforms port 0 from the space of port 1 to the space of port 2.
 enum class Transform : uint8_t { point, vector, normal };
 
-/// Seconds since the scene began.
+/// The time of the scene, in seconds.
 struct Time {};
 
-/// What a value changes by from a pixel to the next: to the right, down, or the sum of both without signs.
+/// The screen-space derivative in x (right), in y (down), or |x| + |y|.
 enum class Derivative : uint8_t { x, y, width };
 
-/// Makes the outputs of a Site from its inputs.
+/// Computes the outputs of a Site from its inputs.
 using Custom = void (*)(Site&);
 
 using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative,
                               Image, Screen, Fetch, WorldPosition, SumTaps, TapIndex, Custom>;
 
-/// Which documents a node has a meaning in.
-enum class Home : uint8_t { anywhere, drawn /**< effects and posts */, effects, posts };
+/// The kinds of documents in which a node is available.
+enum class Availability : uint8_t { anywhere, drawn /**< effects and posts */, effects, posts };
 
-/// What a row demands of its ports beyond their types, and what is wrong there.
+/// The error of a port that violates a row's Condition.
 struct Refusal {
   support::Id id;
   size_t port;
   std::string message;
 };
-/// `types`: of each port, after inference; `settings`: of literal ports, as in Site; `out`: of output 0.
+/// A constraint on ports beyond their types. `types`: of each port, after inference; `settings`: of literal ports, as
+/// in Site; `out`: of output 0.
 using Condition = std::optional<Refusal> (*)(std::span<const Type> types, std::span<const uint32_t> settings,
                                              Type out);
 
 struct Row {
   std::string_view name;
-  std::string_view doc;  ///< one or two sentences; `port` in back quotes
+  std::string_view doc;  ///< one or two sentences, with ports in back quotes
   std::vector<Port> ports;
   Outputs outputs;
   Lowering lowering;
   Condition condition = nullptr;
-  std::string_view group = {};  ///< "math": the file it stands in
+  std::string_view group = {};  ///< the file that defines it: "math"
 
   template <class Kind>
   bool is() const {
     return std::holds_alternative<Kind>(lowering);
   }
-  /// Whether it computes its input again and again, and adds up.
+  /// Whether it evaluates its input repeatedly and sums the results.
   bool is_sum() const { return is<SumLights>() || is<SumTaps>(); }
-  /// Whether it differs from one turn of a sum to the next.
+  /// Whether its value depends on the iteration of the enclosing sum.
   bool is_summand() const { return is<Light>() || is<TapIndex>(); }
-  /// Nodes that speak of the surface, textures, the scene or the screen have no meaning in function documents.
-  Home home() const {
-    if (is<Time>()) return Home::drawn;
+  /// Function documents have no surface, textures, scene or screen.
+  Availability availability() const {
+    if (is<Time>()) return Availability::drawn;
     if (is<Surface>() || is<Transform>() || is<Light>() || is<SumLights>() || is<Derivative>() || is<Image>())
-      return Home::effects;
+      return Availability::effects;
     const bool screen = is<Screen>() || is<Fetch>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();
-    return screen ? Home::posts : Home::anywhere;
+    return screen ? Availability::posts : Availability::anywhere;
   }
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen: what full-screen effects read. Only in post documents.
+// The inputs of full-screen effects. Only in post documents.
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
 namespace {
 
-/// Loops of a kernel stay short.
+/// The taps must form a range, of limited length so that kernels stay fast.
 std::optional<Refusal> range_exists(std::span<const Type>, std::span<const uint32_t> settings, Type) {
   const int64_t first = static_cast<int32_t>(settings[1]), last = static_cast<int32_t>(settings[2]);
   if (last < first)
@@ -19,75 +19,72 @@ std::optional<Refusal> range_exists(std::span<const Type>, std::span<const uint3
 }  // namespace
 
 std::vector<Row> screen_rows() {
-  const Port offset_x{"offsetx", Integer, "pixels of the image to the right", 0.0f};
-  const Port offset_y{"offsety", Integer, "pixels of the image downwards", 0.0f};
-  const Port edge{"edge", Choice, "what is read beyond the image: its last pixel, the image mirrored, or 0",
+  const Port offset_x{"offsetx", Integer, "the offset to the right, in pixels of the image", 0.0f};
+  const Port offset_y{"offsety", Integer, "the offset downwards, in pixels of the image", 0.0f};
+  const Port edge{"edge", Choice, "the value outside of the image: its border pixel, the mirrored image, or 0",
                   "clamp", edge_names};
   return {
       {"scenecolor",
-       "The image, linear, at the pixel or beside it. Of an image of another size, what lies under the "
-       "pixel's centre.",
-       {{"image", ImageName, "one of the document's \"images\"; without it the image that the post goes over",
-         ""},
+       "The linear colour of an image at the pixel, plus an offset. An image of another size is sampled at the position "
+       "of the pixel's centre.",
+       {{"image", ImageName, "one of the document's \"images\"; default: the image that the post processes", ""},
         offset_x,
         offset_y,
         edge,
         {"filter",
          Choice,
-         "the pixel that the centre lies in, or the four around it in proportion",
+         "the nearest pixel, or bilinear interpolation of four",
          "nearest",
          {"nearest", "linear"}},
         {"nonfinite",
          Choice,
-         "what a channel that is infinite or NaN counts as, before it is filtered: itself, or 0",
+         "keep infinite and NaN channels, or replace them by 0 before filtering",
          "keep",
          {"keep", "zero"}}},
        Color4,
        Fetch::color},
       {"scenedepth",
-       "The depth of the scene. `out` is as it is stored: 1 at the near plane, 0 where there is nothing. "
-       "`linear` is "
-       "the distance along the view, in world units: at most 1e9, which it is where there is nothing; under "
-       "orthographic projection it is the camera's \"far\" there. `issky`: whether there is nothing.",
+       "The depth of the scene. `out` is the stored depth: 1 at the near plane, 0 in the background. `linear` is the "
+       "distance along the view direction in world units, at most 1e9; in the background it is 1e9, or the camera's "
+       "\"far\" for an orthographic camera. `issky`: whether the pixel shows the background.",
        {offset_x, offset_y, edge},
        {{"out", Float}, {"linear", Float}, {"issky", Boolean}},
        Fetch::depth},
       {"worldposition",
-       "The point that the pixel shows. What is subtracted from it is better subtracted from "
-       "`cameraposition`, and "
-       "the point taken in the space \"camera\": far from the origin nothing is lost then.",
+       "The position of the surface that the pixel shows. To subtract another point without cancellation far from the "
+       "origin, use the space \"camera\" and subtract the point from `cameraposition`.",
        {{"space",
          Choice,
-         "from the origin, or from the camera's position, along the axes of the world",
+         "relative to the origin or to the camera's position, along the world axes",
          "world",
          {"world", "camera"}}},
        Vector3,
        WorldPosition{}},
       {"viewray",
-       "Vector from the camera through the pixel's centre, in world space, scaled to advance one unit along the view "
-       "direction.",
+       "The vector from the camera through the pixel's centre, in world space, scaled so that its component along the "
+       "view direction is 1.",
        {},
        Vector3,
        Screen::view_ray},
-      {"cameraposition", "Where the camera stands, in world space.", {}, Vector3, Screen::camera_position},
+      {"cameraposition", "The position of the camera, in world space.", {}, Vector3, Screen::camera_position},
       {"cameradirection",
-       "The unit vector that the camera looks along, in world space.",
+       "The unit view direction of the camera, in world space.",
        {},
        Vector3,
        Screen::camera_direction},
-      {"pixelcoord", "The centre of the pixel, in pixels from the upper left.", {}, Vector2, Screen::pixel},
+      {"pixelcoord", "The centre of the pixel, in pixels from the upper left corner.", {}, Vector2, Screen::pixel},
       {"screencoord",
        "The centre of the pixel, from 0 to 1: u to the right and v down.",
        {},
        Vector2,
        Screen::coordinate},
-      {"screensize", "Width and height of the image that is made, in pixels.", {}, Vector2, Screen::size},
-      {"tapindex", "The number of the tap. Only under sum_taps.", {}, Integer, TapIndex{}},
+      {"screensize", "The width and height of the output image, in pixels.", {}, Vector2, Screen::size},
+      {"tapindex", "The index of the tap. Only under sum_taps.", {}, Integer, TapIndex{}},
       {"sum_taps",
-       "The sum of `in` over the taps from `first` to `last`, from 0, in their order.",
-       {{"in", AnyFloat, "what one tap adds"},
-        {"first", SignedNumber, "the number of the first tap", 0.0f},
-        {"last", SignedNumber, "the number of the last tap; there are at most 64"}},
+       "The sum of `in` over the taps from `first` to `last`, in order, starting from 0.",
+       {{"in", AnyFloat, "the contribution of one tap"},
+        {"first", SignedNumber, "the index of the first tap", 0.0f},
+        {"last", SignedNumber, "the index of the last tap; at most 64 taps"}},
        AnyFloat,
        SumTaps{},
        range_exists},

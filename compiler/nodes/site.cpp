@@ -29,7 +29,7 @@ int column_count(Type type) {
 ir::Type ir_type(Type type) {
   if (type == Type::boolean) return ir::bool_type;
   if (type == Type::integer) return ir::int_type;
-  assert_that(column_count(type) > 0, "a text is no value");
+  assert_that(column_count(type) > 0, "filenames and strings have no IR type");
   return ir::vector_type(graph::float_count(type) / column_count(type));
 }
 
@@ -108,7 +108,7 @@ void lower(const Row& row, Site& site) {
   } else if (const auto* custom = std::get_if<Custom>(&row.lowering)) {
     (*custom)(site);
   } else {
-    support::bug("this node needs more than its ports");
+    support::bug("this node depends on more than its ports");
   }
 }
 

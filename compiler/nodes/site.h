@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of the graph as IR, and one node on its way there.
+// Lowering of one node: values of the graph as IR values.
 #pragma once
 
 #include <array>
@@ -25,41 +25,40 @@ struct Value {
   std::span<const ir::ValueId> ids() const { return {columns.data(), count}; }
 };
 
-/// How many IR values a type takes, and of what type each is. A file name is the number of a texture. Strings have none.
+/// The number of IR values for a type (0 for filenames and strings), and the type of each.
 int column_count(Type type);
 ir::Type ir_type(Type type);
 
-/// A value of `type` with `bits` in its floats (columns one after another), or as its boolean or integer.
+/// A constant of `type` from the bits of its floats (column by column), of its boolean or of its integer.
 Value constant(ir::Builder& b, Type type, std::span<const uint32_t> bits);
 
-/// `value`, which is of type `from`, as the wider type that it is converted to implicitly: an integer as
-/// float, a float as vector or colour.
+/// Converts `value` implicitly from `from` to `to`: an integer to float, a float to a vector or colour.
 Value broadcast(ir::Builder& b, Value value, Type from, Type to);
 
-/// Calls a row of functions.def, for each component where it takes none but floats.
+/// Calls a row of functions.def; componentwise if the row has no variant for these types.
 Value call_function(ir::Builder& b, std::string_view row, std::span<const Value> arguments);
 
 /// One node being lowered.
 struct Site {
   ir::Builder& b;
-  std::span<const Value> in;           ///< of each port, of the types that checking settled
-  std::span<const Type> types;         ///< of each port
-  std::span<const uint32_t> settings;  ///< of literal ports: a Type, the number of a choice, a component
-  std::span<const Type> out_types;     ///< of each output
-  std::span<Value> out;                ///< to be made
+  std::span<const Value> in;           ///< by port, after implicit conversion
+  std::span<const Type> types;         ///< by port
+  std::span<const uint32_t> settings;  ///< by port, for literal ports: a Type, a choice, a component
+  std::span<const Type> out_types;     ///< by output
+  std::span<Value> out;                ///< by output; lowering sets them
 
   ir::ValueId operator[](size_t port) const { return in[port].id(); }
   ir::ValueId op(ir::Opcode opcode, std::initializer_list<ir::ValueId> operands) const {
     return b.op(opcode, operands);
   }
-  /// The op of all ports, which are alike; of matrices column by column.
+  /// Applies the op to all ports, which have the same type; to matrices column by column.
   Value op_of_columns(ir::Opcode opcode) const;
   Value call(std::string_view row, std::initializer_list<Value> arguments) const {
     return call_function(b, row, arguments);
   }
 };
 
-/// Makes the outputs of a row that needs nothing but its ports.
+/// Computes the outputs of a row that depends only on its ports.
 void lower(const Row& row, Site& site);
 
 }  // namespace isoshade::nodes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Making values, taking them apart, changing their type.
+// Construction, decomposition and conversion of values.
 #include <limits>
 
 #include "compiler/nodes/site.h"
@@ -24,7 +24,7 @@ std::optional<Refusal> component_exists(std::span<const Type> types, std::span<c
                      std::to_string(count - 1)};
 }
 
-/// Scalars become each other and tuples, a tuple a tuple.
+/// Scalars convert to scalars and tuples, tuples to tuples.
 std::optional<Refusal> conversion_exists(std::span<const Type> types, std::span<const uint32_t>, Type out) {
   const Type in = types[0];
   if (in == out) return std::nullopt;
@@ -35,9 +35,9 @@ std::optional<Refusal> conversion_exists(std::span<const Type> types, std::span<
                      std::string(graph::type_name(out))};
 }
 
-/// Towards zero; beyond the range of integers its end; NaN is 0.
+/// Truncates towards zero and clamps to the range of integers; NaN gives 0.
 ir::ValueId to_integer(Site& s) {
-  constexpr float least = -2147483648.0f, greatest = 2147483520.0f;  // of the floats that are integers
+  constexpr float least = -2147483648.0f, greatest = 2147483520.0f;  // floats that fit in 32 bits
   const Value inside = s.call("clamp", {s.in[0], s.b.constant(least), s.b.constant(greatest)});
   const ir::ValueId number = s.op(Opcode::feq, {s[0], s[0]});
   const ir::ValueId within = s.op(Opcode::ftoi, {s.op(Opcode::select, {number, inside.id(), s.b.constant(0.0f)})});
@@ -79,7 +79,7 @@ void separate(Site& s) {
   for (uint32_t i = 0; i < s.out.size(); ++i) s.out[i] = s.b.extract(s[0], i % count);
 }
 
-/// Numbers, or a tuple and a number.
+/// Combines floats, or a tuple and a float.
 void combine(Site& s) {
   std::array<ir::ValueId, 4> components;
   size_t count = 0;
@@ -96,17 +96,17 @@ std::optional<Refusal> one_more(std::span<const Type> types, std::span<const uin
   const int count = float_count(types[0]) + 1;
   if (float_count(out) == count) return std::nullopt;
   return Refusal{support::Id::type_mismatch, 2,
-                 "a " + std::string(graph::type_name(types[0])) + " and a float are " + std::to_string(count) +
-                     " numbers, and a " + std::string(graph::type_name(out)) + " has " +
-                     std::to_string(float_count(out)) + ": \"to\" says what they make"};
+                 "a " + std::string(graph::type_name(types[0])) + " and a float have " + std::to_string(count) +
+                     " components, but " + std::string(graph::type_name(out)) + " has " +
+                     std::to_string(float_count(out)) + ": set \"to\" to the type of the result"};
 }
 
 std::optional<Refusal> columns_fit(std::span<const Type> types, std::span<const uint32_t>, Type out) {
   if (out == Type::matrix44 || types[0] == Type::vector3) return std::nullopt;
-  return Refusal{support::Id::type_mismatch, 0, "the columns of a matrix33 are vector3, not vector4"};
+  return Refusal{support::Id::type_mismatch, 0, "the columns of a matrix33 must be vector3, not vector4"};
 }
 
-/// Columns of three in a matrix of four: those of an affine transform.
+/// vector3 columns of a matrix44 are extended to those of an affine transform.
 void create_matrix(Site& s) {
   std::array<ir::ValueId, 4> columns;
   const size_t count = s.out_types[0] == Type::matrix33 ? 3 : 4;
@@ -136,19 +136,19 @@ std::vector<Row> structure_rows() {
   const Port in4{"in4", Float, "component 3: w or a", 0.0f};
   return {
       {"constant",
-       "A value. Arrays are vectors unless `to` says color3, color4 or a matrix (column by column).",
-       {{"value", Any, "the value"}, {"to", name_of(Any), "its type, where the value does not tell", ""}},
+       "A constant. An array is a vector unless `to` is color3, color4 or a matrix (column by column).",
+       {{"value", Any, "the value"}, {"to", name_of(Any), "its type; default: inferred from the value", ""}},
        Any,
        [](Site& s) { s.out[0] = s.in[0]; }},
       {"convert",
-       "`in` as another type. Numbers fill every component; tuples lose components, or gain 0 and as fourth "
-       "1. Floats become integers towards zero, the nearest where there is none. Not 0 is true.",
+       "Converts `in` to another type. Scalars fill every component; vectors and colours lose components, or gain 0, and "
+       "1 as the fourth. Floats are truncated and clamped to integers. Non-zero is true.",
        {{"in", Any, "the value"}, {"to", name_of(Other), "the type to convert to"}},
        Other,
        convert,
        conversion_exists},
       {"combine2",
-       "A vector2 of two floats; or of a vector or colour and a float what has one component more.",
+       "A vector2 of two floats, or a vector or colour extended by one component.",
        {{"in1", begun, "the first component, or all but the last", 0.0f},
         {"in2", Float, "the last component", 0.0f},
         {"to", name_of(ended), "vector2, vector3, vector4 or color4", "vector2"}},
@@ -166,8 +166,8 @@ std::vector<Row> structure_rows() {
        four,
        combine},
       {"creatematrix",
-       "A matrix of its columns: where it moves the x, y and z axes, and in a matrix44 the origin. Columns of three "
-       "numbers in a matrix44 end with 0, the fourth with 1.",
+       "A matrix from its columns: the images of the x, y and z axes and, in a matrix44, of the origin. vector3 columns "
+       "of a matrix44 are extended by 0, the fourth by 1.",
        {{"in1", column, "the first column"},
         {"in2", column, "the second column"},
         {"in3", column, "the third column"},
@@ -177,9 +177,9 @@ std::vector<Row> structure_rows() {
        create_matrix,
        columns_fit},
       {"extract",
-       "One component of `in`. The same as a link \"node.x\".",
+       "One component of `in`, like the link \"node.x\".",
        {{"in", VectorOrColor, "a vector or colour"},
-        {"index", component_of(VectorOrColor), "which one, from 0", 0.0f}},
+        {"index", component_of(VectorOrColor), "the index of the component, from 0", 0.0f}},
        Float,
        [](Site& s) { s.out[0] = s.b.extract(s[0], s.settings[1]); },
        component_exists},
@@ -189,12 +189,12 @@ std::vector<Row> structure_rows() {
        {{"outx", Float}, {"outy", Float}},
        separate},
       {"separate3",
-       "The components of `in`, each under two names.",
+       "The components of `in`, each with two names.",
        {{"in", three, "a vector3 or color3"}},
        {{"outx", Float}, {"outy", Float}, {"outz", Float}, {"outr", Float}, {"outg", Float}, {"outb", Float}},
        separate},
       {"separate4",
-       "The components of `in`, each under two names.",
+       "The components of `in`, each with two names.",
        {{"in", four, "a vector4 or color4"}},
        {{"outx", Float},
         {"outy", Float},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is called one thing as a node, another in expressions and a third in GLSL, HLSL or MaterialX, for messages.
+// Names of the same operation as a node, in expressions, and in GLSL, HLSL or MaterialX; for suggestions.
 #include <algorithm>
 #include <array>
 
@@ -8,7 +8,7 @@
 namespace isoshade::nodes {
 namespace {
 
-/// Names of one thing, the ones that stand in tables first.
+/// Names of one operation; names in our tables come first.
 using Names = std::array<std::string_view, 4>;
 constexpr Names synonyms[] = {
     {"absval", "abs", "fabs"},
@@ -38,14 +38,14 @@ constexpr Names synonyms[] = {
 
 }  // namespace
 
-std::string_view called_elsewhere(std::string_view word, const std::vector<Row>& rows) {
+std::string_view find_synonym(std::string_view word, const std::vector<Row>& rows) {
   if (word.empty()) return {};
   for (const Names& names : synonyms) {
     if (std::ranges::find(names, word) == names.end()) continue;
     for (const std::string_view name : names)
       if (!name.empty() && std::ranges::find(rows, name, &Row::name) != rows.end()) return name;
     for (const std::string_view name : names)
-      if (graph::find_type(name)) return name;  // expressions call types
+      if (graph::find_type(name)) return name;  // type constructors of expressions
   }
   return {};
 }

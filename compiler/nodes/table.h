@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// THE node library.
+// The node library.
 #pragma once
 
 #include "compiler/functions/tier.h"
@@ -7,26 +7,26 @@
 
 namespace isoshade::nodes {
 
-/// Every node, group by group, in the order that the manual lists them.
+/// All nodes, by group, in the order of the manual.
 const std::vector<Row>& table();
 
-/// The row of a name, or null.
+/// The row with this name, or null.
 const Row* find(std::string_view name);
 
-/// What a row takes, and what it gives beyond it, in a tier: domains.def, or the docstring of the function that it is.
-/// Empty for nodes that take no values.
+/// The domain of a row in a tier and its results outside of it, from domains.def or the docstring of the function.
+/// Empty for nodes without value ports.
 std::string_view domain_of(const Row& row, functions::Tier tier = functions::Tier::standard);
 
-/// What stands in expressions: operators by their text, the rows of functions.def, abs, floor and sqrt; sorted
+/// The operators (named by their text) and functions of expressions: rows of functions.def, abs, floor and sqrt. Sorted
 /// by name.
 const std::vector<Row>& function_table();
 const Row* find_function(std::string_view name);
 
-/// What `word`, a name in other shading languages or on the other side (nodes, expressions), is called in `rows`; empty
-/// if nothing is known of it.
-std::string_view called_elsewhere(std::string_view word, const std::vector<Row>& rows);
+/// The row of `rows` (nodes or expression functions) that corresponds to `word`, a name from the other table or from
+/// another shading language; empty if there is none.
+std::string_view find_synonym(std::string_view word, const std::vector<Row>& rows);
 
-// The groups, one file each.
+// The groups, one source file each.
 std::vector<Row> structure_rows();
 std::vector<Row> math_rows();
 std::vector<Row> vector_rows();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a port accepts, and the words that rows of the node table say it with.
+// The types that a port accepts, and the names that rows of the node table use for them.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@ struct TypeSet {
 
 constexpr TypeSet only(Type type) { return {static_cast<uint16_t>(1u << static_cast<int>(type))}; }
 
-/// Ports of a row with one variable are of one type, which what is linked to them settles.
+/// Type variables: the ports of a row with the same variable have the same type, which is inferred.
 enum class Variable : uint8_t { none, t, u };
 
 /// The type of a port or an output.
 struct PortType {
   enum class Kind : uint8_t {
     value,      ///< a value of one of `accepts`
-    type_name,  ///< a literal string: the name of the type that `variable` is
+    type_name,  ///< a literal string: the name of the type of `variable`
     choice,     ///< a literal string: one of the port's choices
-    component,  ///< a literal integer: which component of the value of `variable`, or a number of things
-    integer,    ///< a literal integer, also below 0
+    component,  ///< a literal non-negative integer: a component index, or a number
+    integer,    ///< a literal integer
     image       ///< a literal string: one of the document's images
   };
   TypeSet accepts;
@@ -62,14 +62,14 @@ inline constexpr PortType Color{color_types, Variable::t};
 inline constexpr PortType Matrix{matrix_types, Variable::t};
 inline constexpr PortType FloatOrMatrix{float_types | matrix_types, Variable::t};
 inline constexpr PortType Any{value_types, Variable::t};
-inline constexpr PortType Other{value_types, Variable::u};  ///< of another type than Any
+inline constexpr PortType Other{value_types, Variable::u};  ///< independent of Any
 inline constexpr PortType Choice{{}, Variable::none, PortType::Kind::choice};
 inline constexpr PortType WholeNumber{{}, Variable::none, PortType::Kind::component};
 
 inline constexpr PortType SignedNumber{{}, Variable::none, PortType::Kind::integer};
 inline constexpr PortType ImageName{{}, Variable::none, PortType::Kind::image};
 
-/// The same variable's name: "to": "color3".
+/// A port that names the type of the same variable: "to": "color3".
 constexpr PortType name_of(PortType type) { return {type.accepts, type.variable, PortType::Kind::type_name}; }
 constexpr PortType component_of(PortType type) {
   return {type.accepts, type.variable, PortType::Kind::component};

@@ -10,11 +10,11 @@ std::optional<Refusal> matrix_fits(std::span<const Type> types, std::span<const 
   const bool fits3 = types[0] != Type::vector4, fits4 = types[0] != Type::vector2;
   if (types[1] == Type::matrix33 ? fits3 : fits4) return std::nullopt;
   return Refusal{support::Id::type_mismatch, 1,
-                 "a " + std::string(graph::type_name(types[0])) + " is transformed by a matrix" +
-                     (fits3 ? "33" : "44") + ", not by a " + std::string(graph::type_name(types[1]))};
+                 "a " + std::string(graph::type_name(types[0])) + " needs a matrix" + (fits3 ? "33" : "44") +
+                     ", not a " + std::string(graph::type_name(types[1]))};
 }
 
-/// A vector that is one shorter than the matrix is a point: it gets a fourth or third component of 1.
+/// A vector with one component less than the matrix is a point: it is extended by 1.
 void transform(Site& s) {
   const auto height = static_cast<uint32_t>(graph::float_count(s.types[0]));
   if (height == s.in[1].count) {
@@ -38,57 +38,57 @@ std::vector<Row> vector_rows() {
   const Port from{"fromspace", Choice, "the space of `in`", "world", space_names};
   const Port to{"tospace", Choice, "the space of the result; \"model\" is \"object\"", "world", space_names};
   return {
-      {"dotproduct", "The sum of products of components.", {in1, in2}, Float, Function{"dot"}},
+      {"dotproduct", "The dot product of `in1` and `in2`.", {in1, in2}, Float, Function{"dot"}},
       {"crossproduct",
-       "The vector at right angles to both, right-handed.",
+       "The right-handed cross product of `in1` and `in2`.",
        {{"in1", Vector3, "the first vector"}, {"in2", Vector3, "the second vector"}},
        Vector3,
        Function{"cross"}},
       {"normalize",
-       "`in` at length 1; whatever its length, nothing overflows on the way.",
+       "`in`, scaled to length 1, without intermediate overflow for any length.",
        {{"in", Vector, "a vector that is not zero"}},
        Vector,
        Function{"normalize"}},
       {"magnitude", "The length of `in`.", {{"in", Vector, "the vector"}}, Float, Function{"length"}},
       {"distance", "The length of `in1` - `in2`.", {in1, in2}, Float, Function{"distance"}},
       {"reflect",
-       "`in` mirrored at the plane with this normal: `in` - 2 (`normal` . `in`) `normal`.",
+       "`in`, reflected at the plane with this normal: `in` - 2 (`normal` . `in`) `normal`.",
        {{"in", Vector, "a direction towards the surface"}, {"normal", Vector, "unit length"}},
        Vector,
        Function{"reflect"}},
       {"refract",
-       "The unit direction `in` bent at a surface; zero where it is totally reflected.",
+       "The unit direction `in`, refracted at a surface; zero for total internal reflection.",
        {{"in", Vector, "unit length, towards the surface"},
-        {"normal", Vector, "unit length, against `in`"},
-        {"ior", Float, "index of refraction before the surface over that behind it", 1.0f}},
+        {"normal", Vector, "unit length, opposite to `in`"},
+        {"ior", Float, "the index of refraction on the incident side divided by that on the other side", 1.0f}},
        Vector,
        Function{"refract"}},
       {"transformpoint",
-       "The point `in` in the coordinates of another space.",
+       "Transforms the point `in` to another space.",
        {{"in", Vector3, "a point in `fromspace`"}, from, to},
        Vector3,
        Transform::point},
       {"transformvector",
-       "The direction and length `in` in the coordinates of another space.",
+       "Transforms the vector `in` (direction and length) to another space.",
        {{"in", Vector3, "a vector in `fromspace`"}, from, to},
        Vector3,
        Transform::vector},
       {"transformnormal",
-       "The normal `in` in another space, at length 1.",
-       {{"in", Vector3, "a normal in `fromspace`, of any length but 0"}, from, to},
+       "Transforms the normal `in` to another space and normalises it.",
+       {{"in", Vector3, "a normal in `fromspace`, of any non-zero length"}, from, to},
        Vector3,
        Transform::normal},
       {"transformmatrix",
-       "`mat` times `in`. A vector2 under a matrix33 and a vector3 under a matrix44 are points.",
-       {{"in", Vector, "the vector, a column"},
-        {"mat", {matrix_types, Variable::u}, "the matrix; literals are written column by column"}},
+       "`mat` times `in`. A vector2 with a matrix33, and a vector3 with a matrix44, is a point.",
+       {{"in", Vector, "the column vector"},
+        {"mat", {matrix_types, Variable::u}, "the matrix; literals are in column-major order"}},
        {{"out", Vector}},
        transform,
        matrix_fits},
-      {"transpose", "Rows become columns.", {{"in", Matrix, "the matrix"}}, Matrix, Function{"transpose"}},
+      {"transpose", "The transpose.", {{"in", Matrix, "the matrix"}}, Matrix, Function{"transpose"}},
       {"determinant", "The determinant.", {{"in", Matrix, "the matrix"}}, Float, Function{"determinant"}},
       {"invertmatrix",
-       "The inverse; infinities and NaN where there is none.",
+       "The inverse; infinities and NaN for a singular matrix.",
        {{"in", Matrix, "the matrix"}},
        Matrix,
        Function{"inverse"}},

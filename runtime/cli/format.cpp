@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade fmt: brings documents into canonical layout.
-#include "compiler/graph/format.h"
 
 #include <cstdio>
 

@@ -76,7 +76,7 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   const nodes::Row* row = nodes::find(arguments.name);
   if (row != nullptr) {
     std::string text = nodes::row_text(*row);
-    if (row->home() == nodes::Home::anywhere) text += cost_text(*row);
+    if (row->availability() == nodes::Availability::anywhere) text += cost_text(*row);
     std::fputs(text.c_str(), stdout);
     return success;
   }
@@ -87,7 +87,7 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   }
   const nodes::Row* called = nodes::find_function(arguments.name);
   if (called != nullptr && called->group == "function") {
-    const std::string_view node = nodes::called_elsewhere(arguments.name, nodes::table());
+    const std::string_view node = nodes::find_synonym(arguments.name, nodes::table());
     std::string text = nodes::row_text(*called) + "  For expressions; its arguments are in this order.\n";
     if (!node.empty()) text += "  The node is " + std::string(node) + ".\n";
     std::fputs(text.c_str(), stdout);
@@ -96,7 +96,7 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   std::vector<std::string_view> names;
   for (const nodes::Row& known : nodes::table()) names.push_back(known.name);
   for (const nodes::Row& known : library.rows()) names.push_back(known.name);
-  const std::string_view other = nodes::called_elsewhere(arguments.name, nodes::table());
+  const std::string_view other = nodes::find_synonym(arguments.name, nodes::table());
   const std::string_view near = other.empty() ? support::nearest(arguments.name, names) : other;
   diagnostics
       .report(support::Id::unknown_node, "no node and no library function is called " + support::quote(arguments.name))

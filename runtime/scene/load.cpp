@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/graph/merge.h"
+#include "compiler/graph/document.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/settings.h"
 

@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
+#include "compiler/graph/document.h"
 #include "compiler/graph/files.h"
 #include "compiler/graph/graph.h"
-#include "compiler/graph/merge.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::scene {
@@ -255,7 +255,7 @@ bool Editor::set_bare(Setting& setting) {
 }
 
 bool Editor::apply(Setting& setting) {
-  setting.value = graph::adopted(document_, setting.source, std::move(setting.value));
+  setting.value = graph::adopt(document_, setting.source, std::move(setting.value));
   return setting.name.empty() ? set_bare(setting) : set_named(setting);
 }
 

@@ -193,11 +193,11 @@ bool Maker::allowed(const Row& row) const {
   if (row.is_summand())
     return row.is<nodes::Light>() == (kind_ == graph::DocumentKind::effect) &&
            kind_ != graph::DocumentKind::function;
-  switch (row.home()) {
-    case nodes::Home::anywhere: return true;
-    case nodes::Home::drawn: return kind_ != graph::DocumentKind::function;
-    case nodes::Home::effects: return kind_ == graph::DocumentKind::effect;
-    case nodes::Home::posts: return kind_ == graph::DocumentKind::post;
+  switch (row.availability()) {
+    case nodes::Availability::anywhere: return true;
+    case nodes::Availability::drawn: return kind_ != graph::DocumentKind::function;
+    case nodes::Availability::effects: return kind_ == graph::DocumentKind::effect;
+    case nodes::Availability::posts: return kind_ == graph::DocumentKind::post;
   }
   return false;
 }
@@ -212,7 +212,7 @@ void Maker::add_row() {
   const Row* row = nullptr;
   const bool special = kind_ != graph::DocumentKind::function && chance(0.4);
   do row = &any(nodes::table());
-  while (!allowed(*row) || (special && row->home() == nodes::Home::anywhere));
+  while (!allowed(*row) || (special && row->availability() == nodes::Availability::anywhere));
   const std::vector<Example> examples = nodes::examples_of(*row);
   const Example example = any(examples);
   std::string body = "\"type\": " + in_quotes(row->name);

@@ -73,7 +73,7 @@ std::vector<NodeCase> node_cases() {
     words = 0;
   };
   for (const nodes::Row& row : nodes::table()) {
-    if (row.home() != nodes::Home::anywhere) continue;
+    if (row.availability() != nodes::Availability::anywhere) continue;
     for (const Example& example : nodes::examples_of(row)) {
       if (!known.insert(shape(example)).second) continue;
       if (words + result_words(example) > max_words) flush();

@@ -149,11 +149,10 @@ TEST(Diagnostics, OthersHaveATestElsewhere) {
 std::string page_text() {
   std::string text =
       "<!-- Made by `diagnostics_test --update` from tests/diagnostics. -->\n"
-      "# What isoshade says of broken documents\n\n"
-      "A message names the file, line and column, shows the line, and tells the way out. Its id, in "
-      "brackets,\n"
-      "stays the same in all versions: scripts may match it, and `-Wno-ID` silences a warning. With\n"
-      "`--diagnostics json` the same comes as data.\n";
+      "# Diagnostics\n\n"
+      "A message names the file, line and column, shows the line, and suggests a fix. Its id, in brackets, is the\n"
+      "same in all versions: scripts may match it, and `-Wno-ID` suppresses a warning. `--diagnostics json` prints\n"
+      "the messages as JSON. Each section shows a broken document and its message.\n";
   for (const std::string& id : ids_here()) {
     const std::string document = read(folder / (id + ".json"));
     const bool shown = !document.empty() && document.find("\xfc") == std::string::npos;

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "compiler/driver/driver.h"
-#include "compiler/graph/format.h"
+#include "compiler/graph/document.h"
 #include "compiler/support/assert.h"
 #include "runtime/scene/load.h"
 

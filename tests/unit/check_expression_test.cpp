@@ -135,42 +135,42 @@ std::string fix_of(const std::string& code) {
 }
 
 TEST(Expression, WordsOfOtherLanguagesAreTranslated) {
-  EXPECT_EQ(fix_of("lerp(x, 1, v)"), "here it is \"mix\"");
-  EXPECT_EQ(fix_of("power(x, v)"), "here it is \"pow\"");
-  EXPECT_EQ(fix_of("vec3(x) + v"), "here it is \"vector3\"");
+  EXPECT_EQ(fix_of("lerp(x, 1, v)"), "its name here is \"mix\"");
+  EXPECT_EQ(fix_of("power(x, v)"), "its name here is \"pow\"");
+  EXPECT_EQ(fix_of("vec3(x) + v"), "its name here is \"vector3\"");
   EXPECT_EQ(fix_of("v * (x % 2)"), "write mod(x, y)");
   EXPECT_EQ(fix_of("v * x ^ 2"), "write pow(x, y)");
   EXPECT_EQ(fix_of("x = 1 ? v : 2"), "compare with ==");
 }
 
 TEST(Expression, ErrorsPointIntoTheString) {
-  EXPECT_EQ(error_of("x + * y"), "4 bad-expression: a value is needed before \"*\"");
+  EXPECT_EQ(error_of("x + * y"), "4 bad-expression: expected a value before \"*\"");
   EXPECT_EQ(error_of("x + (y"),
-            "6 bad-expression: the code ends where \")\" after the parenthesis is needed");
-  EXPECT_EQ(error_of("x y"), "2 bad-expression: an operator is needed before \"y\"");
+            "6 bad-expression: expected \")\" to close the parenthesis, but found the end of the code");
+  EXPECT_EQ(error_of("x y"), "2 bad-expression: expected an operator before \"y\"");
   EXPECT_EQ(error_of(""), "0 bad-expression: the code is empty");
-  EXPECT_EQ(error_of("x +"), "3 bad-expression: the code ends where a value is needed");
-  EXPECT_EQ(error_of("x # y"), "2 bad-expression: an operator is needed before \"#\"");
+  EXPECT_EQ(error_of("x +"), "3 bad-expression: expected a value, but the code ends");
+  EXPECT_EQ(error_of("x # y"), "2 bad-expression: expected an operator before \"#\"");
   EXPECT_EQ(error_of("1e99"), "0 bad-expression: \"1e99\" is beyond the range of float");
   EXPECT_EQ(error_of("x ? y"),
-            "5 bad-expression: the code ends where \":\" between the two results of \"?\" is needed");
-  EXPECT_EQ(error_of("x = y"), "2 bad-expression: an operator is needed before \"=\"");
+            "5 bad-expression: expected \":\" between the two results of \"?\", but found the end of the code");
+  EXPECT_EQ(error_of("x = y"), "2 bad-expression: expected an operator before \"=\"");
   EXPECT_EQ(error_of("vector4(x, y, x)", R"("x": "x", "y": "y")"),
             "0 bad-expression: vector4 takes 1, 2 or 4 arguments, not 3");
   EXPECT_EQ(error_of("vector3(x, y)", R"("x": "x", "y": "y")"),
-            "0 type-mismatch: a float and a float are 2 numbers, and a vector3 has 3: \"to\" says what they make");
+            "0 type-mismatch: a float and a float have 2 components, but vector3 has 3: set \"to\" to the type of the result");
   EXPECT_EQ(error_of("color4(v.xy, x)", R"("x": "x", "v": "v")"),
-            "0 type-mismatch: a vector2 and a float are 3 numbers, and a color4 has 4: \"to\" says what they make");
+            "0 type-mismatch: a vector2 and a float have 3 components, but color4 has 4: set \"to\" to the type of the result");
   EXPECT_EQ(error_of("integer(x, y)"), "0 bad-expression: integer takes 1 argument, not 2");
   EXPECT_EQ(error_of("matrix33(x)"), "0 bad-expression: matrix33 takes 3 arguments, its columns, not 1");
-  EXPECT_EQ(error_of("filename(x)"), "0 bad-expression: an expression makes no filename");
+  EXPECT_EQ(error_of("filename(x)"), "0 bad-expression: an expression cannot construct a filename");
   EXPECT_EQ(error_of("x + z"), "4 unknown-port: the expression has no port \"z\"");
   EXPECT_EQ(error_of("x.q", R"("x": "x")"), "0 unknown-output: \"x\" has no output \"q\"");
   EXPECT_EQ(error_of("lenght(v)", R"("v": "v")"),
-            "0 unknown-node-type: no node type or library function \"lenght\"");
+            "0 unknown-node-type: there is no node type or library function \"lenght\"");
   EXPECT_EQ(error_of("max(x)", R"("x": "x")"), "0 missing-port: \"max\" takes 2 arguments: \"y\" is missing");
   EXPECT_EQ(error_of("max(x, y, 3)", R"("x": "x", "y": "y")"),
-            "10 unknown-port: \"max\" takes 2 arguments, not more");
+            "10 unknown-port: \"max\" takes only 2 arguments");
 }
 
 TEST(Expression, TypesAreCheckedWhereTheyMeet) {
@@ -186,7 +186,7 @@ TEST(Expression, TypesAreCheckedWhereTheyMeet) {
 }
 
 TEST(Expression, PlacesSurviveEscapes) {
-  EXPECT_EQ(error_of("\\u0078 + \\u0078 $"), "16 bad-expression: an operator is needed before \"$\"");
+  EXPECT_EQ(error_of("\\u0078 + \\u0078 $"), "16 bad-expression: expected an operator before \"$\"");
 }
 
 TEST(Expression, PortsThatTheCodeDoesNotReadAreWarnedOf) {
@@ -211,17 +211,17 @@ TEST(Expression, MatricesAreMadeOfTheirColumns) {
 
 TEST(Expression, LinksAreReportedAtThePort) {
   const std::string text = messages_of("a + a + a", R"("a": "nowhere")");
-  EXPECT_NE(text.find("no node or input \"nowhere\""), std::string::npos) << text;
+  EXPECT_NE(text.find("there is no node or input \"nowhere\""), std::string::npos) << text;
   EXPECT_EQ(text.find("nowhere", text.find("^")), std::string::npos) << text;
 }
 
 TEST(Expression, HostileCodeEndsInAnError) {
   const std::string deep(100'000, '(');
-  EXPECT_NE(error_of(deep).find("nested at most 100 deep"), std::string::npos);
-  EXPECT_NE(error_of(std::string(100'000, '-') + "x").find("nested at most 100 deep"), std::string::npos);
+  EXPECT_NE(error_of(deep).find("nested more than 100 deep"), std::string::npos);
+  EXPECT_NE(error_of(std::string(100'000, '-') + "x").find("nested more than 100 deep"), std::string::npos);
   std::string selectors = "x";
   for (int i = 0; i < 100'000; ++i) selectors += ".x";
-  EXPECT_NE(error_of(selectors).find("nested at most 100 deep"), std::string::npos);
+  EXPECT_NE(error_of(selectors).find("nested more than 100 deep"), std::string::npos);
   std::string chain = "x";
   for (int i = 0; i < 300'000; ++i) chain += "+x";
   EXPECT_NE(error_of(chain, R"("x": "x")").find("too-large"), std::string::npos);

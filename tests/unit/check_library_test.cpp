@@ -75,7 +75,7 @@ TEST(CheckLibrary, RecursionIsNamedByItsPath) {
   front_end.library.add("b.json", function("b", calls("c.json")));
   front_end.library.add("c.json", function("c", calls("b.json")));
   EXPECT_EQ(front_end.messages(function("a", calls("b.json")), "a.json"),
-            R"(c.json:2:25: error[recursion]: the function uses itself: b.json -> c.json -> b.json
+            R"(c.json:2:25: error[recursion]: the function is recursive: b.json -> c.json -> b.json
   2 | "nodes": {"n": {"type": "b.json", "x": "x"}}, "outputs": {"out": "n"}}
     |                         ^^^^^^^^
 )");
@@ -136,7 +136,7 @@ TEST(CheckLibrary, ErrorsOfAFunctionAreReportedWhereTheyStandAndOnce) {
   front_end.library.add("library/bad.json", function("bad", R"({"type": "floor", "in": "y"})"));
   EXPECT_EQ(front_end.messages(R"({"isoshade": 1, "function": "f", "nodes": {
     "a": {"type": "bad", "x": 0.5}, "b": {"type": "bad", "x": "a"}}, "outputs": {"out": "b"}})"),
-            R"(library/bad.json:2:40: error[unknown-node]: no node or input "y"
+            R"(library/bad.json:2:40: error[unknown-node]: there is no node or input "y"
   2 | "nodes": {"n": {"type": "floor", "in": "y"}}, "outputs": {"out": "n"}}
     |                                        ^^^
 )");
@@ -152,10 +152,10 @@ TEST(CheckLibrary, LiteralsStayInTheRangeOfTheInput) {
   FrontEnd front_end;
   front_end.library.add("library/square.json", function("square", squared));
   EXPECT_EQ(front_end.messages(function("f", R"({"type": "square", "x": 1.5})")),
-            R"(test.json:2:40: error[out-of-range]: "x" of "square" is at most 1.0
+            R"(test.json:2:40: error[out-of-range]: "x" of "square" must be at most 1.0
   2 | "nodes": {"n": {"type": "square", "x": 1.5}}, "outputs": {"out": "n"}}
     |                                        ^^^
-library/square.json:1:55: note: as declared here
+library/square.json:1:55: note: declared here
   1 | {"isoshade": 1, "function": "square", "inputs": {"x": {"type": "float", "min": 0, "max": 1}},
     |                                                       ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
 )");
@@ -171,7 +171,7 @@ TEST(CheckLibrary, NamesOfValuesAreNumbersInPorts) {
                               mode + R"(}}, "outputs": {"out": "p"}})");
   };
   EXPECT_EQ(messages("1"), "");
-  EXPECT_NE(messages("\"second\"").find("write 1, the value of that name"), std::string::npos);
+  EXPECT_NE(messages("\"second\"").find("write 1, the number of that value"), std::string::npos);
   EXPECT_NE(messages("2").find("error[out-of-range]: \"mode\" of \"pick\" has no value 2"),
             std::string::npos);
   EXPECT_NE(messages("-1").find("note: it is 0 (first) or 1 (second)"), std::string::npos);

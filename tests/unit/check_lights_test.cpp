@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where nodes of the surface and of lights may stand, and what cannot be compiled yet.
+// Which documents surface and light nodes are available in, and input types that are not supported yet.
 #include "tests/unit/front_end.h"
 
 namespace isoshade {
@@ -18,10 +18,10 @@ TEST(CheckLights, LightNodesOutsideOfASumAreErrorsWithTheWayOut) {
   EXPECT_EQ(
       messages_of(effect(R"("l": {"type": "lightcolor"}, "half": {"type": "multiply", "in1": "l", "in2": 0.5},
 "sum": {"type": "sum_lights", "in": "half"}, "color": {"type": "add", "in1": "sum", "in2": "half"})")),
-      R"(test.json:2:15: error[light-outside-sum]: "lightcolor" is read outside of sum_lights
+      R"(test.json:2:15: error[light-outside-sum]: "lightcolor" is used outside of sum_lights
   2 | "l": {"type": "lightcolor"}, "half": {"type": "multiply", "in1": "l", "in2": 0.5},
-    |               ^^^^^^^^^^^^ sum what depends on it with a node of type sum_lights
-  note: it reaches an output by l -> half -> color
+    |               ^^^^^^^^^^^^ link the value that depends on it to a sum_lights node
+  note: an output depends on it: l -> half -> color
 )");
 }
 
@@ -35,7 +35,7 @@ TEST(CheckLights, FunctionsTakeSurfaceAndLightAsInputs) {
   for (const char* type : {"normal", "texcoord", "lightdirection"}) {
     EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "nodes": {"n": {"type": ")" +
                           std::string(type) + R"("}}, "outputs": {"out": "n"}})")
-                  .find("error[misplaced-node]: a function document cannot have the node"),
+                  .find("error[misplaced-node]: \"" + std::string(type) + "\" is not available in a function document"),
               std::string::npos)
         << type;
   }

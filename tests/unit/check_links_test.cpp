@@ -17,12 +17,12 @@ std::string messages_of(const std::string& nodes, const std::string& outputs = R
 
 TEST(CheckLinks, UnknownNamesSuggestTheNearestAndSayWhatItIs) {
   EXPECT_EQ(messages_of(R"("a": {"type": "add", "in1": "alhpa", "in2": 1})"),
-            R"(test.json:4:29: error[unknown-node]: no node or input "alhpa"
+            R"(test.json:4:29: error[unknown-node]: there is no node or input "alhpa"
   4 | "a": {"type": "add", "in1": "alhpa", "in2": 1}
     |                             ^^^^^^^ did you mean "alpha" (input, line 2)?
 )");
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "alpha"})", R"("out": "aa")"),
-            R"(test.json:6:20: error[unknown-node]: no node or input "aa"
+            R"(test.json:6:20: error[unknown-node]: there is no node or input "aa"
   6 | "outputs": {"out": "aa"}}
     |                    ^^^^ did you mean "a" (node, line 4)?
 )");
@@ -30,7 +30,7 @@ TEST(CheckLinks, UnknownNamesSuggestTheNearestAndSayWhatItIs) {
 
 TEST(CheckLinks, UnknownNodeTypesSuggestNodesAndFunctions) {
   EXPECT_EQ(messages_of(R"("a": {"type": "multiplay", "in1": "alpha", "in2": 1})"),
-            R"(test.json:4:15: error[unknown-node-type]: no node type or library function "multiplay"
+            R"(test.json:4:15: error[unknown-node-type]: there is no node type or library function "multiplay"
   4 | "a": {"type": "multiplay", "in1": "alpha", "in2": 1}
     |               ^^^^^^^^^^^ did you mean "multiply"?
 )");
@@ -56,13 +56,13 @@ TEST(CheckLinks, MissingPortsSayWhatBelongsThere) {
 
 TEST(CheckLinks, SwizzlesAreOfWhatTheValueHas) {
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "normal.xyw"})"),
-            R"(test.json:4:30: error[bad-swizzle]: "xyw" are no components of a vector3
+            R"(test.json:4:30: error[bad-swizzle]: "xyw" is not a valid swizzle of vector3
   4 | "a": {"type": "floor", "in": "normal.xyw"}
     |                              ^^^^^^^^^^^^
   note: a vector3 has the components xyz, or rgb
 )");
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "alpha.x"})"),
-            R"(test.json:4:30: error[bad-swizzle]: "x" are no components of a float
+            R"(test.json:4:30: error[bad-swizzle]: "x" is not a valid swizzle of float
   4 | "a": {"type": "floor", "in": "alpha.x"}
     |                              ^^^^^^^^^
   note: only vectors and colours have components
@@ -90,7 +90,7 @@ TEST(CheckLinks, SeveralOutputsMustBeTold) {
                             "outputs": {"first": "x.x", "rest": "x.yz"}})");
   EXPECT_EQ(front_end.messages(R"({"isoshade": 1, "function": "f", "nodes": {
 "a": {"type": "both", "x": [1, 2, 3]}}, "outputs": {"out": "a", "y": "a.rest.y"}})"),
-            R"(test.json:2:60: error[unknown-output]: "a" has several outputs, of which the link must name one
+            R"(test.json:2:60: error[unknown-output]: "a" has several outputs; the link must name one
   2 | "a": {"type": "both", "x": [1, 2, 3]}}, "outputs": {"out": "a", "y": "a.rest.y"}}
     |                                                            ^^^
   note: its outputs are "first" and "rest"
@@ -103,13 +103,13 @@ TEST(CheckLinks, CirclesAreNamedByTheirPath) {
                         "\"c\": {\"type\": \"floor\", \"in\": \"b\"},\n"
                         "\"d\": {\"type\": \"floor\", \"in\": \"d\"},\n"
                         "\"e\": {\"type\": \"expression\", \"code\": \"y + 1\", \"y\": \"e\"}"),
-            R"(test.json:6:30: error[cycle]: nodes read each other in a circle: b -> c -> b
+            R"(test.json:6:30: error[cycle]: the nodes form a cycle: b -> c -> b
   6 | "c": {"type": "floor", "in": "b"},
     |                              ^^^
-test.json:7:30: error[cycle]: nodes read each other in a circle: d -> d
+test.json:7:30: error[cycle]: the nodes form a cycle: d -> d
   7 | "d": {"type": "floor", "in": "d"},
     |                              ^^^
-test.json:8:51: error[cycle]: nodes read each other in a circle: e -> e
+test.json:8:51: error[cycle]: the nodes form a cycle: e -> e
   8 | "e": {"type": "expression", "code": "y + 1", "y": "e"}
     |                                                   ^^^
 )");

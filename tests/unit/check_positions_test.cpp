@@ -17,11 +17,11 @@ TEST(CheckPositions, AreVectorsAndKeepTheNodesThatTheyNeed) {
   EXPECT_EQ(messages_of("", "p"), "");
   EXPECT_EQ(messages_of(R"(, "t": {"type": "time"}, "up": {"type": "add", "in1": "p", "in2": "t"})", "up"),
             "");
-  EXPECT_NE(messages_of("", "p.x").find("error[type-mismatch]: \"position\" is a vector3, not float"),
+  EXPECT_NE(messages_of("", "p.x").find("error[type-mismatch]: \"position\" must be vector3, not float"),
             std::string::npos);
-  EXPECT_NE(messages_of("", "tint").find("error[type-mismatch]: \"position\" is a vector3, not color3"),
+  EXPECT_NE(messages_of("", "tint").find("error[type-mismatch]: \"position\" must be vector3, not color3"),
             std::string::npos);
-  EXPECT_NE(messages_of("", "q").find("error[unknown-node]: no node or parameter \"q\""), std::string::npos);
+  EXPECT_NE(messages_of("", "q").find("error[unknown-node]: there is no node or parameter \"q\""), std::string::npos);
 }
 
 TEST(CheckPositions, DependOnNothingThatOnlyPixelsHave) {
@@ -30,11 +30,11 @@ TEST(CheckPositions, DependOnNothingThatOnlyPixelsHave) {
   EXPECT_NE(slope.find("error[misplaced-node]: the \"position\" of a pass cannot depend on \"fwidth\""),
             std::string::npos)
       << slope;
-  EXPECT_NE(slope.find("derivatives are those of pixels"), std::string::npos) << slope;
+  EXPECT_NE(slope.find("derivatives exist only for pixels"), std::string::npos) << slope;
   const std::string lit =
       messages_of(R"(, "l": {"type": "lightdirection"}, "up": {"type": "sum_lights", "in": "l"})", "up");
   EXPECT_NE(lit.find("cannot depend on \"sum_lights\""), std::string::npos) << lit;
-  EXPECT_NE(lit.find("light falls on pixels"), std::string::npos) << lit;
+  EXPECT_NE(lit.find("lights exist only for pixels"), std::string::npos) << lit;
   EXPECT_EQ(lit.find("light-outside-sum"), std::string::npos) << lit;
 }
 

@@ -24,11 +24,11 @@ TEST(CheckPosts, SurfacesAndLightsAreNotTheirs) {
   for (const char* type : {"normal", "lightcolor", "position", "texcoord"})
     EXPECT_TRUE(
         says(post("\"color\": {\"type\": \"" + std::string(type) + "\"}"),
-             "error[misplaced-node]: a post document cannot have the node \"" + std::string(type) + "\""))
+             "error[misplaced-node]: \"" + std::string(type) + "\" is not available in a post document"))
         << type;
   EXPECT_TRUE(says(post(R"("n": {"type": "time"}, "d": {"type": "ddx", "in": "n"},
     "color": {"type": "combine3", "in1": "d"})"),
-                   "cannot have the node \"ddx\""));
+                   "\"ddx\" is not available in a post document"));
   EXPECT_EQ(messages_of(
                 post(R"("t": {"type": "time"}, "color": {"type": "combine3", "in1": "t", "to": "color3"})")),
             "");
@@ -40,11 +40,11 @@ TEST(CheckPosts, TheScreenIsNobodyElses) {
     const std::string nodes = "\"n\": {\"type\": \"" + std::string(type) + "\"}";
     EXPECT_TRUE(says(R"({"isoshade": 1, "effect": "e", "nodes": {)" + nodes +
                          R"(}, "passes": [{"name": "p", "color": "n"}]})",
-                     "error[misplaced-node]: an effect document cannot have the node"))
+                     "\" is not available in an effect document"))
         << type;
     EXPECT_TRUE(
         says(R"({"isoshade": 1, "function": "f", "nodes": {)" + nodes + R"(}, "outputs": {"out": "n"}})",
-             "error[misplaced-node]: a function document cannot have the node"))
+             "\" is not available in a function document"))
         << type;
   }
 }
@@ -57,7 +57,7 @@ TEST(CheckPosts, PortsThatDefaultToTheSurfaceMustBeGiven) {
 
 TEST(CheckPosts, TapsAreCountedOnlyUnderTheirSum) {
   EXPECT_TRUE(says(post(R"("i": {"type": "tapindex"}, "color": {"type": "scenecolor", "offsetx": "i"})"),
-                   "error[tap-outside-sum]: \"tapindex\" is read outside of sum_taps"));
+                   "error[tap-outside-sum]: \"tapindex\" is used outside of sum_taps"));
   const auto sum = [](const std::string& range) {
     return post(R"("i": {"type": "tapindex"}, "c": {"type": "scenecolor", "offsetx": "i"},
       "color": {"type": "sum_taps", "in": "c", )" +
@@ -68,8 +68,8 @@ TEST(CheckPosts, TapsAreCountedOnlyUnderTheirSum) {
   EXPECT_EQ(messages_of(sum(R"("first": 5, "last": 5)")), "");
   EXPECT_TRUE(says(sum(R"("last": 64)"), "error[out-of-range]: \"sum_taps\" has 65 taps, more than 64"));
   EXPECT_TRUE(
-      says(sum(R"("last": 0.5)"), "a whole number that stands in the document, not one with a fraction"));
-  EXPECT_TRUE(says(sum(R"("last": "c")"), "a whole number that stands in the document, not a string"));
+      says(sum(R"("last": 0.5)"), "must be a literal integer of 32 bits, not a number with a fraction"));
+  EXPECT_TRUE(says(sum(R"("last": "c")"), "must be a literal integer of 32 bits, not a string"));
   EXPECT_TRUE(says(sum(R"("first": 1, "last": 0)"), "error[out-of-range]: \"last\" of \"sum_taps\" is less"));
   EXPECT_TRUE(says(sum(R"("first": -2147483648, "last": 2147483647)"), "error[out-of-range]"));
   EXPECT_TRUE(says(sum(R"("first": 1)"), "error[missing-port]"));
@@ -104,7 +104,7 @@ TEST(CheckPosts, AreSwitchedByOneOfTheirParameters) {
   };
   EXPECT_EQ(messages_of(switched("\"gain\"")), "");
   EXPECT_TRUE(says(switched("\"gian\""), "error[unknown-parameter]: the post has no parameter \"gian\""));
-  EXPECT_TRUE(says(switched("\"tint\""), "error[type-mismatch]: a post is switched by"));
+  EXPECT_TRUE(says(switched("\"tint\""), "error[type-mismatch]: \"enabled\" of a post must name"));
   EXPECT_TRUE(says(switched("1"), "error[wrong-type]"));
 }
 

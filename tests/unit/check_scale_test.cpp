@@ -31,7 +31,7 @@ TEST(CheckScale, ACircleOf100000NodesIsNamedInOneLine) {
   FrontEnd front_end;
   const std::string messages = front_end.messages(chain(100'000, "n99999"));
   EXPECT_NE(messages.find(
-                "error[cycle]: nodes read each other in a circle: n99999 -> n99998 -> n99997 -> n99996 -> "
+                "error[cycle]: the nodes form a cycle: n99999 -> n99998 -> n99997 -> n99996 -> "
                 "... 99992 more ... -> n3 -> n2 -> n1 -> n0 -> n99999"),
             std::string::npos)
       << messages.substr(0, 1000);

@@ -65,7 +65,7 @@ TEST(CheckTypes, VectorsAndColoursDoNotMix) {
   EXPECT_EQ(messages_of(R"("type": "multiply", "in1": "v3", "in2": "c3")"),
             R"(test.json:5:47: error[type-mismatch]: "in2" of "multiply" is color3, but "in1" is vector3
   5 | "n": {"type": "multiply", "in1": "v3", "in2": "c3"}
-    |                                               ^^^^ convert it by a node {"type": "convert", "in": "c3", "to": "vector3"}
+    |                                               ^^^^ convert it with a node {"type": "convert", "in": "c3", "to": "vector3"}
 )");
 }
 
@@ -79,7 +79,7 @@ TEST(CheckTypes, PortsSayWhatTheyTake) {
   EXPECT_EQ(messages_of(R"("type": "ifgreater", "value1": "v3", "value2": 0, "in1": 1, "in2": 2)"),
             R"(test.json:5:38: error[type-mismatch]: "value1" of "ifgreater" takes float, not vector3
   5 | "n": {"type": "ifgreater", "value1": "v3", "value2": 0, "in1": 1, "in2": 2}
-    |                                      ^^^^ convert it by a node {"type": "convert", "in": "v3", "to": "float"}
+    |                                      ^^^^ convert it with a node {"type": "convert", "in": "v3", "to": "float"}
 )");
   EXPECT_EQ(
       messages_of(R"("type": "add", "in1": true, "in2": 1)"),
@@ -103,7 +103,7 @@ TEST(CheckTypes, ArraysHaveAsManyNumbersAsTheTypeHasComponents) {
 )");
   EXPECT_EQ(
       messages_of(R"("type": "crossproduct", "in1": "v3", "in2": [1, 2])"),
-      R"(test.json:5:51: error[wrong-type]: "in2" of "crossproduct" is vector3, not an array of 2 numbers
+      R"(test.json:5:51: error[wrong-type]: "in2" of "crossproduct" must be vector3, not an array of 2 numbers
   5 | "n": {"type": "crossproduct", "in1": "v3", "in2": [1, 2]}
     |                                                   ^^^^^^
 )");
@@ -111,7 +111,7 @@ TEST(CheckTypes, ArraysHaveAsManyNumbersAsTheTypeHasComponents) {
 
 TEST(CheckTypes, NamedTypesMustExistAndFit) {
   EXPECT_EQ(messages_of(R"("type": "convert", "in": "v3", "to": "colour3")"),
-            R"(test.json:5:44: error[unknown-type]: no type "colour3"
+            R"(test.json:5:44: error[unknown-type]: there is no type "colour3"
   5 | "n": {"type": "convert", "in": "v3", "to": "colour3"}
     |                                            ^^^^^^^^^ did you mean "color3"?
   note: it can be boolean, integer, float, vector2, vector3, vector4, color3, color4, matrix33 or matrix44
@@ -140,7 +140,7 @@ TEST(CheckTypes, ComponentsAreCountedFrom0) {
 TEST(CheckTypes, MatricesTakeVectorsOfTheirSize) {
   EXPECT_EQ(type_of(R"("type": "transformmatrix", "in": "v3", "mat": "m3")"), "vector3");
   EXPECT_NE(messages_of(R"("type": "transformmatrix", "in": [1, 2, 3, 4], "mat": "m3")")
-                .find("a vector4 is transformed by a matrix44, not by a matrix33"),
+                .find("a vector4 needs a matrix44, not a matrix33"),
             std::string::npos);
 }
 
@@ -152,7 +152,7 @@ TEST(CheckTypes, ColorOfAPassIsAColour) {
                               color + "\"}]}");
   };
   EXPECT_EQ(messages("n.x").find("error"), std::string::npos);
-  EXPECT_NE(messages("n").find("\"color\" is color3 or color4, not vector3"), std::string::npos);
+  EXPECT_NE(messages("n").find("\"color\" must be color3 or color4, not vector3"), std::string::npos);
 }
 
 /// An effect of one pass, with the colour as it is written there.

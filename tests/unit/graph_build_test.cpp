@@ -167,14 +167,14 @@ TEST(Build, SeveralErrorsAreReportedInOneRun) {
   "outputs": {"out": "a..b"},
   "noeds": {}
 })"),
-            R"(a.json:4:32: error[unknown-type]: no type "flaot"
+            R"(a.json:4:32: error[unknown-type]: there is no type "flaot"
   4 |   "inputs": {"alpha": {"type": "flaot"}},
     |                                ^^^^^^^ did you mean "float"?
   note: the types are boolean integer float vector2 vector3 vector4 color3 color4 matrix33 matrix44
-a.json:5:13: error[bad-id]: "2d" cannot name a node
+a.json:5:13: error[bad-id]: "2d" is not a valid name of a node
   5 |   "nodes": {"2d": {"type": "add", "in1": null}},
     |             ^^^^
-  note: names are letters, digits and '_', and begin with no digit
+  note: names consist of letters, digits and '_', and do not begin with a digit
 a.json:5:42: error[wrong-type]: "in1" cannot be null
   5 |   "nodes": {"2d": {"type": "add", "in1": null}},
     |                                          ^^^^
@@ -190,25 +190,25 @@ a.json:7:3: error[unknown-key]: a function document has no key "noeds"
 
 TEST(Build, VersionIsRequired) {
   EXPECT_EQ(first(R"({"function": "f", "outputs": {"out": "x"}})"),
-            "missing-key: a document needs its version | { | add \"isoshade\": 1");
+            "missing-key: the document has no version | { | add \"isoshade\": 1");
   for (const std::string version : {"2", "1.5", "\"1\"", "null"}) {
     EXPECT_EQ(first(R"({"isoshade": )" + version + R"(, "function": "f"})"),
-              "wrong-version: this isoshade reads documents of version 1 | " + version);
+              "wrong-version: this version of isoshade reads documents of version 1 only | " + version);
   }
   EXPECT_EQ(first(R"({"isoshade": 1.0})"), first(R"({"isoshade": 1})"));
 }
 
 TEST(Build, KindIsExactlyOne) {
   EXPECT_EQ(first(R"({"isoshade": 1})"),
-            "wrong-kind: a document is a function, effect, post or scene | { | add \"effect\": \"its_name\", "
+            "wrong-kind: a document must be a function, effect, post or scene | { | add \"effect\": \"its_name\", "
             "or another of these keys");
   EXPECT_EQ(first(R"({"isoshade": 1, "function": "f", "effect": "e"})"),
-            "wrong-kind: a document is of one kind only | \"effect\"");
+            "wrong-kind: a document has only one kind | \"effect\"");
   EXPECT_EQ(first(R"({"isoshade": 1, "scene": "s"})"),
-            "wrong-kind: a scene is not a graph; a function, effect or post is needed here | \"s\"");
-  EXPECT_EQ(first("[1]"), "wrong-type: a document is an object, not an array | [1]");
+            "wrong-kind: a scene is not a graph; use a function, effect or post here | \"s\"");
+  EXPECT_EQ(first("[1]"), "wrong-type: a document must be an object, not an array | [1]");
   EXPECT_EQ(first(R"({"isoshade": 1, "function": 3, "outputs": {"out": "x"}})"),
-            "wrong-type: \"function\" of a function document is a string, not a number | 3");
+            "wrong-type: \"function\" of a function document must be a string, not a number | 3");
 }
 
 TEST(Build, KindOfADocumentIsToldWithoutBuildingIt) {
@@ -224,10 +224,10 @@ TEST(Build, KindOfADocumentIsToldWithoutBuildingIt) {
 }
 
 TEST(Build, InputsMustMakeSense) {
-  EXPECT_EQ(first(with_inputs(R"("x": 1)")), "wrong-type: input \"x\" is an object, not a number | 1");
+  EXPECT_EQ(first(with_inputs(R"("x": 1)")), "wrong-type: input \"x\" must be an object, not a number | 1");
   EXPECT_EQ(first(with_inputs(R"("x": {})")), "missing-key: input \"x\" needs the key \"type\" | {");
   EXPECT_EQ(first(with_inputs(R"("x y": {"type": "float"})")),
-            "bad-id: \"x y\" cannot name an input | \"x y\"");
+            "bad-id: \"x y\" is not a valid name of an input | \"x y\"");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "float", "min": 1, "max": 0})")),
             "out-of-range: the max of input \"x\" is less than its min | 0");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "float", "value": 2, "max": 1})")),
@@ -235,9 +235,9 @@ TEST(Build, InputsMustMakeSense) {
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "vector2", "value": [1, -1], "min": 0})")),
             "out-of-range: the value of \"x\" is less than its min 0.0 | -1");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "vector3", "value": [1, 2]})")),
-            "wrong-type: the value of \"x\" is no vector3 | [1, 2]");
+            "wrong-type: the value of \"x\" must be vector3 | [1, 2]");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "value": 3000000000})")),
-            "wrong-type: the value of \"x\" is no integer | 3000000000");
+            "wrong-type: the value of \"x\" must be integer | 3000000000");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "string", "value": "a", "min": 0})")),
             "unknown-key: input \"x\" has no key \"min\" | \"min\"");
   EXPECT_EQ(
@@ -258,79 +258,79 @@ TEST(Build, ValuesOfIntegersMayHaveNames) {
   EXPECT_EQ(graph.inputs[1].value->integer, 0);
   EXPECT_EQ(
       first(with_inputs(R"("x": {"type": "integer", "enum": ["smooth", "shading"], "value": "smoth"})")),
-      "unknown-choice: no value of \"x\" is called \"smoth\" | \"smoth\" | did you mean \"smooth\"?");
+      "unknown-choice: \"x\" has no value named \"smoth\" | \"smoth\" | did you mean \"smooth\"?");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "b"], "value": 2})")),
             "out-of-range: \"x\" has no value 2 | 2");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "value": 7, "max": 5})")),
             "out-of-range: the value of \"x\" is greater than its max 5 | 7");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "float", "enum": ["a", "b"]})")),
-            "wrong-type: \"enum\" names the values of an integer, not of a float | [\"a\", \"b\"]");
+            "wrong-type: \"enum\" is only for integers, not for float | [\"a\", \"b\"]");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": []})")),
-            "wrong-type: \"enum\" is an array of 1 to 64 names, not of 0 | []");
+            "wrong-type: \"enum\" must be an array of 1 to 64 names, not of 0 | []");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", 1]})")),
-            "wrong-type: \"enum\" is an array of names, not with a number | 1");
+            "wrong-type: \"enum\" must be an array of names, but contains a number | 1");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "b c"]})")),
-            "bad-id: \"b c\" cannot name a value | \"b c\"");
+            "bad-id: \"b c\" is not a valid name of a value | \"b c\"");
   EXPECT_EQ(first(with_inputs(R"("x": {"type": "integer", "enum": ["a", "a"]})")),
-            "duplicate-name: two values of \"x\" are called \"a\" | \"a\"");
+            "duplicate-name: two values of \"x\" have the name \"a\" | \"a\"");
 }
 
 TEST(Build, NodesMustMakeSense) {
   EXPECT_EQ(first(with_nodes(R"("a": "add")")),
-            "wrong-type: node \"a\" is an object, not a string | \"add\"");
+            "wrong-type: node \"a\" must be an object, not a string | \"add\"");
   EXPECT_EQ(first(with_nodes(R"("a": {"in1": 1})")), "missing-key: node \"a\" needs the key \"type\" | {");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": 1})")),
-            "wrong-type: \"type\" of node \"a\" is a string, not a number | 1");
+            "wrong-type: \"type\" of node \"a\" must be a string, not a number | 1");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": "add", "in 1": 1})")),
-            "bad-id: \"in 1\" cannot name a port | \"in 1\"");
+            "bad-id: \"in 1\" is not a valid name of a port | \"in 1\"");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": "add", "in1": []})")),
-            "wrong-type: \"in1\" is an array of 1 to 16 numbers, not of 0 | []");
+            "wrong-type: \"in1\" must be an array of 1 to 16 numbers, not of 0 | []");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": "add", "in1": [[1]]})")),
-            "wrong-type: \"in1\" is an array of numbers, not with an array | [1]");
+            "wrong-type: \"in1\" must be an array of numbers, but contains an array | [1]");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": "add", "in1": 1e39})")),
             "out-of-range: \"in1\" is beyond the range of float | 1e39");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": "add", "in1": {"lnik": "x"}})")),
             "missing-key: a link needs the key \"link\" | {");
   EXPECT_EQ(first(with_nodes(R"("a": {"type": "add", "in1": {"link": 1}})")),
-            "wrong-type: \"link\" of a link is a string, not a number | 1");
+            "wrong-type: \"link\" of a link must be a string, not a number | 1");
   EXPECT_EQ(first(with_nodes(R"("x": {"type": "add"})")),
-            "duplicate-name: a node is called \"x\", as an input or parameter is | \"x\"");
+            "duplicate-name: a node has the name \"x\" of an input or parameter | \"x\"");
 }
 
 TEST(Build, PassesMustMakeSense) {
   EXPECT_EQ(first(with_pass("")), "missing-key: an effect needs at least one pass | []");
   EXPECT_EQ(first(with_pass(R"({"name": "base"})")), "missing-key: a pass needs the key \"color\" | {");
   EXPECT_EQ(first(with_pass(R"({"name": "b c", "color": "x"})")),
-            "bad-id: \"b c\" cannot name a pass | \"b c\"");
+            "bad-id: \"b c\" is not a valid name of a pass | \"b c\"");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cull": "bak"})")),
-            "unknown-choice: \"cull\" of a pass is one of none, back, front, not \"bak\" | \"bak\" | did you "
+            "unknown-choice: \"cull\" of a pass must be one of none, back, front, not \"bak\" | \"bak\" | did you "
             "mean \"back\"?");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": true})")),
-            "wrong-type: \"color\" is a link, not a boolean | true");
+            "wrong-type: \"color\" must be a link, not a boolean | true");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x"}, {"name": "b", "color": "y"})")),
-            "duplicate-name: two passes are called \"b\" | \"b\"");
+            "duplicate-name: two passes have the name \"b\" | \"b\"");
   EXPECT_EQ(
       first(with_pass(R"({"name": "b", "color": "x", "position_space": "view"})")),
-      "missing-key: \"position_space\" says nothing without \"position\" | \"view\" | link \"position\" to "
-      "where vertices go, or leave this out");
+      "missing-key: \"position_space\" has no effect without \"position\" | \"view\" | add \"position\", or "
+      "remove this key");
   EXPECT_EQ(
       first(with_pass(R"({"name": "b", "color": "x", "position": "x", "position_space": "clip"})")),
-      "unknown-choice: \"position_space\" of a pass is one of world, object, view, not \"clip\" | \"clip\"");
+      "unknown-choice: \"position_space\" of a pass must be one of world, object, view, not \"clip\" | \"clip\"");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "enabled": true})")),
-            "wrong-type: \"enabled\" is the name of a parameter, not a boolean | true");
+            "wrong-type: \"enabled\" must be the name of a parameter, not a boolean | true");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "enabled": "hull"})")),
             "unknown-parameter: the effect has no parameter \"hull\" | \"hull\"");
   EXPECT_EQ(
       first(R"({"isoshade": 1, "effect": "e", "parameters": {"tint": {"type": "color3", "value": [1, 1, 1]}},
               "passes": [{"name": "b", "color": "tint", "enabled": "tint"}]})"),
-      "type-mismatch: a pass is switched by a boolean, an integer or a float, not by a color3 | \"tint\"");
+      "type-mismatch: \"enabled\" of a pass must name a boolean, integer or float parameter, not a color3 | \"tint\"");
   EXPECT_EQ(first(R"({"isoshade": 1, "effect": "e", "outputs": {}})"),
             "missing-key: an effect document needs the key \"passes\" | {");
 }
 
 TEST(Build, AFunctionNeedsAnOutput) {
   EXPECT_EQ(first(R"({"isoshade": 1, "function": "f", "outputs": {}})"),
-            "missing-key: there must be at least one output | {}");
+            "missing-key: a document needs at least one output | {}");
 }
 
 TEST(Links, AreTakenApartAtTheDots) {

@@ -123,26 +123,26 @@ TEST(Document, SaysWhatIsWrongWithTheSyntax) {
   const Broken cases[] = {
       {"", "a.json:1:1: error[syntax]: the document is empty\n  1 |\n    | ^\n"},
       {" \n", "a.json:1:1: error[syntax]: the document is empty\n  1 |  \n    | ^\n"},
-      {"{\"a\": 1,}", R"(a.json:1:8: error[syntax]: a comma before '}'
+      {"{\"a\": 1,}", R"(a.json:1:8: error[syntax]: trailing comma before '}'
   1 | {"a": 1,}
     |        ^ remove it
 )"},
-      {"[1, 2, ]", R"(a.json:1:6: error[syntax]: a comma before ']'
+      {"[1, 2, ]", R"(a.json:1:6: error[syntax]: trailing comma before ']'
   1 | [1, 2, ]
     |      ^ remove it
 )"},
-      {"{\"a\": 1 \"b\": 2}", R"(a.json:1:9: error[syntax]: a comma is missing before this key
+      {"{\"a\": 1 \"b\": 2}", R"(a.json:1:9: error[syntax]: missing comma before this key
   1 | {"a": 1 "b": 2}
     |         ^^^
 )"},
-      {"[1 22]", R"(a.json:1:4: error[syntax]: a comma is missing before this value
+      {"[1 22]", R"(a.json:1:4: error[syntax]: missing comma before this value
   1 | [1 22]
     |    ^^
 )"},
-      {"{\"a\": [1, 2", R"(a.json:1:12: error[syntax]: the document ends too early
+      {"{\"a\": [1, 2", R"(a.json:1:12: error[syntax]: unexpected end of the document
   1 | {"a": [1, 2
     |            ^
-a.json:1:7: note: this '[' has no ']'
+a.json:1:7: note: this '[' is not closed
   1 | {"a": [1, 2
     |       ^
 )"},
@@ -156,49 +156,49 @@ a.json:1:7: note: this '[' has no ']'
 )"},
       {"{\"a\": nope}", R"(a.json:1:7: error[syntax]: not a JSON value
   1 | {"a": nope}
-    |       ^^^^ strings and keys stand in double quotes
+    |       ^^^^ put strings and keys in double quotes
 )"},
       {"{a: 1}", R"(a.json:1:2: error[syntax]: not a JSON value
   1 | {a: 1}
-    |  ^ strings and keys stand in double quotes
+    |  ^ put strings and keys in double quotes
 )"},
       {"{\"a\": 'x'}", R"(a.json:1:7: error[syntax]: not a JSON value
   1 | {"a": 'x'}
-    |       ^ strings and keys stand in double quotes
+    |       ^ put strings and keys in double quotes
 )"},
       {"{ // x\n}", R"(a.json:1:3: error[syntax]: JSON has no comments
   1 | { // x
-    |   ^ remarks may stand under "doc" or "extras"
+    |   ^ put remarks under "doc" or "extras"
 )"},
-      {"{\"a\": \"x\n}", R"(a.json:1:9: error[syntax]: a control character in a string
+      {"{\"a\": \"x\n}", R"(a.json:1:9: error[syntax]: control character in a string
   1 | {"a": "x
     |         ^ write it as an escape
 )"},
-      {"{\"a\": \"x", R"(a.json:1:7: error[syntax]: this string has no end
+      {"{\"a\": \"x", R"(a.json:1:7: error[syntax]: unterminated string
   1 | {"a": "x
     |       ^^ add the closing quote
 )"},
-      {"[\"\\q\"]", R"(a.json:1:4: error[syntax]: no such escape
+      {"[\"\\q\"]", R"(a.json:1:4: error[syntax]: unknown escape
   1 | ["\q"]
-    |    ^ a backslash itself is written \\
+    |    ^ write a backslash as \\
 )"},
-      {"[01]", R"(a.json:1:2: error[bad-number]: a number with a leading zero
+      {"[01]", R"(a.json:1:2: error[bad-number]: number with a leading zero
   1 | [01]
     |  ^^
 )"},
-      {"-01", R"(a.json:1:1: error[bad-number]: a number with a leading zero
+      {"-01", R"(a.json:1:1: error[bad-number]: number with a leading zero
   1 | -01
     | ^^^
 )"},
-      {"[1.]", R"(a.json:1:2: error[bad-number]: a malformed number
+      {"[1.]", R"(a.json:1:2: error[bad-number]: malformed number
   1 | [1.]
-    |  ^^^ numbers are written as 1, -0.5, 1e-4
+    |  ^^^ write numbers as 1, -0.5, 1e-4
 )"},
-      {"[1e400]", R"(a.json:1:2: error[bad-number]: a number beyond the range of a double
+      {"[1e400]", R"(a.json:1:2: error[bad-number]: number beyond the range of a double
   1 | [1e400]
     |  ^^^^^
 )"},
-      {"-1e999", R"(a.json:1:1: error[bad-number]: a number beyond the range of a double
+      {"-1e999", R"(a.json:1:1: error[bad-number]: number beyond the range of a double
   1 | -1e999
     | ^^^^^^
 )"},
@@ -232,33 +232,33 @@ TEST(Document, SaysWhatIsNotUtf8) {
   EXPECT_EQ(complaint("[\xff]"), "a.json:1:2: error[syntax]: not a JSON value\n  1 | [\\xff]\n    |  ^^^^\n");
   EXPECT_EQ(complaint("\xef\xbb{}"),
             "a.json:1:1: error[bad-utf8]: the text is not UTF-8 here\n  1 | \\xef\\xbb{}\n    | ^^^^\n");
-  EXPECT_EQ(complaint("[\"\\ud800\"]"), R"(a.json:1:9: error[bad-utf8]: an escape is half a surrogate pair
+  EXPECT_EQ(complaint("[\"\\ud800\"]"), R"(a.json:1:9: error[bad-utf8]: lone surrogate in an escape
   1 | ["\ud800"]
-    |         ^ escapes from \ud800 to \udfff come in pairs
+    |         ^ escapes from \ud800 to \udfff must come in pairs
 )");
 }
 
 TEST(Document, NulBytesAreErrors) {
   using namespace std::string_literals;
   EXPECT_EQ(complaint("{\"a\":\0 1}"s),
-            "a.json:1:6: error[syntax]: a NUL byte\n  1 | {\"a\":\\x00 1}\n    |      ^^^^\n");
+            "a.json:1:6: error[syntax]: NUL byte in the document\n  1 | {\"a\":\\x00 1}\n    |      ^^^^\n");
   EXPECT_EQ(complaint("{}\0x"s),
             "a.json:1:3: error[syntax]: text after the end of the document\n  1 | {}\\x00x\n    |   ^^^^^\n");
-  EXPECT_NE(complaint("[\"\0\"]"s).find("a control character in a string"), std::string::npos);
+  EXPECT_NE(complaint("[\"\0\"]"s).find("control character in a string"), std::string::npos);
 }
 
 TEST(Document, DuplicateKeysAreAllReported) {
   EXPECT_EQ(complaint("{\"a\": 1, \"b\": 2,\n \"a\": 3, \"\\u0061\": 4}"),
-            R"(a.json:2:2: error[duplicate-key]: the key "a" is given twice
+            R"(a.json:2:2: error[duplicate-key]: duplicate key "a"
   2 |  "a": 3, "\u0061": 4}
     |  ^^^
-a.json:1:2: note: first given here
+a.json:1:2: note: the first one is here
   1 | {"a": 1, "b": 2,
     |  ^^^
-a.json:2:10: error[duplicate-key]: the key "a" is given twice
+a.json:2:10: error[duplicate-key]: duplicate key "a"
   2 |  "a": 3, "\u0061": 4}
     |          ^^^^^^^^
-a.json:1:2: note: first given here
+a.json:1:2: note: the first one is here
   1 | {"a": 1, "b": 2,
     |  ^^^
 )");

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-#include "compiler/graph/format.h"
+#include "compiler/graph/document.h"
 
 namespace isoshade::graph {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-#include "compiler/graph/merge.h"
+#include "compiler/graph/document.h"
 
 namespace isoshade::graph {
 namespace {

@@ -87,13 +87,13 @@ TEST_F(Reader, ReportsWrongTypes) {
                                                             diagnostic.where.end - diagnostic.where.begin)) +
                 ": " + diagnostic.message + "\n";
   }
-  EXPECT_EQ(messages, R"(wrong-type 1: "b" of a camera is a boolean, not a number
-wrong-type null: "s" of a camera is a string, not null
-wrong-type "1": "n" of a camera is a number, not a string
-wrong-type 1.5: "i" of a camera is an integer, and this is none
-wrong-type [1, 2]: "v" of a camera is an array of 3 numbers, not of 2
-wrong-type true: "w[1]" of a camera is a number, not a boolean
-wrong-type 1: "c" of a camera is a string, not a number
+  EXPECT_EQ(messages, R"(wrong-type 1: "b" of a camera must be a boolean, not a number
+wrong-type null: "s" of a camera must be a string, not null
+wrong-type "1": "n" of a camera must be a number, not a string
+wrong-type 1.5: "i" of a camera must be an integer
+wrong-type [1, 2]: "v" of a camera must be an array of 3 numbers, not of 2
+wrong-type true: "w[1]" of a camera must be a number, not a boolean
+wrong-type 1: "c" of a camera must be a string, not a number
 )");
 }
 
@@ -121,7 +121,7 @@ TEST_F(Reader, ReportsWordsThatAreNoChoice) {
   reader.choice("cull", {"none", "back", "front"});
   EXPECT_FALSE(reader.finish());
   EXPECT_EQ(said(),
-            R"(a.json:1:10: error[unknown-choice]: "cull" of a camera is one of none, back, front, not "bakc"
+            R"(a.json:1:10: error[unknown-choice]: "cull" of a camera must be one of none, back, front, not "bakc"
   1 | {"cull": "bakc"}
     |          ^^^^^^ did you mean "back"?
 )");
@@ -132,7 +132,7 @@ TEST_F(Reader, SaysOnceThatAValueIsNoObject) {
   EXPECT_EQ(reader.string("name"), "");
   EXPECT_FALSE(reader.finish());
   EXPECT_EQ(said(),
-            "a.json:1:1: error[wrong-type]: a camera is an object, not an array\n  1 | [1]\n    | ^^^\n");
+            "a.json:1:1: error[wrong-type]: a camera must be an object, not an array\n  1 | [1]\n    | ^^^\n");
 }
 
 TEST_F(Reader, FreeKeysStand) {

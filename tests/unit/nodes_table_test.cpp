@@ -54,7 +54,7 @@ TEST(NodeTable, TellsTheDomainsOfTiersThatHaveTheirOwn) {
 TEST(NodeTable, EveryNodeLowersForEveryTypeThatItAccepts) {
   size_t lowered = 0;
   for (const Row& row : nodes::table()) {
-    if (row.home() != nodes::Home::anywhere) continue;
+    if (row.availability() != nodes::Availability::anywhere) continue;
     const std::vector<nodes::Example> examples = nodes::examples_of(row);
     EXPECT_FALSE(examples.empty()) << row.name;
     for (const nodes::Example& example : examples) {

@@ -126,9 +126,9 @@ TEST_F(LoadScene, WhatExtendsIsADocumentItself) {
     return error(R"("extends": "part.json")");
   };
   EXPECT_EQ(first_error(R"({"scene": "s", "extends": "base/base.json"})"),
-            "missing-key: a document needs its version");
+            "missing-key: the document has no version");
   EXPECT_EQ(first_error(R"({"isoshade": 1, "extends": "base/base.json"})"),
-            "wrong-kind: a document is a function, effect, post or scene");
+            "wrong-kind: a document must be a function, effect, post or scene");
   EXPECT_NE(first_error(R"({"isoshade": 1, "post": "p", "extends": "base/base.json"})").find("is no scene"),
             std::string::npos);
 }

@@ -128,7 +128,7 @@ TEST(Settings, ErrorsPointIntoTheirText) {
             "  1 | camera.fov= 200\n"
             "    |             ^^^\n");
   EXPECT_EQ(parse_members(members, {"sun.color=1,2"}).diagnostics.text(),
-            "--set:1:11: error[wrong-type]: \"color\" of light \"sun\" is an array of 3 numbers, not of 2\n"
+            "--set:1:11: error[wrong-type]: \"color\" of light \"sun\" must be an array of 3 numbers, not of 2\n"
             "  1 | sun.color=[1,2]\n"
             "    |           ^^^^^\n");
   EXPECT_EQ(parse_members(members, {"sun.colour=1"}).diagnostics.all()[0].where.begin, 4u);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/check/links.h"
+#include "compiler/check/operand.h"
+
+#include <bit>
+#include <utility>
 
 namespace isoshade::check {
 namespace {
 
 using graph::Link;
+using graph::Literal;
 using support::Id;
 using support::quote;
 
@@ -13,13 +17,13 @@ constexpr std::string_view channels = "rgba";
 
 bool is_color(Type type) { return nodes::color_types.has(type); }
 
-/// Whether letters could be meant as a swizzle: otherwise they are the name of an output.
+/// Whether a selector can be a swizzle; otherwise it is the name of an output.
 bool looks_like_swizzle(std::string_view letters) {
   return letters.size() <= 4 && (letters.find_first_not_of(positions) == std::string_view::npos ||
                                  letters.find_first_not_of(channels) == std::string_view::npos);
 }
 
-/// What `count` components of a value make.
+/// The type of a swizzle with `count` components.
 Type tuple_of(size_t count, bool color) {
   switch (count) {
     case 1: return Type::floating;
@@ -48,7 +52,7 @@ bool swizzle(Work& work, const Link& link, std::string_view letters, Operand& op
   }
   const std::string name(graph::type_name(type));
   support::Diagnostic& report =
-      work.report(Id::bad_swizzle, link.place, quote(letters) + " are no components of a " + name);
+      work.report(Id::bad_swizzle, link.place, quote(letters) + " is not a valid swizzle of " + name);
   if (tuple) {
     report.note("a " + name + " has the components " + std::string(positions.substr(0, count)) + ", or " +
                 std::string(channels.substr(0, count)));
@@ -68,10 +72,11 @@ std::vector<std::string_view> output_names(const Node& node) {
   return names;
 }
 
-/// Which output of a node a link means; `rest` loses the selector that names it. Nothing if it is unclear.
+/// The output of `node` that a link refers to; removes the selector that names it from `rest`. Reports a missing or
+/// ambiguous output and returns nullopt.
 std::optional<uint32_t> find_output(Work& work, const Link& link, std::span<const std::string>& rest,
                                     const Node& node) {
-  // Most nodes have one output, which most links do not name.
+  // The common case: one output, not named.
   const size_t count = node.output_count;
   if (rest.empty() && count == 1) return 0;
   const std::vector<std::string_view> names = output_names(node);
@@ -87,11 +92,29 @@ std::optional<uint32_t> find_output(Work& work, const Link& link, std::span<cons
   }
   const std::string what = names_one
                                ? quote(link.name) + " has no output " + quote(rest.front())
-                               : quote(link.name) + " has several outputs, of which the link must name one";
+                               : quote(link.name) + " has several outputs; the link must name one";
   support::Diagnostic& report = work.report(Id::unknown_output, link.place, what);
   if (names_one) suggest_nearest(work.diagnostics, report, rest.front(), names);
   report.note((count == 1 ? "its output is " : "its outputs are ") + listed(names));
   return std::nullopt;
+}
+
+bool is_tuple(Type type) { return (nodes::vector_types | nodes::color_types).has(type); }
+
+void begin(TypedGraph& typed, Type type, Operand& operand) {
+  operand.from = Operand::From::words;
+  operand.type = operand.needed = type;
+  operand.index = static_cast<uint32_t>(typed.words.size());
+}
+
+/// Fills every component of a vector or colour, or the diagonal of a matrix.
+void place_number(TypedGraph& typed, float value, Type type, Operand& operand) {
+  begin(typed, type, operand);
+  if (type == Type::integer) typed.words.push_back(static_cast<uint32_t>(static_cast<int32_t>(value)));
+  if (type == Type::boolean) typed.words.push_back(value != 0 ? 1 : 0);
+  const int count = graph::float_count(type);
+  const int step = type == Type::matrix33 ? 4 : type == Type::matrix44 ? 5 : 1;
+  for (int i = 0; i < count; ++i) typed.words.push_back(i % step == 0 ? std::bit_cast<uint32_t>(value) : 0);
 }
 
 }  // namespace
@@ -111,7 +134,7 @@ bool select(Work& work, const Link& link, Operand& operand) {
     return false;
   }
   if (rest.size() > 1) {
-    work.report(Id::bad_link, link.place, quote(link.name) + " is an input: it has no outputs to name");
+    work.report(Id::bad_link, link.place, quote(link.name) + " is an input and has no outputs");
     return false;
   }
   return rest.empty() || swizzle(work, link, rest.front(), operand);
@@ -127,6 +150,59 @@ std::string described(nodes::TypeSet types) {
     text += names[i];
   }
   return text;
+}
+
+bool converts(Type from, Type to) {
+  if (from == to) return true;
+  if (from == Type::floating) return is_tuple(to);
+  return from == Type::integer && to == Type::floating;
+}
+
+bool fits(const Literal& literal, Type type) {
+  return graph::fits(type, literal) || (is_tuple(type) && literal.kind == Literal::Kind::number);
+}
+
+void place(TypedGraph& typed, const Literal& literal, Type type, Operand& operand) {
+  if (type == Type::floating || (is_tuple(type) && literal.kind == Literal::Kind::number))
+    return place_number(typed, literal.number, type, operand);
+  begin(typed, type, operand);
+  if (type == Type::boolean) typed.words.push_back(literal.boolean ? 1 : 0);
+  if (type == Type::integer) typed.words.push_back(static_cast<uint32_t>(literal.integer));
+  for (const float number : literal.numbers) typed.words.push_back(std::bit_cast<uint32_t>(number));
+}
+
+void place_file(TypedGraph& typed, File file, Operand& operand) {
+  operand.from = Operand::From::file;
+  operand.type = operand.needed = Type::filename;
+  operand.index = static_cast<uint32_t>(typed.files.size());
+  typed.files.push_back(std::move(file));
+}
+
+void place(TypedGraph& typed, const nodes::Default& value, Type type, Operand& operand) {
+  if (const auto* attribute = std::get_if<nodes::SurfaceValue>(&value)) {
+    operand.from = Operand::From::surface;
+    operand.type = operand.needed = type;
+    operand.index = static_cast<uint32_t>(attribute->index());
+  } else if (const auto* numbers = std::get_if<std::array<float, 3>>(&value)) {
+    begin(typed, type, operand);
+    for (const float number : *numbers) typed.words.push_back(std::bit_cast<uint32_t>(number));
+    typed.words.resize(operand.index + static_cast<size_t>(graph::float_count(type)));
+  } else if (const auto* truth = std::get_if<bool>(&value); truth != nullptr && type == Type::boolean) {
+    begin(typed, type, operand);
+    typed.words.push_back(*truth ? 1 : 0);
+  } else {
+    place_number(typed, truth != nullptr ? 0.0f : std::get<float>(value), type, operand);
+  }
+}
+
+std::string described(const Literal& literal) {
+  switch (literal.kind) {
+    case Literal::Kind::boolean: return "a boolean";
+    case Literal::Kind::number: return "a number";
+    case Literal::Kind::numbers: return "an array of " + std::to_string(literal.numbers.size()) + " numbers";
+    case Literal::Kind::string: return "a string";
+  }
+  return {};
 }
 
 }  // namespace isoshade::check
