@@ -36,8 +36,8 @@ std::string binding(size_t after_frame, std::string_view layout = "std430, ") {
 
 constexpr std::string_view canonical_bits =
     "// The bits of a float; NaN is one value.\n"
-    "int canonical(int bits) { return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits; }\n"
-    "int canonical(float x) { return canonical(floatBitsToInt(x)); }\n";
+    "int canonical(float x) { int bits = floatBitsToInt(x); return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits; "
+    "}\n";
 constexpr std::string_view canonical_vector =
     "ivec4 canonical(vec4 v) { return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w)); }\n";
 
@@ -76,7 +76,7 @@ std::string pixel_main() {
   const std::string stride = std::to_string(triangle_word::stride);
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
-         "  ivec2 target = ivec2(gl_FragCoord.xy);\n"
+         "  ivec2 target = ivec2(gl_FragCoord.xy), at = target + ivec2(push.origin_x, push.origin_y);\n"
          "  int triangle = texelFetch(ids, target, 0).x - 1;\n"
          "  if (triangle < 0) discard;\n"
          "  int object = triangles[triangle * " +
@@ -86,7 +86,6 @@ std::string pixel_main() {
          "  if (int(objects[object + " +
          std::to_string(object_word::program) +
          "]) != push.program) discard;\n"
-         "  ivec2 at = target + ivec2(push.origin_x, push.origin_y);\n"
          "  color = intBitsToFloat(canonical(pixel(at.x, at.y, triangle, object, push.light_count)));\n"
          "}\n";
 }
