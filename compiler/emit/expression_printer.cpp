@@ -368,7 +368,7 @@ void ExpressionPrinter::fill(std::string& out, const ir::Instruction& instructio
     const ValueId value = operands[static_cast<size_t>(piece.hole)];
     const Operand plain = operand(may_be_number ? behind(value) : value);
     const bool is_condition = instruction.op == Opcode::select && piece.hole == 0;
-    if (text.is_call && !is_condition) {
+    if (piece.is_argument && !is_condition) {
       put_exactly(out, value, uniform_[result]);
     } else if (plain.literal && combines_bits(instruction.op)) {
       out += integer(definition(value)->imm, true);

@@ -93,7 +93,6 @@ OpText parse_op_text(std::string_view text) {
   OpText op;
   op.is_statement = text.starts_with(';');
   if (op.is_statement) text.remove_prefix(1);
-  op.is_call = text.ends_with(')');
   if (!op.is_statement) std::tie(op.precedence, op.what) = loosest(text);
   std::array<bool, 4> seen{};
   std::string_view rest = text;
@@ -111,6 +110,9 @@ OpText parse_op_text(std::string_view text) {
     op.repeats |= std::exchange(seen[static_cast<size_t>(piece.hole)], true);
     const Operator* before = operator_before(piece.before);
     const Operator* after = operator_at(rest);
+    const std::string_view left = piece.before.substr(0, piece.before.find_last_not_of(' ') + 1);
+    const bool opens = left.ends_with('(') || left.ends_with(',');
+    piece.is_argument = opens && (rest.starts_with(')') || rest.starts_with(','));
     piece.room = both(before != nullptr ? before->right : Room{}, after != nullptr ? after->left : Room{});
   }
   op.end = rest;

@@ -44,12 +44,12 @@ struct OpText {
     int hole;                 ///< an operand's index, or `result`
     std::string_view suffix;  ///< behind `$=`: a further name that the text declares
     Room room;
+    bool is_argument = false;  ///< of a function or a type, whole: `f($0)`
   };
   std::vector<Piece> pieces;
   std::string_view end;  ///< behind the last hole
   Precedence precedence = Precedence::primary;
   bool is_statement = false;
-  bool is_call = false;  ///< `f($0, $1)`: the arguments' types select the function
   bool repeats = false;  ///< an operand stands in it more than once, so it must be a name
   int columns = 0;       ///< without operands
   std::string_view what;  ///< the operator or the function called

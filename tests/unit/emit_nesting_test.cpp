@@ -71,6 +71,18 @@ func @f(%a: int, %b: int) -> (out: int) {
               "return (((a + b) & 0xff00) | a) - 8;");
 }
 
+// The text of a logical shift ends in a bracket, but its second operand is no argument.
+TEST(Nesting, BracketsAnOperandOfAnOperatorInsideACall) {
+  expect_both(Texts(ir::valid(R"(
+func @f(%a: int, %b: int) -> (out: int) {
+  %mask = constant int 31
+  %1 = iand %b, %mask
+  %2 = ishr %a, %1
+  return %2
+})")),
+              "return int(uint(a) >> (b & 0x1f));", "return shift_right(a, b & 0x1f);");
+}
+
 TEST(Nesting, NamesWhatIsUsedTwiceByWhatItIs) {
   expect_both(Texts(ir::valid(R"(
 func @f(%a: float, %b: float) -> (out: float) {
