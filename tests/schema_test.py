@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the node table makes: that the tables of graphs/README.md are what `isoshade nodes --markdown` prints, and
-of the JSON Schema that the shipped one is what `isoshade schema` prints, that every shipped document is valid
-by it, and that documents with one thing wrong are not.
+"""The tables of graphs/README.md are what `isoshade nodes --markdown` and `isoshade schema --markdown` print, the
+shipped JSON Schema is what `isoshade schema` prints, every shipped document is valid by it, and documents with one
+fault are not.
 
 schema_test.py ISOSHADE GRAPHS_FOLDER            tests
 schema_test.py ISOSHADE GRAPHS_FOLDER --update   writes the tables and the schema instead
@@ -25,10 +25,13 @@ def printed(*arguments):
     return subprocess.run([ISOSHADE, *arguments], check=True, capture_output=True, text=True).stdout
 
 
-def manual_parts():
-    """The manual before its tables, the tables, and what follows."""
-    command = "isoshade nodes --markdown"
-    begin, end = f"<!-- begin of `{command}` -->\n\n", f"\n<!-- end of `{command}` -->"
+TABLES = ("nodes", "--markdown"), ("schema", "--markdown")
+
+
+def manual_parts(arguments):
+    """The manual before the tables that a command prints, the tables, and what follows."""
+    command = f"`isoshade {' '.join(arguments)}`"
+    begin, end = f"<!-- begin of {command} -->\n\n", f"\n<!-- end of {command} -->"
     before, rest = MANUAL.read_text().split(begin)
     tables, after = rest.split(end)
     return before + begin, tables, end + after
@@ -37,8 +40,9 @@ def manual_parts():
 def update():
     SHIPPED.parent.mkdir(exist_ok=True)
     SHIPPED.write_text(printed("schema"))
-    before, _, after = manual_parts()
-    MANUAL.write_text(before + printed("nodes", "--markdown") + after)
+    for arguments in TABLES:
+        before, _, after = manual_parts(arguments)
+        MANUAL.write_text(before + printed(*arguments) + after)
 
 
 FUNCTION = {
@@ -188,7 +192,8 @@ class Schema(unittest.TestCase):
 
 class Manual(unittest.TestCase):
     def test_the_tables_are_current(self):
-        self.assertTrue(manual_parts()[1] == printed("nodes", "--markdown"), "update them: schema_test.py ... --update")
+        for arguments in TABLES:
+            self.assertTrue(manual_parts(arguments)[1] == printed(*arguments), "update them: schema_test.py ... --update")
 
 
 if __name__ == "__main__":

@@ -56,11 +56,12 @@ std::vector<SchemaKey> document_keys(std::string_view kind) {
 
 namespace {
 
-/// What may stand in a port of these types: a link, or a literal of one of them.
+/// The values of a port of these types: a link, or a literal of one of them.
 SchemaJson value_schema(TypeSet accepts) {
   std::vector<SchemaJson> forms{reference("link")};
   const auto has = [&](TypeSet types) { return (accepts.bits & types.bits) != 0; };
-  if (accepts == only(Type::filename)) forms = {string_schema(), object_schema({{"link", string_schema(), true}})};
+  if (accepts == only(Type::filename))
+    forms = {string_schema(), object_schema({{"link", string_schema(), true}})};
   if (has(only(Type::boolean))) forms.push_back(boolean_schema());
   if (accepts == only(Type::integer)) {
     forms.push_back({{"type", "integer"}});
@@ -169,7 +170,7 @@ SchemaJson graph_schema(std::string_view kind, const std::vector<SchemaKey>& res
 
 }  // namespace
 
-std::string json_schema(std::span<const Row> library) {
+std::string json_schema(std::span<const Row> library, const DocumentSchema& scene) {
   constexpr std::string_view id = "[A-Za-z_][A-Za-z0-9_]{0,127}";
   const std::string link = "^" + std::string(id) + "(\\." + std::string(id) + "){0,2}$";
   SchemaJson definitions;
@@ -197,16 +198,15 @@ std::string json_schema(std::span<const Row> library) {
        {"images", described(array_schema(reference("id"), 0, 8), "names of further images that it reads")},
        {"enabled", described(reference("id"), "a parameter: where it is 0, the post is not run")},
        {"outputs", object_schema({{"color", color_schema(), true}}), true}});
-  SchemaJson scene = scene_schema(definitions);
-  definitions["scene"] = std::move(scene);
+  definitions.update(SchemaJson::parse(scene.definitions));
   struct Kind {
     std::string_view key, doc;
   };
-  constexpr Kind kinds[] = {{"function", "a function that graphs use as a node, and its name"},
-                            {"effect", "an effect that draws a mesh, and its name"},
-                            {"post", "a full-screen effect over a finished image, and its name"},
-                            {"scene", "a scene to render, and its name"}};
-  // Editors complete what stands in "properties"; what else a document has, its kind tells.
+  const Kind kinds[] = {{"function", "a function that graphs use as a node, and its name"},
+                        {"effect", "an effect that draws a mesh, and its name"},
+                        {"post", "a full-screen effect over a finished image, and its name"},
+                        {scene.kind, scene.doc}};
+  // Editors complete the keys in "properties"; the other keys depend on the kind of document.
   SchemaJson properties{{"$schema", string_schema()}, {"isoshade", {{"const", 1}}}};
   std::vector<SchemaJson> one, branches;
   for (const Kind& kind : kinds) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words that schemas are written in.
+// Building blocks of JSON schemas.
 #pragma once
 
 #include <initializer_list>
@@ -48,13 +48,11 @@ inline SchemaJson numbers_schema(size_t count) { return array_schema(number_sche
 SchemaJson object_schema(const std::vector<SchemaKey>& keys);
 /// An object whose keys are ids.
 SchemaJson map_schema(SchemaJson value);
-/// An object of several kinds, which `key` tells; where it may be left out, the first is meant.
+/// An object of several kinds; the value of `key` selects the kind. Without the key, if it is optional, it is the first.
 SchemaJson variants_schema(std::string_view key, bool required,
                            const std::vector<std::pair<std::string_view, std::vector<SchemaKey>>>& kinds);
 
-/// The shapes of scenes, and what they are made of, into `definitions`; returns the document's.
-SchemaJson scene_schema(SchemaJson& definitions);
-/// The keys that every document has beside the one that tells its kind.
+/// The keys of every document: those that all kinds share, and the one that states the kind.
 std::vector<SchemaKey> document_keys(std::string_view kind);
 
 }  // namespace isoshade::nodes

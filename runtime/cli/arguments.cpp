@@ -340,8 +340,11 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   nodes_app->add_flag("--markdown", nodes.markdown, "List all as the tables of graphs/README.md")
       ->excludes(node);
 
+  SchemaArguments schema;
   CLI::App* schema_app =
       app.add_subcommand("schema", "Print the JSON Schema (draft-07) of all documents, for editors");
+  schema_app->add_flag("--markdown", schema.markdown,
+                       "Print the keys of scenes as the tables of graphs/README.md instead");
 
   try {
     app.parse(argc, argv);
@@ -386,7 +389,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (cache_app->parsed()) parsed.cache = cache;
   if (devices_app->parsed()) parsed.devices = devices;
   if (nodes_app->parsed()) parsed.nodes = nodes;
-  if (schema_app->parsed()) parsed.schema.emplace();
+  if (schema_app->parsed()) parsed.schema = schema;
   return parsed;
 }
 

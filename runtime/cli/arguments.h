@@ -132,7 +132,9 @@ struct NodesArguments {
   bool markdown = false;  ///< list all as the tables of graphs/README.md
 };
 
-struct SchemaArguments {};
+struct SchemaArguments {
+  bool markdown = false;  ///< the keys of scenes, as the manual's tables
+};
 
 struct Common {
   bool quiet = false;

@@ -102,7 +102,7 @@ int run(int argc, char** argv) {
   if (arguments->bench) return bench(*arguments->bench, arguments->common);
   if (arguments->cache) return cache(*arguments->cache, arguments->common);
   if (arguments->nodes) return nodes(*arguments->nodes, arguments->common);
-  if (arguments->schema) return schema(arguments->common);
+  if (arguments->schema) return schema(*arguments->schema, arguments->common);
   return devices(*arguments->devices, arguments->common);
 }
 

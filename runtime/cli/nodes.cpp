@@ -10,6 +10,7 @@
 #include "compiler/nodes/schema.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
+#include "runtime/scene/format.h"
 
 namespace isoshade::cli {
 
@@ -105,11 +106,15 @@ int nodes(const NodesArguments& arguments, const Common& common) {
   return failure;
 }
 
-int schema(const Common& common) {
+int schema(const SchemaArguments& arguments, const Common& common) {
+  if (arguments.markdown) {
+    std::fputs(scene::format::markdown().c_str(), stdout);
+    return success;
+  }
   support::Diagnostics diagnostics = make_diagnostics(common);
   check::Library documents = make_library(common);
   const driver::LibraryRows library(documents, diagnostics);
-  std::fputs(nodes::json_schema(library.rows()).c_str(), stdout);
+  std::fputs(nodes::json_schema(library.rows(), scene::format::schema()).c_str(), stdout);
   return flush(diagnostics, common) ? failure : success;
 }
 

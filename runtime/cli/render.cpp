@@ -7,6 +7,7 @@
 #include "runtime/cli/session.h"
 #include "runtime/scene/image_file.h"
 #include "runtime/scene/load.h"
+#include "runtime/scene/mesh_formats.h"
 
 namespace isoshade::cli {
 
@@ -18,7 +19,7 @@ bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnos
   scene::Object* only = nullptr;
   int models = 0;
   for (scene::Object& object : scene.objects) {
-    if (object.mesh.kind != scene::MeshKind::gltf) continue;
+    if (object.mesh.kind != scene::MeshKind::file) continue;
     only = &object;
     ++models;
   }
@@ -31,8 +32,9 @@ bool replace_mesh(scene::Scene& scene, const std::string& file, support::Diagnos
     return false;
   }
   only->mesh = {};
-  only->mesh.kind = scene::MeshKind::gltf;
+  only->mesh.kind = scene::MeshKind::file;
   only->mesh.file = file;
+  only->mesh.format = scene::mesh_format_of(file);
   only->mesh.fit = true;
   only->mesh_where = {};
   return true;

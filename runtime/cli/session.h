@@ -67,6 +67,6 @@ int bench(const BenchArguments& arguments, const Common& common);
 int cache(const CacheArguments& arguments, const Common& common);
 int devices(const DevicesArguments& arguments, const Common& common);
 int nodes(const NodesArguments& arguments, const Common& common);
-int schema(const Common& common);
+int schema(const SchemaArguments& arguments, const Common& common);
 
 }  // namespace isoshade::cli

@@ -4,42 +4,22 @@
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
-#include "runtime/scene/placement.h"
 
 namespace isoshade::render {
-namespace {
-
-std::optional<scene::GltfModel> make_model(const scene::Object& object, support::Diagnostics& diagnostics) {
-  const scene::MeshShape& shape = object.mesh;
-  if (shape.kind == scene::MeshKind::gltf) {
-    auto model = scene::load_gltf(shape.file, object.mesh_where, diagnostics);
-    if (model && shape.fit) scene::fit_to_unit_size(model->mesh);
-    return model;
-  }
-  scene::GltfModel model;
-  model.mesh = scene::make_mesh(shape);
-  scene::GltfPart& all = model.parts.emplace_back();
-  all.index_count = model.mesh.indices.size();
-  all.vertex_count = model.mesh.vertices.size() / lower::vertex_word::stride;
-  return model;
-}
-
-}  // namespace
-
 std::optional<size_t> MeshStore::find(const scene::Object& object, std::vector<StoredMesh>& meshes,
                                       std::vector<float>& vertices, support::Diagnostics& diagnostics) {
   const scene::MeshShape& shape = object.mesh;
-  const Key key{shape.kind,  shape.size.x, shape.size.y,  shape.size.z, shape.segments,
-                shape.rings, shape.caps,   shape.profile, shape.file,   shape.fit};
+  const Key key{shape.kind, shape.size.x,  shape.size.y, shape.size.z, shape.segments, shape.rings,
+                shape.caps, shape.profile, shape.file,   shape.format, shape.fit};
   if (const auto found = numbers_.find(key); found != numbers_.end()) return found->second;
-  auto model = make_model(object, diagnostics);
+  auto model = scene::make_model(shape, object.mesh_where, diagnostics);
   if (!model) return std::nullopt;
   const size_t first_vertex = vertices.size() / lower::vertex_word::stride;
   vertices.insert(vertices.end(), model->mesh.vertices.begin(), model->mesh.vertices.end());
   StoredMesh& stored = meshes.emplace_back();
   stored.low = model->mesh.low;
   stored.high = model->mesh.high;
-  for (scene::GltfPart& from : model->parts) {
+  for (scene::ModelPart& from : model->parts) {
     MeshPart& part = stored.parts.emplace_back();
     part.first_vertex = static_cast<uint32_t>(first_vertex + from.first_vertex);
     part.vertex_count = static_cast<uint32_t>(from.vertex_count);

@@ -31,10 +31,10 @@ void report_unknown(const driver::ParameterBlock& block, std::string_view giver,
   support::Diagnostic& report = diagnostics.report_unknown(
       Id::unknown_parameter, where, "the effect of " + quote(giver) + " has no parameter " + quote(name),
       name, names);
-  if (report.fix.empty()) report.note(list.empty() ? "it has none at all" : "it has " + list);
+  if (report.fix.empty()) report.note(list.empty() ? "it has no parameters" : "it has " + list);
 }
 
-/// Whether every number of a value lies where the effect allows it.
+/// Whether every number of a value is in the range of the field.
 bool check_range(const driver::Field& field, Type type, const Literal& literal, const support::Span& where,
                  Diagnostics& diagnostics) {
   std::vector<float> numbers = literal.numbers;
@@ -87,7 +87,7 @@ bool check_fit(const driver::Field& field, const Literal& literal, const support
   return false;
 }
 
-/// `names`: of an integer's values.
+/// Writes a value into the record. `names`: of an integer's values.
 void store(Type type, const std::vector<std::string>& names, const Literal& literal, float* words) {
   switch (type) {
     case Type::boolean: words[0] = literal.boolean ? 1.0f : 0.0f; break;
@@ -151,7 +151,7 @@ class ParameterValues::Resolver {
 
  private:
   void take_factors() {
-    const scene::GltfMaterial* const material = giver_.material;
+    const scene::Material* const material = giver_.material;
     if (material == nullptr) return;
     const auto store = [&](std::string_view name, std::span<const float> factor) {
       store_factor(block_, name, factor, values_.common_);
@@ -233,7 +233,7 @@ class ParameterValues::Resolver {
           return {path_of(parameter.value, parameter.value_where), nullptr, parameter.value_where};
     }
     if (giver_.material != nullptr && giver_.material->textures.contains(name)) {
-      const scene::GltfImage& own = giver_.material->textures.at(name);
+      const scene::MaterialImage& own = giver_.material->textures.at(name);
       return {own.name, own.bytes, giver_.material_where, own.srgb};
     }
     return {image.file, nullptr, image.where};

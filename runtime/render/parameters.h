@@ -10,7 +10,7 @@
 
 #include "compiler/driver/parameter_block.h"
 #include "runtime/render/textures.h"
-#include "runtime/scene/gltf.h"
+#include "runtime/scene/model.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::render {
@@ -24,7 +24,7 @@ struct ParameterGiver {
   std::string_view name;  ///< for messages
   std::span<const scene::Parameter> parameters;
   std::span<const scene::Repeat> repeat = {};
-  const scene::GltfMaterial* material = nullptr;
+  const scene::Material* material = nullptr;
   support::Span material_where = {};  ///< what names the material's file
 };
 

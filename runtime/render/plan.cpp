@@ -172,7 +172,7 @@ uint32_t Planner::add_program(const driver::Program& program) {
 }
 
 std::optional<size_t> Planner::find_mesh(const Object& object) {
-  const bool is_file = object.mesh.kind == scene::MeshKind::gltf;
+  const bool is_file = object.mesh.kind == scene::MeshKind::file;
   if (is_file && !may_read(object.mesh.file, object.mesh_where)) return std::nullopt;
   return meshes_.find(object, plan_.meshes, plan_.frame.vertices, diagnostics_);
 }
@@ -191,7 +191,7 @@ bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, 
                             const FindTexture& find_texture) {
   std::vector<ParameterValues>& parameters = parameters_.emplace_back();
   for (const MeshPart& part : mesh.parts) {
-    const scene::GltfMaterial* material = part.material ? &*part.material : nullptr;
+    const scene::Material* material = part.material ? &*part.material : nullptr;
     const ParameterGiver giver{object.name, object.parameters, object.repeat, material, object.mesh_where};
     auto resolved = ParameterValues::resolve(effect.parameters, giver, find_texture, diagnostics_);
     if (!resolved) return false;  // further parts would report the same again

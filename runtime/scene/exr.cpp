@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR: its library packs and unpacks pixels. What it reads is a file of one part and one level, that we write around
-// the chunks of the real one: so it never sees a header that has not been checked (exr_file.h), nor chunks that are not
-// whole (exr_chunks.h).
+// OpenEXR. The library compresses and decompresses pixels. It reads a file of one part and one level, which we write
+// around the chunks of the real file, so it never sees a header that was not checked, or an incomplete chunk
+// (exr_file.h).
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -16,9 +16,8 @@
 
 #include "compiler/support/assert.h"
 #include "runtime/lanes/float_rules.h"
-#include "runtime/scene/exr_chunks.h"
 #include "runtime/scene/exr_file.h"
-#include "runtime/scene/image_codecs.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::scene {
 namespace {
@@ -27,7 +26,7 @@ using exr_file::Chunk;
 using exr_file::Part;
 using exr_file::Window;
 
-/// A file that is written to memory.
+/// An output file in memory.
 class Writer : public Imf::OStream {
  public:
   Writer() : OStream("") {}
@@ -46,7 +45,7 @@ class Writer : public Imf::OStream {
   size_t at_ = 0;
 };
 
-/// A file that stands in pieces of memory.
+/// An input file that consists of pieces of memory.
 class Pieces : public Imf::IStream {
  public:
   Pieces() : IStream("") {}
@@ -57,7 +56,7 @@ class Pieces : public Imf::IStream {
   }
   bool read(char* to, int size) override {
     auto count = static_cast<size_t>(size);
-    if (size < 0 || count > size_ - at_) throw std::runtime_error("the data end too early");
+    if (size < 0 || count > size_ - at_) throw std::runtime_error("the data ends too early");
     while (count > 0) {
       const auto after = std::ranges::upper_bound(starts_, at_);
       const auto piece = static_cast<size_t>(after - starts_.begin()) - 1;
@@ -92,7 +91,7 @@ Imath::Box2i imf_box(const Window& window) {
   return {{window.min_x, window.min_y}, {window.max_x, window.max_y}};
 }
 
-/// What comes before the chunks: the header of a file of one part and one level, and where each chunk is.
+/// The bytes before the chunks: the header of a file of one part and one level, and the offset of each chunk.
 std::string head_of(const Part& part, const std::vector<Chunk>& chunks) {
   Imf::Header header(imf_box(part.data), imf_box(part.data));
   header.compression() = static_cast<Imf::Compression>(part.compression);
@@ -115,10 +114,10 @@ std::string head_of(const Part& part, const std::vector<Chunk>& chunks) {
   return head;
 }
 
-/// Of a chunk's pixel, what is read of it: r g b a z.
+/// The values that are read of a pixel: r g b a z.
 constexpr size_t read_count = 5;
 
-/// Where the pixels of a window go, that has them one after another.
+/// A buffer for the pixels of a window, row by row.
 Imf::FrameBuffer frame_buffer(const Part& part, const Window& window, float* to) {
   Imf::FrameBuffer buffer;
   constexpr size_t pixel = read_count * sizeof(float);
@@ -136,7 +135,7 @@ Imf::FrameBuffer frame_buffer(const Part& part, const Window& window, float* to)
   return buffer;
 }
 
-/// Puts the pixels of a window where they are in the display window, or nowhere.
+/// Copies those pixels of a window that lie in the display window.
 void place(const Part& part, const Window& from, const std::vector<float>& pixels, FileImage& image) {
   const Window& display = part.display;
   const int32_t left = std::max(from.min_x, display.min_x), right = std::min(from.max_x, display.max_x);
@@ -156,7 +155,7 @@ void place(const Part& part, const Window& from, const std::vector<float>& pixel
   }
 }
 
-/// A channel Z with fewer samples than pixels is not read.
+/// Channel Z is not read if it is subsampled.
 Part without_sparse_depth(Part part) {
   if (part.picture.depth < 0) return part;
   const exr_file::Channel& depth = part.channels[static_cast<size_t>(part.picture.depth)];
@@ -191,15 +190,15 @@ void unpack(const Part& part, const std::vector<Chunk>& chunks, FileImage& image
   }
 }
 
-/// The library unpacks DWAA and DWAB by sums of floats whose order depends on the processor: with AVX, as nearly all have
-/// it, another one than without.
+/// The library decompresses DWAA and DWAB with float sums whose order depends on whether the processor has AVX.
+/// Nearly all have it.
 bool unpacks_alike(exr_file::Compression compression) {
   const bool cosines =
       compression == exr_file::Compression::dwaa || compression == exr_file::Compression::dwab;
   return !cosines || __builtin_cpu_supports("avx") != 0;
 }
 
-/// What an exception of the library says, without the name of the file, which it does not know.
+/// The message of an exception of the library, without the file name, which is not the user's.
 std::string reason_of(const std::exception& exception) {
   std::string text = exception.what();
   if (const size_t name = text.find("\"\". "); name != std::string::npos) text.erase(0, name + 4);
@@ -210,13 +209,14 @@ std::string reason_of(const std::exception& exception) {
 
 std::string exr(const ImageView& image) {
   const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  support::assert_that(image.rgba.size() == 4 * pixels && image.depth.size() == pixels, "exr: image of odd size");
+  support::assert_that(image.rgba.size() == 4 * pixels && image.depth.size() == pixels,
+                       "exr: image of odd size");
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer buffer;
   const auto add = [&](const char* name, const float* first, size_t step) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    // The library writes from it, although it takes a pointer that it could write to.
+    // The library only reads from it, although its pointer is not const.
     char* base = const_cast<char*>(reinterpret_cast<const char*>(first));
     const size_t stride = step * sizeof(float);
     buffer.insert(name, Imf::Slice(Imf::FLOAT, base, stride, stride * static_cast<size_t>(image.width)));
@@ -229,7 +229,7 @@ std::string exr(const ImageView& image) {
     Imf::OutputFile file(writer, header, 0);
     file.setFrameBuffer(buffer);
     file.writePixels(image.height);
-  }  // writes where the rows are
+  }  // writes the offsets of the rows
   return writer.take();
 }
 

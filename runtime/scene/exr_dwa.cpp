@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of DWAA and DWAB: counters, rules that say how channels are packed, then four streams: samples as they are,
-// cosine coefficients of 8 x 8 blocks (the 63 others, then the means), and runs. The library believes the counters.
+// The data of DWAA and DWAB: counters, rules for the compression of channels, then four streams: uncompressed samples,
+// cosine coefficients of 8 x 8 blocks (AC, then DC), and run lengths. The library trusts the counters.
 // Source: ImfDwaCompressor.cpp of OpenEXR 3.1.
 #include <ImfHuf.h>
 #include <algorithm>
@@ -8,12 +8,12 @@
 #include <map>
 #include <zlib.h>
 
-#include "runtime/scene/exr_data.h"
+#include "runtime/scene/exr_file.h"
 
 namespace isoshade::scene::exr_file {
 namespace {
 
-/// As they stand at the start.
+/// The counters at the start of the data.
 enum Counter : size_t {
   version,
   stored_size,
@@ -32,12 +32,12 @@ using Counters = std::array<uint64_t, counter_count>;
 
 enum class Scheme : uint8_t { stored, cosines, runs };
 
-/// How channels of a name and a type are packed.
+/// How channels with a name and a type are compressed.
 struct Rule {
   std::string name;
   PixelType type = PixelType::half;
   Scheme scheme = Scheme::stored;
-  int color = -1;  ///< 0, 1, 2: cosines of three such channels are those of luminance and chroma
+  int color = -1;  ///< 0, 1, 2: three such channels are transformed as luminance and chroma
   bool any_case = false;
 };
 
@@ -47,7 +47,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Those of versions 0 and 1, which have none in the file.
+/// The rules of versions 0 and 1, whose files contain none.
 std::vector<Rule> old_rules() {
   constexpr struct {
     const char* name;
@@ -63,7 +63,7 @@ std::vector<Rule> old_rules() {
   return rules;
 }
 
-/// Takes them from the front of the data.
+/// Removes the rules from the front of the data.
 std::optional<std::vector<Rule>> take_rules(std::string_view& data) {
   if (data.size() < 2) return std::nullopt;
   const auto byte = [](std::string_view text, size_t at) { return static_cast<unsigned char>(text[at]); };
@@ -85,7 +85,7 @@ std::optional<std::vector<Rule>> take_rules(std::string_view& data) {
   return rules;
 }
 
-/// What the channels need of each stream.
+/// How much the channels need of each stream.
 struct Needs {
   int64_t stored = 0, runs = 0;  ///< bytes
   int64_t blocks = 0;
@@ -104,7 +104,7 @@ std::optional<Needs> needs_of(const Part& part, const Window& pixels, const std:
       if (rule.type != channel.type || (rule.any_case ? lower(name) : name) != rule.name) continue;
       scheme = rule.scheme;
       if (rule.color < 0) continue;
-      // One channel in two places would be unpacked twice.
+      // A channel that is listed twice would be decompressed twice.
       for (int i = 0; i < 3; ++i)
         if (i != rule.color && of_layer[static_cast<size_t>(i)] == &channel) return std::nullopt;
       of_layer[static_cast<size_t>(rule.color)] = &channel;
@@ -122,7 +122,7 @@ std::optional<Needs> needs_of(const Part& part, const Window& pixels, const std:
   return needs;
 }
 
-/// Whether coefficients make so many blocks of 63: high byte 255 is a run of zeros, 0xff00 the end of a block.
+/// Whether the coefficients fill this many blocks of 63. High byte 255: a run of zeros; 0xff00: end of block.
 bool make_blocks(const std::vector<uint16_t>& coefficients, int64_t blocks) {
   auto next = coefficients.begin();
   for (int64_t block = 0; block < blocks; ++block) {
@@ -162,7 +162,7 @@ bool dwa_fills(const Part& part, const Window& pixels, std::string_view data) {
   for (size_t i = 0; i < 8 * counter_count; ++i)
     counters[i / 8] |= uint64_t{static_cast<unsigned char>(data[i])} << (8 * (i % 8));
   data.remove_prefix(8 * counter_count);
-  // Smaller than what would overflow below and in the library.
+  // Small enough not to overflow below or in the library.
   for (const uint64_t counter : counters)
     if (counter > static_cast<uint64_t>(2 * max_chunk_bytes)) return false;
   if (counters[version] > 2 || counters[others_packing] > 1) return false;

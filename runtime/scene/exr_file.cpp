@@ -6,14 +6,14 @@
 #include <map>
 
 #include "compiler/support/visible.h"
-#include "runtime/scene/image_codecs.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::scene::exr_file {
 namespace {
 
 constexpr uint32_t tiled_flag = 0x200, long_names_flag = 0x400, deep_flag = 0x800, multipart_flag = 0x1000;
 
-/// Little endian; beyond the end it is not ok, and gives zeros.
+/// Reads little-endian numbers. Beyond the end it returns zeros and is no longer ok.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
@@ -31,7 +31,7 @@ class Cursor {
     at_ += count;
     return bytes_.substr(at_ - count, count);
   }
-  /// Up to a zero, which is taken too.
+  /// Reads up to and including a zero.
   std::string_view text() {
     const std::string_view rest = bytes_.substr(at_);
     const size_t end = rest.substr(0, 256).find('\0');
@@ -67,7 +67,7 @@ using Attributes = std::map<std::string_view, Attribute>;
 
 const std::string damaged = "its header is damaged";
 
-/// Whether it is there, of this type.
+/// Whether the attribute exists and has this type.
 const std::string_view* find(const Attributes& attributes, std::string_view name, std::string_view type) {
   const auto found = attributes.find(name);
   return found != attributes.end() && found->second.type == type ? &found->second.value : nullptr;
@@ -129,7 +129,7 @@ std::string read_channels(const Attributes& attributes, Part& part) {
       return "it has more than " + std::to_string(max_channels) + " channels";
   }
   if (!cursor.done() || part.channels.empty()) return damaged;
-  // Where a writer did not sort them, the pixels are sorted nevertheless.
+  // The pixels are in sorted order even if the writer did not sort the list.
   std::ranges::sort(part.channels, {}, &Channel::name);
   if (std::ranges::adjacent_find(part.channels, {}, &Channel::name) != part.channels.end())
     return "it has two channels of one name";
@@ -138,7 +138,7 @@ std::string read_channels(const Attributes& attributes, Part& part) {
 
 std::string read_tiles(const Attributes& attributes, Part& part) {
   const std::string_view* value = find(attributes, "tiles", "tiledesc");
-  if (value == nullptr) return "it is of tiles, but its header does not tell their size";
+  if (value == nullptr) return "it is tiled, but its header does not state the size of the tiles";
   Cursor cursor(*value);
   Tiles tiles;
   tiles.width = cursor.u32();
@@ -154,7 +154,7 @@ std::string read_tiles(const Attributes& attributes, Part& part) {
   return {};
 }
 
-/// Of a side's levels, the tiles along it.
+/// The number of tiles along a side, for each level.
 std::vector<int64_t> tiles_of_levels(int64_t side, int64_t tile, bool round_up, int levels) {
   std::vector<int64_t> counts;
   for (int level = 0; level < levels; ++level) {
@@ -203,11 +203,11 @@ std::string read_color(const Attributes& attributes, Part& part) {
   return {};
 }
 
-/// Empty if the attributes describe a part; of a deep one only the chunks are known.
+/// Empty if the attributes describe a part; of a deep part only the number of chunks is read.
 std::string describe(const Attributes& attributes, uint32_t flags, Part& part) {
   const std::string_view* type = find(attributes, "type", "string");
   const bool multipart = (flags & multipart_flag) != 0;
-  if (multipart && type == nullptr) return "a part does not tell its type";
+  if (multipart && type == nullptr) return "a part does not state its type";
   bool tiled = (flags & tiled_flag) != 0;
   if (type != nullptr && multipart) tiled = *type == "tiledimage";
   part.deep = multipart ? *type != "tiledimage" && *type != "scanlineimage" : (flags & deep_flag) != 0;
@@ -216,7 +216,7 @@ std::string describe(const Attributes& attributes, uint32_t flags, Part& part) {
     part.chunk_count = cursor.i32();
     if (!cursor.done() || part.chunk_count < 1) return damaged;
   } else if (multipart) {
-    return "a part does not tell the number of its chunks";
+    return "a part does not state the number of its chunks";
   }
   if (part.deep) return {};
   if (!multipart && type != nullptr && *type != (tiled ? "tiledimage" : "scanlineimage"))
@@ -229,9 +229,9 @@ std::string describe(const Attributes& attributes, uint32_t flags, Part& part) {
   if (tiled)
     if (std::string reason = read_tiles(attributes, part); !reason.empty()) return reason;
   const std::string_view* compression = find(attributes, "compression", "compression");
-  if (compression == nullptr || compression->size() != 1) return "its header does not tell its compression";
+  if (compression == nullptr || compression->size() != 1) return "its header does not state its compression";
   const auto code = static_cast<unsigned char>(compression->front());
-  if (code > static_cast<unsigned char>(Compression::dwab)) return "its compression is not known";
+  if (code > static_cast<unsigned char>(Compression::dwab)) return "its compression is unknown";
   part.compression = static_cast<Compression>(code);
   if (std::string reason = read_channels(attributes, part); !reason.empty()) return reason;
   if (std::string reason = read_color(attributes, part); !reason.empty()) return reason;
@@ -248,7 +248,7 @@ int find_channel(const Part& part, const std::string& name) {
   return found == part.channels.end() ? -1 : static_cast<int>(found - part.channels.begin());
 }
 
-/// What makes an image under this prefix: "" or "layer.".
+/// The channels of the image with this prefix: "" or "layer.".
 std::optional<Picture> picture_of(const Part& part, const std::string& prefix) {
   Picture picture;
   for (size_t i = 0; i < 3; ++i) picture.colors[i] = find_channel(part, prefix + "RGB"[i]);
@@ -262,7 +262,7 @@ std::optional<Picture> picture_of(const Part& part, const std::string& prefix) {
   return picture;
 }
 
-/// The first layer by name that makes one.
+/// The first layer, by name, that contains an image.
 std::optional<Picture> picture_of_layer(const Part& part) {
   for (const Channel& channel : part.channels) {
     const size_t dot = channel.name.rfind('.');
@@ -293,7 +293,7 @@ int64_t bytes_per_pixel(const Part& part) {
   return bytes;
 }
 
-/// Empty if the chosen part is read.
+/// Empty if the chosen part can be read.
 std::string refuse(const Part& part) {
   if (std::string reason = refuse_size(part.display.width(), part.display.height()); !reason.empty())
     return reason;
@@ -323,7 +323,7 @@ std::string refuse(const Part& part) {
       (find_channel(part, prefix + "RY") >= 0 || find_channel(part, prefix + "BY") >= 0))
     return "it holds luminance and chroma (Y, RY and BY); write it with R, G and B";
   if (part.chromaticities && !to_rec709(*part.chromaticities).valid)
-    return "its chromaticities span no colours";
+    return "its chromaticities are degenerate";
   return {};
 }
 
@@ -347,12 +347,12 @@ int rows_per_chunk(Compression compression) {
 
 Read<Contents> read_contents(std::string_view bytes) {
   Cursor cursor(bytes);
-  cursor.take(4);  // is_exr has looked at them
+  cursor.take(4);  // checked by is_exr
   const uint32_t version = cursor.u32();
   constexpr uint32_t known = tiled_flag | long_names_flag | deep_flag | multipart_flag;
   if (!cursor.ok()) return {{}, damaged};
   if ((version & 255) != 2 || (version & ~known & ~255u) != 0)
-    return {{}, "it is of a version of OpenEXR that is not read"};
+    return {{}, "its version of OpenEXR is not supported"};
   Contents contents;
   contents.multipart = (version & multipart_flag) != 0;
   do {

@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What tinygltf may read: the files of buffers, in or below one folder, and of them so many bytes in all. Those of
-/// images are read where a material needs them.
+/// The files that tinygltf may read: those of buffers, in or below one folder, up to a total size. Image files are
+/// read when a material needs them.
 struct Files {
   std::string folder;  ///< canonical
   size_t bytes_left = max_gltf_bytes;
-  std::string outside;  ///< a path that leads out of the folder
+  std::string outside;  ///< a path outside of the folder
 
   static bool exists(const std::string& path, void* self) {
     Files& files = *static_cast<Files*>(self);
@@ -56,8 +56,8 @@ struct Files {
   }
 };
 
-/// Keeps an image as it is: only what a material needs is decoded. Of one in a buffer nothing was checked yet, so it is
-/// left for read_gltf_image.
+/// Keeps an image encoded: only images that a material needs are decoded. An image in a buffer is not checked yet;
+/// read_gltf_image does it.
 bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, int, int,
                 const unsigned char* bytes, int size, void* kept) {
   if (image->bufferView < 0 && size > 0)
@@ -66,7 +66,7 @@ bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, i
   return true;
 }
 
-/// tinygltf may throw: it looks into vectors with at().
+/// tinygltf may throw: it accesses vectors with at().
 bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tinygltf::Model& model,
                 Refusal& refusal) {
   std::string errors, warnings;
@@ -86,7 +86,7 @@ bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tiny
     good = false;
   }
   while (!errors.empty() && (errors.back() == '\n' || errors.back() == ' ')) errors.pop_back();
-  if (!good) refusal.refuse(errors.empty() ? "it is no glTF" : errors);
+  if (!good) refusal.refuse(errors.empty() ? "it is not a glTF" : errors);
   return good;
 }
 
@@ -98,8 +98,8 @@ void Refusal::report(const std::string& file, const support::Span& where, Diagno
                          quote(file) + ": " + support::visible(reason_));
 }
 
-std::optional<GltfModel> load_gltf(const std::string& path, const support::Span& where,
-                                   Diagnostics& diagnostics) {
+std::optional<Model> load_gltf(const std::string& path, const support::Span& where,
+                               Diagnostics& diagnostics) {
   const auto [bytes, id, reason] = support::read_file(path, max_gltf_bytes);
   if (!bytes) {
     diagnostics.report(id, where, "cannot read " + quote(path) + ": " + reason);
@@ -108,9 +108,9 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
   Refusal refusal;
   Files files;
   files.folder = fs::path(graph::canonical_path(path)).parent_path().string();
-  std::optional<GltfModel> result;
+  std::optional<Model> result;
   if (auto json = json_of(*bytes, refusal)) {
-    // A chunk is filled up with blanks; some writers fill it with zeros.
+    // Chunks are padded with blanks, by some writers with zeros.
     while (!json->empty() && json->back() == '\0') json->pop_back();
     const auto document =
         graph::parse_document(std::make_shared<support::SourceFile>(path, *std::move(json)), diagnostics);
@@ -122,7 +122,7 @@ std::optional<GltfModel> load_gltf(const std::string& path, const support::Span&
       result = build_gltf(model, refusal);
     if (result) {
       warn_ignored(*document, path, where, diagnostics);
-      for (GltfPart& part : result->parts)
+      for (ModelPart& part : result->parts)
         if (part.material_index >= 0)
           part.material = read_material(model, part.material_index, images, refusal);
     }

@@ -10,7 +10,7 @@ namespace {
 
 using support::Id;
 
-/// Of a URI: "a%20b" is "a b".
+/// Decodes a URI: "a%20b" becomes "a b".
 std::string percent_decoded(const std::string& uri) {
   const auto digit = [&](size_t at) {
     constexpr std::string_view digits = "0123456789abcdef0123456789ABCDEF";
@@ -45,8 +45,8 @@ support::FileBytes bytes_in_buffer(const tinygltf::Model& model, int view) {
 
 }  // namespace
 
-std::optional<GltfImage> read_gltf_image(const tinygltf::Model& model, int image, ImageBytes& images,
-                                         Refusal& refusal) {
+std::optional<MaterialImage> read_gltf_image(const tinygltf::Model& model, int image, ImageBytes& images,
+                                             Refusal& refusal) {
   const tinygltf::Image& from = model.images[static_cast<size_t>(image)];
   std::string name = images.file + "#image" + std::to_string(image);
   std::string part = "the image " + std::to_string(image);
@@ -72,7 +72,7 @@ std::optional<GltfImage> read_gltf_image(const tinygltf::Model& model, int image
         "the images of the materials have more than " + std::to_string(max_gltf_bytes >> 20) + " MiB");
     return std::nullopt;
   }
-  return GltfImage{std::move(name), kept, false};
+  return MaterialImage{std::move(name), kept, false};
 }
 
 }  // namespace isoshade::scene

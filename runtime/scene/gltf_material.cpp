@@ -8,12 +8,12 @@
 namespace isoshade::scene {
 namespace {
 
-GltfMaterial read_factors(const tinygltf::Material& from) {
+Material read_factors(const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& factors = from.pbrMetallicRoughness;
   const auto number = [](double value) {
     return value > 0 ? canonical(static_cast<float>(std::min(value, 1.0))) : 0.0f;
   };
-  GltfMaterial material;
+  Material material;
   for (size_t i = 0; i < 4 && i < factors.baseColorFactor.size(); ++i)
     material.base_color[i] = number(factors.baseColorFactor[i]);
   material.metallic = number(factors.metallicFactor);
@@ -27,10 +27,10 @@ GltfMaterial read_factors(const tinygltf::Material& from) {
   return material;
 }
 
-std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
-                                               const tinygltf::Material& material, ImageBytes& images,
-                                               Refusal& refusal) {
-  std::map<std::string, GltfImage> found;
+std::map<std::string, MaterialImage> read_textures(const tinygltf::Model& model,
+                                                   const tinygltf::Material& material, ImageBytes& images,
+                                                   Refusal& refusal) {
+  std::map<std::string, MaterialImage> found;
   const auto read = [&](const char* parameter, int texture, int texcoord, bool srgb = false) {
     if (texture < 0 || texcoord != 0 || refusal.refused()) return;
     const std::string name = "the texture " + std::to_string(texture);
@@ -62,9 +62,9 @@ std::map<std::string, GltfImage> read_textures(const tinygltf::Model& model,
 
 }  // namespace
 
-GltfMaterial read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal) {
+Material read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal) {
   const tinygltf::Material& from = model.materials[static_cast<size_t>(material)];
-  GltfMaterial result = read_factors(from);
+  Material result = read_factors(from);
   result.textures = read_textures(model, from, images, refusal);
   return result;
 }

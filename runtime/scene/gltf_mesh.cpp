@@ -15,9 +15,9 @@ namespace {
 
 namespace word = lower::vertex_word;
 
-constexpr float max_coordinate = 1e9f;  ///< as of a scene's own: all matrices stay finite
+constexpr float max_coordinate = 1e9f;  ///< keeps all matrices finite, as format::coordinates
 
-/// What a primitive gives of each vertex; empty where it gives nothing.
+/// The vertex attributes of a primitive; empty if it does not have the attribute.
 struct Attributes {
   size_t count = 0;
   std::vector<float> positions, normals, texcoords, tangents, colors;
@@ -28,7 +28,7 @@ class Builder {
  public:
   Builder(const tinygltf::Model& model, Refusal& refusal) : model_(model), refusal_(refusal) {}
 
-  std::optional<GltfModel> build();
+  std::optional<Model> build();
 
  private:
   struct Placed {
@@ -48,7 +48,7 @@ class Builder {
   bool read_triangles(const tinygltf::Primitive& primitive, size_t vertices, std::vector<uint32_t>& corners);
   Part* part_of(int material);
   bool place_vertex(const Attributes& attributes, size_t i, Mesh& mesh);
-  GltfModel join();
+  Model join();
 
   const tinygltf::Model& model_;
   Refusal& refusal_;
@@ -56,7 +56,7 @@ class Builder {
   std::map<int, size_t> part_of_material_;
   std::vector<bool> seen_;                ///< nodes
   int64_t vertices_ = 0, triangles_ = 0;  ///< read so far
-  // Of the node that is being added.
+  // Of the current node.
   glm::mat4 matrix_{1};
   glm::mat3 normal_matrix_{1};
   bool mirrored_ = false;
@@ -70,8 +70,8 @@ glm::vec3 apply(const glm::mat3& matrix, const glm::vec3& v) {
   return matrix[0] * v.x + matrix[1] * v.y + matrix[2] * v.z;
 }
 
-/// A vector under a matrix, at length 1. Files have normals of any length; a power of two, which rounds nothing, keeps
-/// the very long and the very short ones from overflowing and vanishing on the way.
+/// Transforms a vector and normalises it. Files have normals of any length; scaling by a power of two is exact and
+/// keeps very long and very short ones from overflow and underflow.
 glm::vec3 direction(const glm::mat3& matrix, glm::vec3 v) {
   const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (largest > 0x1p32f) v *= 0x1p-96f;
@@ -86,7 +86,7 @@ bool is_finite(const glm::mat3& matrix) {
   return true;
 }
 
-/// The nodes of the scene that is to be shown.
+/// The root nodes of the scene.
 std::vector<int> Builder::roots() {
   if (!model_.scenes.empty()) {
     const size_t scene = model_.defaultScene < 0 ? 0 : static_cast<size_t>(model_.defaultScene);
@@ -130,7 +130,7 @@ std::optional<glm::mat4> Builder::local_matrix(const tinygltf::Node& node) {
   if (!node.rotation.empty()) {
     std::array<float, 4> quaternion;
     for (size_t i = 0; i < 4; ++i) quaternion[i] = number(node.rotation[i]);
-    if (quaternion == std::array<float, 4>{}) return refuse("is no rotation");
+    if (quaternion == std::array<float, 4>{}) return refuse("is not a rotation");
     rotation = rotation_of_quaternion(quaternion);
   }
   for (int c = 0; c < 3; ++c) {
@@ -160,7 +160,7 @@ bool Builder::add_node(const Placed& placed, std::vector<Placed>& open) {
   const glm::mat3 normals = normal_matrix(matrix);
   if (!std::isfinite(determinant) || !is_finite(normals))
     return refusal_.refuse("the transforms of its nodes are too large");
-  if (determinant == 0) return true;  // how files hide what is in them
+  if (determinant == 0) return true;  // files hide nodes by a scale of 0
   matrix_ = matrix;
   normal_matrix_ = normals;
   mirrored_ = determinant < 0;
@@ -193,7 +193,7 @@ bool Builder::read_attributes(const tinygltf::Primitive& primitive, Attributes& 
          read("COLOR_0", attributes.color_width, true, attributes.colors);
 }
 
-/// Three corners a triangle, whatever the primitive's mode.
+/// Reads the indices as separate triangles, whatever the mode of the primitive.
 bool Builder::read_triangles(const tinygltf::Primitive& primitive, size_t vertices,
                              std::vector<uint32_t>& corners) {
   std::vector<uint32_t> indices;
@@ -206,12 +206,12 @@ bool Builder::read_triangles(const tinygltf::Primitive& primitive, size_t vertic
   }
   for (const uint32_t index : indices) {
     if (index >= vertices) {
-      return refusal_.refuse("index " + std::to_string(index) + " points to none of " +
+      return refusal_.refuse("index " + std::to_string(index) + " is out of range: there are " +
                              std::to_string(vertices) + " vertices");
     }
   }
   const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode < 0;
-  if (list && indices.size() % 3 != 0) return refusal_.refuse("a triangle has not three corners");
+  if (list && indices.size() % 3 != 0) return refusal_.refuse("a triangle does not have three corners");
   const size_t count = list ? indices.size() / 3 : indices.size() < 3 ? 0 : indices.size() - 2;
   triangles_ += static_cast<int64_t>(count);
   if (triangles_ > max_gltf_triangles)
@@ -236,8 +236,7 @@ bool Builder::place_vertex(const Attributes& attributes, size_t i, Mesh& mesh) {
     if (!(std::abs(position[axis]) <= max_coordinate)) return refusal_.refuse("a vertex lies beyond 1e9");
   glm::vec3 normal(0), tangent(0);
   glm::vec2 texcoord(0);
-  if (!attributes.normals.empty())
-    normal = direction(normal_matrix_, vector_at(attributes.normals, i));
+  if (!attributes.normals.empty()) normal = direction(normal_matrix_, vector_at(attributes.normals, i));
   if (!attributes.texcoords.empty())
     texcoord = {attributes.texcoords[2 * i], attributes.texcoords[2 * i + 1]};
   float sign = 1;
@@ -257,7 +256,7 @@ bool Builder::place_vertex(const Attributes& attributes, size_t i, Mesh& mesh) {
   return true;
 }
 
-/// Gives the triangles from an index on, which share no vertices, the normals of their faces.
+/// Sets face normals for the triangles from an index on, which share no vertices.
 void make_flat(Mesh& mesh, size_t first_index) {
   for (size_t t = first_index; t < mesh.indices.size(); t += 3) {
     float* records[3];
@@ -275,7 +274,7 @@ void make_flat(Mesh& mesh, size_t first_index) {
 
 bool Builder::add_primitive(const tinygltf::Primitive& primitive) {
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-  if (mode > TINYGLTF_MODE_TRIANGLE_FAN) return refusal_.refuse("a primitive has no known mode");
+  if (mode > TINYGLTF_MODE_TRIANGLE_FAN) return refusal_.refuse("a primitive has an unknown mode");
   if (mode < TINYGLTF_MODE_TRIANGLES) return true;  // points and lines
   Attributes attributes;
   std::vector<uint32_t> corners;
@@ -291,7 +290,7 @@ bool Builder::add_primitive(const tinygltf::Primitive& primitive) {
   Mesh& mesh = part->mesh;
   const int64_t first = vertices_of(mesh);
   const size_t first_index = mesh.indices.size();
-  // Flat faces share no vertices; the specification wants their tangents found anew.
+  // Flat faces share no vertices; the specification requires new tangents for them.
   const bool flat = attributes.normals.empty();
   if (flat) attributes.tangents.clear();
   const size_t added = flat ? corners.size() : attributes.count;
@@ -307,7 +306,7 @@ bool Builder::add_primitive(const tinygltf::Primitive& primitive) {
   return true;
 }
 
-/// Outline normals and the box; and a normal and a tangent for each vertex that has none.
+/// Computes outline normals and the bounding box, and missing normals and tangents.
 void finish(Mesh& mesh) {
   add_outline_normals(mesh);
   find_box(mesh);
@@ -324,7 +323,7 @@ void finish(Mesh& mesh) {
   }
 }
 
-/// The part that takes triangles of a material.
+/// The part for the triangles of a material.
 Builder::Part* Builder::part_of(int material) {
   if (material >= static_cast<int>(model_.materials.size())) {
     refusal_.refuse("a material does not exist");
@@ -340,12 +339,12 @@ Builder::Part* Builder::part_of(int material) {
   return &parts_.emplace_back(Part{material, {}});
 }
 
-/// One mesh of all parts.
-GltfModel Builder::join() {
-  GltfModel model;
+/// Joins all parts into one mesh.
+Model Builder::join() {
+  Model model;
   Mesh& mesh = model.mesh;
   for (Part& part : parts_) {
-    GltfPart& joined = model.parts.emplace_back();
+    ModelPart& joined = model.parts.emplace_back();
     joined.material_index = part.material;
     joined.first_index = mesh.indices.size();
     joined.index_count = part.mesh.indices.size();
@@ -354,12 +353,12 @@ GltfModel Builder::join() {
     for (const uint32_t index : part.mesh.indices)
       mesh.indices.push_back(static_cast<uint32_t>(joined.first_vertex) + index);
     mesh.vertices.insert(mesh.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
-    part.mesh = {};  // not needed any more
+    part.mesh = {};  // frees its memory
   }
   return model;
 }
 
-std::optional<GltfModel> Builder::build() {
+std::optional<Model> Builder::build() {
   seen_.resize(model_.nodes.size());
   const std::vector<int> top = roots();
   std::vector<Placed> open;
@@ -371,14 +370,14 @@ std::optional<GltfModel> Builder::build() {
   }
   if (parts_.empty()) refusal_.refuse("it has no triangles");
   if (refusal_.refused()) return std::nullopt;
-  GltfModel joined = join();
+  Model joined = join();
   finish(joined.mesh);
   return joined;
 }
 
 }  // namespace
 
-std::optional<GltfModel> build_gltf(const tinygltf::Model& model, Refusal& refusal) {
+std::optional<Model> build_gltf(const tinygltf::Model& model, Refusal& refusal) {
   return Builder(model, refusal).build();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of load_gltf. What tinygltf has read is as wrong as the file may be: every index, offset and count
-// in it is checked here before it is used.
+// The parts of load_gltf. tinygltf does not validate files: every index, offset and count is checked here before it is
+// used.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@
 #include "compiler/graph/document.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/read_file.h"
-#include "runtime/scene/gltf.h"
+#include "runtime/scene/mesh_formats.h"
 
 namespace isoshade::scene {
 
-/// Why a file is refused. The first reason stays.
+/// Why a file is refused. Keeps the first reason.
 class Refusal {
  public:
-  /// Of the mesh. Returns false, for callers that return so.
+  /// The mesh is the fault. Returns false, so that callers can return the result.
   bool refuse(std::string reason) { return refuse(support::Id::bad_mesh, {}, std::move(reason)); }
-  /// Of a part of the file: "the image 2".
+  /// A part of the file is the fault: "the image 2".
   bool refuse(support::Id id, std::string part, std::string reason) {
     if (!refused()) id_ = id, part_ = std::move(part), reason_ = std::move(reason);
     return false;
@@ -41,55 +41,52 @@ class Refusal {
 std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal);
 bool is_binary(const std::string& bytes);
 
-/// What is asked of the text before tinygltf may read it: that it is JSON and not nested too deep, which would crash
-/// it; that it is glTF 2; that its buffers are not too large together; that it requires no extension, as none is read; that each
-/// image is somewhere; and that indices and numbers are such: tinygltf takes the lowest 32 bits of an integer, and what
-/// is of the wrong kind for nothing.
+/// Checks the text before tinygltf reads it: JSON, not nested so deep that tinygltf crashes; glTF 2; limited total size
+/// of the buffers; no required extensions, as none is read; each image has a source; indices are integers and numbers
+/// are numbers: tinygltf truncates integers to 32 bits and ignores values of the wrong type.
 bool check_json(const graph::Document& document, Refusal& refusal);
 
-/// Warns once, by name, of each feature and extension that the file uses and that is not read. `where` names the file.
+/// Warns once about each feature and extension that the file uses and isoshade does not read. `where` names the file.
 void warn_ignored(const graph::Document& document, const std::string& path, const support::Span& where,
                   support::Diagnostics& diagnostics);
 
-/// The numbers of an accessor, `width` for each of `count` elements, as floats: integers of normalised ones
-/// divided by their greatest. Denormals are zeros, and all are finite.
+/// The numbers of an accessor as floats: `count` elements of a fixed width. Normalised integers are divided by their
+/// maximum. All are finite; denormals become zeros.
 struct Numbers {
   std::vector<float> values;
   size_t count = 0;
 };
 
-/// Takes accessors of `width` components: floats, and if `integers` normalised unsigned bytes and shorts.
+/// Reads accessors of `width` floats, or with `integers` also of normalised unsigned bytes or shorts.
 std::optional<Numbers> read_numbers(const tinygltf::Model& model, int accessor, int width, bool integers,
                                     Refusal& refusal);
-/// Takes scalars that are unsigned bytes, shorts or ints.
+/// Reads scalars of unsigned bytes, shorts or ints.
 std::optional<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, int accessor,
                                                   Refusal& refusal);
-/// The components of each element of an accessor: 1 to 4; 0 if there is no such accessor.
+/// The number of components of an accessor, 1 to 4; 0 if the accessor does not exist.
 int components_of(const tinygltf::Model& model, int accessor);
 
-/// The triangles of the model's scene; no part has its material yet. Computed under lanes::FpGuard, which the
-/// caller holds.
-std::optional<GltfModel> build_gltf(const tinygltf::Model& model, Refusal& refusal);
+/// The triangles of the scene; the parts have no materials yet. The caller holds lanes::FpGuard.
+std::optional<Model> build_gltf(const tinygltf::Model& model, Refusal& refusal);
 
-/// The images of a file, by their numbers: at first those in data URIs, then also those in buffers and in files of
-/// their own that materials need.
+/// The images of a file by number: those in data URIs first; those in buffers and in files are added when a material
+/// needs them.
 struct ImageBytes {
-  std::string file;    ///< whose images they are, as the user calls it
-  std::string folder;  ///< of the file, canonical: images of their own lie in or below it
+  std::string file;    ///< the path, as the user wrote it
+  std::string folder;  ///< canonical folder of the file: image files must lie in or below it
   std::map<int, std::shared_ptr<const std::string>> by_index;
-  size_t total = 0;  ///< of those that were read for materials; at most max_gltf_bytes, as views may overlap
+  size_t total = 0;  ///< bytes read for materials; at most max_gltf_bytes, as buffer views may overlap
 };
-/// An image that exists, or a refusal.
-std::optional<GltfImage> read_gltf_image(const tinygltf::Model& model, int image, ImageBytes& images,
-                                         Refusal& refusal);
-/// A material that exists. Refuses textures that lead nowhere. Computed under lanes::FpGuard, which the caller holds.
-GltfMaterial read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal);
+/// Reads an image that exists, or refuses the file.
+std::optional<MaterialImage> read_gltf_image(const tinygltf::Model& model, int image, ImageBytes& images,
+                                             Refusal& refusal);
+/// Reads a material that exists. Refuses textures without an image. The caller holds lanes::FpGuard.
+Material read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal);
 
-/// Gives the vertices from `first` on tangents along u, from their positions, normals and texture coordinates;
-/// triangles from index `first_index` on point to them. A vertex without a direction of u gets any that is
-/// perpendicular to its normal.
+/// Computes tangents along u for the vertices from `first` on, which the triangles from index `first_index` on use. A
+/// vertex where u has no direction gets some tangent perpendicular to its normal.
 void add_tangents(Mesh& mesh, int64_t first, size_t first_index);
-/// Some unit vector.
+/// Returns some unit vector perpendicular to `normal`.
 glm::vec3 perpendicular_to(const glm::vec3& normal);
 
 }  // namespace isoshade::scene

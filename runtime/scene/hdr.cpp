@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance HDR: three bytes and an exponent a pixel.
+// Radiance HDR: three mantissa bytes and an exponent per pixel.
 // Source: Ward, "Real Pixels", Graphics Gems II, 1991; "Radiance File Formats", section picture, and Radiance's color.c.
 #include <algorithm>
 #include <array>
@@ -11,14 +11,14 @@
 #include "compiler/support/visible.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/chromaticities.h"
-#include "runtime/scene/image_codecs.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::scene {
 namespace {
 
 using Pixel = std::array<uint8_t, 4>;
 
-/// How the scanlines lie: "-Y 2 +X 3" is rows from the top, pixels of each from the left.
+/// The order of scanlines: "-Y 2 +X 3" means rows from the top, pixels from the left.
 struct Orientation {
   bool columns = false;  ///< scanlines are columns
   bool right_to_left = false;
@@ -28,7 +28,7 @@ struct Orientation {
 struct Header {
   ImageHeader size;
   Orientation orientation;
-  /// What colours are divided by: EXPOSURE tells by what they were multiplied, COLORCORR for each channel.
+  /// The divisor of the colours: EXPOSURE states the factor that they were multiplied by, COLORCORR one per channel.
   std::array<float, 3> scale{1, 1, 1};
   std::optional<Chromaticities> primaries;
 };
@@ -37,7 +37,7 @@ class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
 
-  /// Without its end, which may be that of DOS.
+  /// Without the line ending, which may be CR LF.
   std::string_view line() {
     const size_t end = rest_.find('\n');
     std::string_view found = rest_.substr(0, end);
@@ -51,7 +51,7 @@ class Reader {
     rest_.remove_prefix(1);
     return value;
   }
-  /// Whether a scanline of this length begins here that is packed by channel.
+  /// Whether a run-length scanline, compressed by channel, of this length begins here.
   bool packed(size_t length) const {
     const auto at = [&](size_t i) { return size_t{static_cast<uint8_t>(rest_[i])}; };
     return length >= 8 && length < 32768 && has(4) && at(0) == 2 && at(1) == 2 && at(2) == length >> 8 &&
@@ -88,7 +88,7 @@ bool read_size(std::string_view line, Header& header) {
   return seen_x && seen_y && take_word(line).empty();
 }
 
-/// As many numbers as there is room for, and no more.
+/// Exactly as many numbers as the span has.
 template <size_t N>
 bool read_numbers(std::string_view text, std::array<float, N>& numbers) {
   for (float& number : numbers) {
@@ -99,7 +99,7 @@ bool read_numbers(std::string_view text, std::array<float, N>& numbers) {
   return take_word(text).empty();
 }
 
-/// Takes a line of the header; why not, if it is refused.
+/// Reads a line of the header. Returns why it is refused; empty if it is not.
 std::string read_variable(std::string_view line, Header& header, bool& known) {
   const size_t equals = line.find('=');
   if (equals == std::string_view::npos || line.starts_with('#')) return {};
@@ -118,20 +118,20 @@ std::string read_variable(std::string_view line, Header& header, bool& known) {
     for (size_t c = 0; c < 3; ++c) {
       header.scale[c] = header.scale[c] * factors[c];
       if (!(header.scale[c] > 0 && std::isnormal(header.scale[c])))
-        return "its " + std::string(name) + " is no positive number";
+        return "its " + std::string(name) + " is not a positive number";
     }
   } else if (name == "PRIMARIES") {
     std::array<float, 8> p{};
     if (!read_numbers(value, p)) return "its PRIMARIES are not eight numbers";
-    // Some writers put zeros where they do not know.
+    // Some writers put zeros for unknown values.
     if (p == std::array<float, 8>{}) return {};
     header.primaries = {{p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]}, {p[6], p[7]}};
-    if (!to_rec709(*header.primaries).valid) return "its PRIMARIES span no colours";
+    if (!to_rec709(*header.primaries).valid) return "its PRIMARIES are degenerate";
   }
   return {};
 }
 
-/// Each channel in runs: above 128 of one value, else of values as they are.
+/// Each channel in runs: a count above 128 repeats one value, otherwise literal values follow.
 bool unpack(Reader& reader, std::vector<Pixel>& line) {
   for (size_t channel = 0; channel < 4; ++channel) {
     for (size_t x = 0; x < line.size();) {
@@ -147,8 +147,8 @@ bool unpack(Reader& reader, std::vector<Pixel>& line) {
   return true;
 }
 
-/// Pixels one after another. One of 1 1 1 n is none: the pixel before is repeated n times, and if more such follow,
-/// n * 256 times by the second, and so on.
+/// The old format: a pixel 1 1 1 n repeats the pixel before it n times; a second one that follows directly n * 256
+/// times, and so on.
 bool unpack_pixels(Reader& reader, std::vector<Pixel>& line) {
   int shift = 0;
   for (size_t x = 0; x < line.size();) {
@@ -175,7 +175,7 @@ bool read_scanline(Reader& reader, std::vector<Pixel>& line) {
   return unpack(reader, line);
 }
 
-/// Reads to where the scanlines begin.
+/// Reads up to the first scanline.
 Read<Header> read_to_scanlines(Reader& reader) {
   const lanes::FpGuard guard;
   Header header;
@@ -188,7 +188,7 @@ Read<Header> read_to_scanlines(Reader& reader) {
       return {{}, std::move(reason)};
   }
   if (!known) return {{}, "it is not of the format 32-bit_rle_rgbe"};
-  if (!read_size(reader.line(), header)) return {{}, "its size is not told as -Y rows +X columns"};
+  if (!read_size(reader.line(), header)) return {{}, "its size is not stated as -Y rows +X columns"};
   if (std::string reason = refuse_size(header.size.width, header.size.height); !reason.empty())
     return {{}, std::move(reason)};
   return {header, {}};
@@ -217,7 +217,8 @@ Read<FileImage> decode_hdr(std::string_view bytes) {
   const auto width = static_cast<size_t>(image.width), height = static_cast<size_t>(image.height);
   const size_t lines = orientation.columns ? width : height, length = orientation.columns ? height : width;
   const std::string truncated = "the file is damaged or truncated";
-  if (!reader.has(4 * lines)) return {{}, truncated};  // before memory is taken: no scanline has fewer
+  if (!reader.has(4 * lines))
+    return {{}, truncated};  // before memory is allocated: every scanline has at least 4 bytes
   image.rgba.resize(4 * width * height);
   std::vector<Pixel> line(length);
   const lanes::FpGuard guard;

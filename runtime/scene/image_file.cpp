@@ -7,7 +7,6 @@
 
 #include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
-#include "runtime/scene/image_codecs.h"
 #include "runtime/scene/output_file.h"
 #include "runtime/scene/scene.h"
 
@@ -33,7 +32,7 @@ Format format_of(const std::string& path) {
 
 bool check_image_path(const std::string& path, Diagnostics& diagnostics) {
   if (format_of(path) != Format::unknown) return true;
-  diagnostics.report(Id::unwritable_file, "no image format is written to " + quote(path))
+  diagnostics.report(Id::unwritable_file, "the name does not tell the image format of " + quote(path))
       .suggest("end the name in .png or .exr");
   return false;
 }
@@ -79,7 +78,7 @@ constexpr Codec codecs[] = {{is_png, read_png_header, decode_png},
                             {is_jpeg, read_jpeg_header, decode_jpeg},
                             {is_exr, read_exr_header, decode_exr},
                             {is_hdr, read_hdr_header, decode_hdr}};
-constexpr const char* unknown_format = "it is no PNG, JPEG, HDR or EXR file";
+constexpr const char* unknown_format = "it is not a PNG, JPEG, HDR or EXR file";
 
 }  // namespace
 

@@ -10,12 +10,12 @@
 // After jpeglib.h.
 #include <jerror.h>
 
-#include "runtime/scene/image_codecs.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::scene {
 namespace {
 
-/// Encoders write up to a dozen. Each may go over the whole picture, and a hundred bytes are enough for that.
+/// Encoders write up to a dozen scans. Each may cover the whole image in as little as a hundred bytes.
 constexpr int most_scans = 64;
 
 struct Errors : jpeg_error_mgr {
@@ -29,8 +29,8 @@ struct Errors : jpeg_error_mgr {
   std::longjmp(errors->escape, 1);
 }
 
-/// libjpeg warns of damaged data and goes on with what it makes up. Two of its warnings are of what leaves the picture
-/// as it is: bytes between two segments, and parameters of a sequential scan that mean nothing.
+/// libjpeg warns about damaged data and invents the rest. Two of its warnings are harmless: extra bytes between
+/// segments, and meaningless parameters of a sequential scan.
 void judge(j_common_ptr info, int level) {
   const int code = info->err->msg_code;
   if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_NOT_SEQUENTIAL) fail(info);
@@ -42,9 +42,9 @@ int count_scans(std::string_view bytes) {
   size_t at = 0;
   while ((at = bytes.find('\xff', at)) != std::string_view::npos && ++at < bytes.size()) {
     const auto marker = static_cast<unsigned char>(bytes[at]);
-    if (marker == 0xff) continue;                                        // fills
+    if (marker == 0xff) continue;                                        // fill bytes
     if (marker == 0xd9) break;                                           // the end of the image
-    if (marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8)) continue;  // no segments: 0 is data
+    if (marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8)) continue;  // not segments: 0 is data
     if (marker == 0xda) ++count;
     if (at + 2 >= bytes.size()) break;
     const auto byte = [&](size_t i) { return static_cast<unsigned char>(bytes[at + i]); };
@@ -53,7 +53,7 @@ int count_scans(std::string_view bytes) {
   return count;
 }
 
-/// Decodes one file. Its methods return why they cannot go on; empty if they can.
+/// Decodes one file. Its methods return the reason why they cannot continue, or an empty string.
 class Decoder {
  public:
   explicit Decoder(std::string_view bytes) : bytes_(bytes) {
@@ -76,12 +76,12 @@ class Decoder {
     if (info_.num_components == 4) return "it is CMYK: convert it to RGB";
     if (info_.num_components != 1 && info_.num_components != 3)
       return "it has " + std::to_string(info_.num_components) + " channels, not 1 or 3";
-    if (info_.arith_code != 0) return "it is packed by arithmetic coding: save it with Huffman coding";
+    if (info_.arith_code != 0) return "it uses arithmetic coding: save it with Huffman coding";
     return {};
   }
 
   std::string read_pixels(std::vector<uint32_t>& pixels) {
-    // Each block of 8x8 takes a bit at least: what has fewer is refused before memory is taken.
+    // Each 8x8 block takes at least one bit: shorter files are refused before memory is allocated.
     size_t blocks = 0;
     for (int c = 0; c < info_.num_components; ++c)
       blocks += size_t{info_.comp_info[c].width_in_blocks} * info_.comp_info[c].height_in_blocks;
@@ -98,8 +98,8 @@ class Decoder {
   }
 
  private:
-  /// Whether the step came to its end. On errors libjpeg jumps from it to here, so that no step may hold what has a
-  /// destructor while it calls libjpeg.
+  /// Whether the step succeeded. On errors libjpeg longjmps out of the step to here, so no step may hold an object with
+  /// a destructor while it calls libjpeg.
   bool run(void (Decoder::*step)()) {
     if (setjmp(errors_.escape) != 0) return false;
     (this->*step)();
@@ -107,7 +107,7 @@ class Decoder {
   }
 
   std::string failure() const {
-    if (errors_.msg_code == JERR_OUT_OF_MEMORY) return "there is no memory for it";
+    if (errors_.msg_code == JERR_OUT_OF_MEMORY) return "there is not enough memory for it";
     return errors_.reason;
   }
 
@@ -137,7 +137,7 @@ class Decoder {
     jpeg_finish_decompress(&info_);
   }
 
-  /// Starts, and takes back the Huffman tables that libjpeg supplies where a file has none: they are those of films.
+  /// Starts, and removes the Huffman tables that libjpeg supplies for files without any, which are for Motion JPEG.
   void forget_missing_tables() {
     std::array<bool, NUM_HUFF_TBLS> dc{}, ac{};
     for (size_t i = 0; i < NUM_HUFF_TBLS; ++i) {
@@ -151,14 +151,14 @@ class Decoder {
     }
   }
 
-  /// Reads all scans into blocks, before any pixel is made of them.
+  /// Reads the coefficients of all scans before any pixel is computed.
   bool read_scans() {
     for (int event = 0; event != JPEG_REACHED_EOI;) {
       event = jpeg_consume_input(&info_);
       if (event == JPEG_REACHED_SOS && !note_scan(false)) return false;
     }
     for (int c = 0; c < info_.num_components; ++c) {
-      // Of each coefficient the lowest bit that is known; -1: none.
+      // The lowest known bit of each coefficient; -1: none.
       const int* bits = info_.coef_bits == nullptr ? nullptr : info_.coef_bits[c];
       const bool whole = bits == nullptr
                              ? seen_[static_cast<size_t>(c)]
@@ -169,7 +169,7 @@ class Decoder {
     return true;
   }
 
-  /// The scan that comes next. Whether it is one of those that are read.
+  /// Reads the next scan. Returns whether it is supported.
   bool note_scan(bool first) {
     for (int i = 0; i < info_.comps_in_scan; ++i) {
       const jpeg_component_info& component = *info_.cur_comp_info[i];
@@ -177,8 +177,8 @@ class Decoder {
       bool& seen = seen_[static_cast<size_t>(component.component_index)];
       if (seen) return refuse("a channel has two scans");
       seen = true;
-      // Later scans find no tables but the file's.
-      const int dc = component.dc_tbl_no, ac = component.ac_tbl_no;  // up to 15, as the file has them
+      // Later scans use only the tables of the file.
+      const int dc = component.dc_tbl_no, ac = component.ac_tbl_no;  // up to 15, from the file
       if (first && (dc >= NUM_HUFF_TBLS || ac >= NUM_HUFF_TBLS || info_.dc_huff_tbl_ptrs[dc] == nullptr ||
                     info_.ac_huff_tbl_ptrs[ac] == nullptr))
         return refuse("it has no Huffman tables");
@@ -201,7 +201,7 @@ class Decoder {
   std::string_view bytes_;
   jpeg_decompress_struct info_{};
   Errors errors_{};
-  std::array<bool, MAX_COMPONENTS> seen_{};  ///< of the channels of a file that is not progressive
+  std::array<bool, MAX_COMPONENTS> seen_{};  ///< channels; for files that are not progressive
   std::vector<JSAMPLE> row_;
   std::vector<uint32_t>* pixels_ = nullptr;
   std::string reason_;

@@ -6,7 +6,7 @@
 
 #include "compiler/graph/document.h"
 #include "compiler/support/visible.h"
-#include "runtime/scene/settings.h"
+#include "runtime/scene/format.h"
 
 namespace isoshade::scene {
 namespace {
@@ -17,7 +17,7 @@ using graph::Member;
 using support::Id;
 using support::quote;
 
-constexpr const char* extends_key = "extends";
+constexpr std::string_view extends_key = format::scene::extends.name;
 
 size_t count_values(const Json& json) {
   size_t count = 1;
@@ -31,7 +31,7 @@ class Loader {
   Loader(const graph::FileRule& files, support::Diagnostics& diagnostics)
       : files_(files), diagnostics_(diagnostics) {}
 
-  /// The document on top of what it extends; `where` names it, if another does.
+  /// The document merged into the one that it extends. `where` is the text that names it, if a document does.
   std::optional<Document> load(const support::Source& source, const support::Span& where) {
     auto document = graph::parse_document(source, diagnostics_);
     if (!document) return std::nullopt;
@@ -44,10 +44,10 @@ class Loader {
     }
     const Json* extends = document->root.find(extends_key);
     if (extends == nullptr) return document;
-    // What it extends would give it these keys, but then it would be no document by itself.
+    // Checked before merging, because the base would supply missing keys.
     const auto kind = graph::document_kind(*document, diagnostics_);
     if (!kind) return std::nullopt;
-    if (*kind != graph::DocumentKind::scene) return document;  // reported by who wants a scene
+    if (*kind != graph::DocumentKind::scene) return document;  // reported by the caller
     chain_.push_back(graph::canonical_path(source->path()));
     const support::Span named_where = document->span(*extends);
     if (extends->kind != Json::Kind::string) {
@@ -66,7 +66,7 @@ class Loader {
  private:
   std::optional<Document> load_base(const std::string& path, const support::Span& where) {
     if (std::ranges::find(chain_, graph::canonical_path(path)) != chain_.end()) {
-      diagnostics_.report(Id::recursion, where, "the scene extends itself, by way of " + quote(path));
+      diagnostics_.report(Id::recursion, where, "the scene extends itself through " + quote(path));
       return std::nullopt;
     }
     if (chain_.size() > max_bases) {
@@ -82,7 +82,7 @@ class Loader {
     if (kind && *kind != graph::DocumentKind::scene) {
       diagnostics_.report(
           Id::wrong_kind, where,
-          quote(path) + " is no scene, but a document of the kind " + std::string(graph::kind_name(*kind)));
+          quote(path) + " is not a scene, but a document of the kind " + std::string(graph::kind_name(*kind)));
     }
     return kind == graph::DocumentKind::scene ? std::move(base) : std::nullopt;
   }

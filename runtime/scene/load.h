@@ -1,22 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene from its files.
+// A scene from its files, and `--set`: values of it replaced.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "compiler/graph/document.h"
 #include "compiler/graph/files.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::scene {
 
-/// How many scenes may extend each other in a row.
+/// The longest chain of scenes that extend each other.
 inline constexpr size_t max_bases = 16;
 
 /// Parses a scene, merges it into the one that it extends ("extends": "path beside it"; graph::merge), and that into
-/// the one that it extends, and writes the settings (settings.h) into what comes of it. Reports what is wrong.
+/// the one that it extends, and applies the settings to the result. Reports what is wrong.
 std::optional<Scene> load_scene(const support::Source& source, const std::vector<std::string>& settings,
                                 const graph::FileRule& files, support::Diagnostics& diagnostics);
+
+/// Writes values into a scene document, one setting after the other:
+///
+///     object.parameter=value   a parameter of an object's effect, for all copies in its grid
+///     post.parameter=value     a parameter of a post
+///     parameter=value          the same, where only one object or post has a parameter of that name
+///     light.key=value          "sun.intensity=2"
+///     camera.key=value         "camera.fov=30", and so output.key
+///     key=value                a key of the scene with a plain value, such as size
+///
+/// A path for a parameter of type filename is relative to the working directory, and may lead anywhere.
+///
+/// A value is JSON, or numbers with commas between them ("1,0.5,0"), or a plain word. parse_scene
+/// checks whether it fits; its reports show the setting. Reports settings that are malformed, or that name nothing or
+/// more than one thing, and then returns false.
+bool apply_settings(graph::Document& document, const std::vector<std::string>& settings,
+                    support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::scene

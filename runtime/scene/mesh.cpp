@@ -8,6 +8,8 @@
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/host_math.h"
 #include "runtime/scene/mesh_builder.h"
+#include "runtime/scene/mesh_formats.h"
+#include "runtime/scene/model.h"
 
 namespace isoshade::scene {
 
@@ -100,7 +102,7 @@ Mesh make_mesh(const MeshShape& shape) {
     case MeshKind::cone: make_cone(shape, mesh); break;
     case MeshKind::torus: make_torus(shape, mesh); break;
     case MeshKind::lathe: make_lathe(shape, mesh); break;
-    case MeshKind::gltf: support::bug("a glTF is no mesh made by rule");
+    case MeshKind::file: support::bug("a file is not a mesh made by rule");
   }
   add_outline_normals(mesh);
   find_box(mesh);
@@ -117,6 +119,20 @@ void fit_to_unit_size(Mesh& mesh) {
     for (int axis = 0; axis < 3; ++axis) p[axis] = canonical((p[axis] - middle[axis]) / longest);
   }
   find_box(mesh);
+}
+
+std::optional<Model> make_model(const MeshShape& shape, const support::Span& where,
+                                support::Diagnostics& diagnostics) {
+  if (shape.kind == MeshKind::file) {
+    auto model = mesh_formats[shape.format].load(shape.file, where, diagnostics);
+    if (model && shape.fit) fit_to_unit_size(model->mesh);
+    return model;
+  }
+  Model model{make_mesh(shape), {}};
+  ModelPart& all = model.parts.emplace_back();
+  all.index_count = model.mesh.indices.size();
+  all.vertex_count = model.mesh.vertices.size() / lower::vertex_word::stride;
+  return model;
 }
 
 }  // namespace isoshade::scene

@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes made by rule. One shape is one set of bits on every machine.
+// Meshes made by rule. A shape has the same bits on every machine.
 #pragma once
 
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace isoshade::scene {
 
-enum class MeshKind : uint8_t { sphere, plane, box, icosphere, cylinder, cone, torus, lathe, gltf };
+/// Shapes that are made by rule, and meshes that are read from files.
+enum class MeshKind : uint8_t { sphere, plane, box, icosphere, cylinder, cone, torus, lathe, file };
+/// The names of those made by rule; files are called by their formats (mesh_formats.h).
+inline constexpr std::string_view ruled_mesh_names[] = {"sphere",   "plane", "box",   "icosphere",
+                                                        "cylinder", "cone",  "torus", "lathe"};
+static_assert(std::size(ruled_mesh_names) == static_cast<size_t>(MeshKind::file));
 
 inline constexpr int64_t max_segments = 1024;      ///< of a mesh, along each direction
 inline constexpr int64_t max_subdivisions = 8;     ///< of an icosphere
 inline constexpr size_t max_profile_points = 256;  ///< of a lathe
 
-/// A point of the outline that a lathe turns: a circle around the y axis.
+/// A point of the profile of a lathe: a circle around the y axis.
 struct ProfilePoint {
   float radius = 0, height = 0;  ///< the radius is 0 only at an end
   bool smooth = true;            ///< no edge runs along the circle
   auto operator<=>(const ProfilePoint&) const = default;
 };
 
-/// What a mesh is made from. Equal shapes give equal meshes.
+/// The description of a mesh. Equal shapes have equal meshes.
 struct MeshShape {
   MeshKind kind = MeshKind::sphere;
   /// (Ico)sphere: the radius in each component; plane: x and z; box: x, y and z; cylinder, cone: the radius and
@@ -33,34 +40,35 @@ struct MeshShape {
   int rings = 32;     ///< sphere: from pole to pole; cylinder, cone: along the side; torus: around the tube;
                       ///< icosphere: how often its triangles are cut into four
   bool caps = true;   ///< cylinder, cone: whether their ends are closed
-  std::vector<ProfilePoint> profile{};  ///< lathe: at least 2 points, each apart from the one before
-  std::string file{};                   ///< gltf: its path
-  bool fit = false;                     ///< gltf: centred, and scaled to unit size
+  std::vector<ProfilePoint> profile{};  ///< lathe: at least 2 points; consecutive ones differ
+  std::string file{};                   ///< file: its path
+  size_t format = 0;                    ///< file: in mesh_formats
+  bool fit = false;                     ///< file: centred, and scaled to unit size
   bool operator==(const MeshShape&) const = default;
 };
 
-/// Vertices are records of lower::vertex_word, indices triples. Seen from outside (a plane: from above; a
-/// lathe: from the right of the profile's way), triangles run counter-clockwise; none is degenerate.
+/// Vertices are records of lower::vertex_word, indices are triples. Triangles are counter-clockwise seen from outside
+/// (a plane: from above; a lathe: from the right of the profile's direction); none is degenerate.
 struct Mesh {
   std::vector<float> vertices;
   std::vector<uint32_t> indices;
-  glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the box around all positions
+  glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the bounding box
 };
 
-/// All but the lathe are centred on the origin; what turns does so about y. Longitude runs from -z over -x, +z
-/// and +x, and u with it; v runs down.
+/// All but the lathe are centred on the origin; y is the axis of revolution. Longitude runs from -z over -x, +z and +x,
+/// and u with it; v runs down.
 ///
 /// Sphere: poles at +y (v = 0) and -y. Icosphere: the same texture on triangles of nearly one size; u passes 1
-/// in those that cross the seam. Plane: in y = 0, facing +y, u along +x and v along +z. Box: each face of its
+/// in those that cross the seam. Plane: in y = 0, facing +y, u along +x and v along +z. Box: each face has its
 /// own 4 vertices. Cylinder, cone (its tip at +y): v is 0 to 1 on the side and on each cap, from its middle at
 /// the top, to its middle at the bottom. Torus: v runs around the tube from the inside over the top. Lathe: v
-/// is the part of the profile's length that is left. Tangents run along u, normal x tangent against v; vertices
+/// is the remaining fraction of the profile's length. Tangents run along u, normal x tangent against v; vertices
 /// are white.
 ///
-/// `shape` is none of gltf: load_gltf reads those.
+/// `shape` is not a file.
 Mesh make_mesh(const MeshShape& shape);
 
-/// Moves the middle of the box around all positions to the origin, and makes its longest edge 1.
+/// Centres the bounding box on the origin and scales it so that its longest edge is 1.
 void fit_to_unit_size(Mesh& mesh);
 
 }  // namespace isoshade::scene

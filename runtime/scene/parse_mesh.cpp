@@ -9,42 +9,22 @@ namespace isoshade::scene {
 
 using graph::Document;
 using graph::Json;
-using graph::ObjectReader;
-using graph::Range;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
-using Need = ObjectReader::Need;
+using MeshReader = format::Reader<format::Object::mesh>;
+namespace key = format::mesh;
 
 namespace {
-
-constexpr float least_size = 1e-6f;
-constexpr float most_size = 1e6f;
-constexpr Range sizes{least_size, most_size};
-
-/// The order of MeshKind.
-const std::vector<std::string_view> kinds = {"sphere", "plane", "box",   "icosphere", "cylinder",
-                                             "cone",   "torus", "lathe", "gltf"};
-
-MeshShape default_shape(MeshKind kind) {
-  switch (kind) {
-    case MeshKind::plane: return {kind, {1, 0, 1}, 1, 1};
-    case MeshKind::icosphere: return {kind, {1, 1, 1}, 1, 4};
-    case MeshKind::cylinder:
-    case MeshKind::cone: return {kind, {1, 2, 1}, 64, 1};
-    case MeshKind::torus: return {kind, {1, 0.25f, 1}, 64, 32};
-    default: return {kind, {1, 1, 1}, 64, 32};
-  }
-}
 
 /// [radius, height], or {"at": [radius, height], "smooth": false}.
 ProfilePoint parse_point(const Document& document, const Json& json, bool smooth, Diagnostics& diagnostics) {
   ProfilePoint point{0, 0, smooth};
   std::array<float, 2> at{};
   if (json.kind == Json::Kind::object) {
-    ObjectReader reader(document, json, "profile", diagnostics);
-    at = reader.numbers<2>("at", {-most_size, most_size});
-    point.smooth = reader.boolean("smooth", smooth);
+    format::Reader<format::Object::profile_point> reader(document, json, "profile", diagnostics);
+    at = reader.read(format::profile_point::at);
+    point.smooth = reader.read(format::profile_point::smooth, smooth);
     if (!reader.finish()) return point;
   } else {
     const auto literal = graph::parse_literal(document, json, "profile", diagnostics);
@@ -59,8 +39,9 @@ ProfilePoint parse_point(const Document& document, const Json& json, bool smooth
   }
   point.radius = at[0] == 0 ? 0.0f : at[0];
   point.height = at[1];
-  const bool in_range = point.radius == 0 || (point.radius >= least_size && point.radius <= most_size);
-  if (!in_range || !(std::abs(point.height) <= most_size)) {
+  const bool in_range =
+      point.radius == 0 || (point.radius >= format::smallest_size && point.radius <= format::largest_size);
+  if (!in_range || !(std::abs(point.height) <= format::largest_size)) {
     diagnostics.report(Id::out_of_range, document.span(json),
                        "the radius is 0 or from 1e-6 to 1e6, and the height from -1e6 to 1e6");
   }
@@ -77,7 +58,7 @@ void check_profile(const Document& document, const Json& json, const std::vector
     }
     if (i == 0) continue;
     const ProfilePoint &a = profile[i - 1], &b = profile[i];
-    if (std::max(std::abs(a.radius - b.radius), std::abs(a.height - b.height)) < least_size) {
+    if (std::max(std::abs(a.radius - b.radius), std::abs(a.height - b.height)) < format::smallest_size) {
       diagnostics.report(Id::degenerate, where, "two points of a profile coincide or nearly so");
       return;
     }
@@ -88,15 +69,16 @@ void check_profile(const Document& document, const Json& json, const std::vector
   }
 }
 
-std::vector<ProfilePoint> parse_profile(const Document& document, ObjectReader& reader,
+std::vector<ProfilePoint> parse_profile(const Document& document, MeshReader& reader,
                                         Diagnostics& diagnostics) {
-  const bool smooth = reader.boolean("smooth", true);
-  const Json* json = reader.array("profile");
+  const bool smooth = reader.read(key::smooth);
+  const Json* json = reader.read(key::profile);
   std::vector<ProfilePoint> profile;
   if (json == nullptr) return profile;
-  if (json->items.size() < 2 || json->items.size() > max_profile_points) {
+  const auto& [object, least, most] = key::profile.type;
+  if (json->items.size() < least || json->items.size() > most) {
     diagnostics.report(Id::out_of_range, document.span(*json),
-                       "a profile has 2 to " + std::to_string(max_profile_points) + " points");
+                       "a profile has " + std::to_string(least) + " to " + std::to_string(most) + " points");
     return profile;
   }
   const size_t errors = diagnostics.error_count();
@@ -105,92 +87,111 @@ std::vector<ProfilePoint> parse_profile(const Document& document, ObjectReader& 
   return profile;
 }
 
-void read_radius_and_height(ObjectReader& reader, MeshShape& shape) {
-  shape.size.x = reader.number("radius", sizes, shape.size.x);
-  shape.size.y = reader.number("height", sizes, shape.size.y);
-}
-
-void read_count(ObjectReader& reader, std::string_view key, Range range, int& count) {
-  count = static_cast<int>(reader.integer(key, range, count));
-}
-
-void read_torus(const Document& document, const Json& json, ObjectReader& reader, MeshShape& shape,
-                Diagnostics& diagnostics) {
-  shape.size.x = reader.number("radius", sizes, shape.size.x);
-  shape.size.y = reader.number("tube", sizes, shape.size.y);
-  // Else the hole closes; a little more, so that its triangles have an area.
-  if (shape.size.y <= 0.999f * shape.size.x) return;
-  diagnostics.report(Id::out_of_range, document.span(json),
+/// Otherwise the hole closes. A little less than the radius, so that its triangles have an area.
+void check_tube(const MeshShape& torus, const support::Span& where, Diagnostics& diagnostics) {
+  if (torus.size.y <= 0.999f * torus.size.x) return;
+  diagnostics.report(Id::out_of_range, where,
                      "the \"tube\" of a torus is thinner than 0.999 of its \"radius\"");
+}
+
+/// The number of a mesh that is given by its name alone; reports one that does not exist, or needs more than its name.
+std::optional<size_t> find_mesh(const std::string& name, const support::Span& where,
+                                Diagnostics& diagnostics) {
+  const auto& names = format::mesh_names;
+  const auto number = static_cast<size_t>(std::ranges::find(names, name) - names.begin());
+  if (number == names.size()) {
+    std::string list;
+    for (const std::string_view known : names) list.append(list.empty() ? "" : ", ").append(known);
+    diagnostics
+        .report_unknown(Id::out_of_range, where, "no mesh is called " + quote(name), name,
+                        {names.begin(), names.end()})
+        .note("there are " + list);
+    return std::nullopt;
+  }
+  if (number == static_cast<size_t>(MeshKind::lathe)) {
+    diagnostics.report(
+        Id::wrong_type, where,
+        "a lathe needs a profile: {\"type\": \"lathe\", \"profile\": [[radius, height], ...]}");
+    return std::nullopt;
+  }
+  if (number >= static_cast<size_t>(MeshKind::file)) {
+    const MeshFormat& format = mesh_formats[number - static_cast<size_t>(MeshKind::file)];
+    diagnostics.report(Id::wrong_type, where,
+                       "a " + std::string(format.title) + " is a file: {\"type\": \"" +
+                           std::string(format.name) + "\", \"file\": \"model" +
+                           std::string(format.extensions.back()) + "\"}");
+    return std::nullopt;
+  }
+  return number;
+}
+
+int count(int64_t number) { return static_cast<int>(number); }
+
+/// The keys of the mesh with this number in format::mesh_names.
+MeshShape read_shape(const Document& document, size_t number, MeshReader& reader, const support::Span& where,
+                     Diagnostics& diagnostics) {
+  MeshShape shape;
+  shape.kind = static_cast<MeshKind>(std::min(number, static_cast<size_t>(MeshKind::file)));
+  shape.rings = shape.segments = 1;
+  switch (shape.kind) {
+    case MeshKind::sphere:
+      shape.size = glm::vec3(reader.read(key::radius));
+      shape.segments = count(reader.read(key::segments));
+      shape.rings = count(reader.read(key::sphere_rings));
+      break;
+    case MeshKind::plane: {
+      const auto size = reader.read(key::plane_size);
+      shape.size = {size[0], 0, size[1]};
+      shape.segments = count(reader.read(key::plane_segments));
+      break;
+    }
+    case MeshKind::box: shape.size = to_vec3(reader.read(key::box_size)); break;
+    case MeshKind::icosphere:
+      shape.size = glm::vec3(reader.read(key::radius));
+      shape.rings = count(reader.read(key::subdivisions));
+      break;
+    case MeshKind::cylinder:
+    case MeshKind::cone:
+      shape.size.x = reader.read(key::radius);
+      shape.size.y = reader.read(key::height);
+      shape.segments = count(reader.read(key::segments));
+      shape.rings = count(reader.read(key::side_rings));
+      shape.caps = reader.read(key::caps);
+      break;
+    case MeshKind::torus:
+      shape.size.x = reader.read(key::radius);
+      shape.size.y = reader.read(key::tube);
+      shape.segments = count(reader.read(key::segments));
+      shape.rings = count(reader.read(key::tube_rings));
+      check_tube(shape, where, diagnostics);
+      break;
+    case MeshKind::lathe:
+      shape.profile = parse_profile(document, reader, diagnostics);
+      shape.segments = count(reader.read(key::segments));
+      break;
+    case MeshKind::file:
+      shape.file = reader.read(key::file);
+      shape.format = number - static_cast<size_t>(MeshKind::file);
+      shape.fit = reader.read(key::fit);
+      break;
+  }
+  return shape;
 }
 
 }  // namespace
 
 MeshShape parse_mesh(const Document& document, const Json& json, Diagnostics& diagnostics) {
-  constexpr Range around{3, max_segments}, along{1, max_segments};
+  const support::Span where = document.span(json);
   if (json.kind == Json::Kind::string) {
-    const auto found = std::find(kinds.begin(), kinds.end(), json.string);
-    if (found == kinds.end()) {
-      std::string list;
-      for (const std::string_view kind : kinds) list.append(list.empty() ? "" : ", ").append(kind);
-      diagnostics
-          .report_unknown(Id::out_of_range, document.span(json), "no mesh is called " + quote(json.string),
-                          json.string, kinds)
-          .note("there are " + list);
-      return {};
-    }
-    const auto kind = static_cast<MeshKind>(found - kinds.begin());
-    if (kind == MeshKind::lathe) {
-      diagnostics.report(
-          Id::wrong_type, document.span(json),
-          "a lathe needs a profile: {\"type\": \"lathe\", \"profile\": [[radius, height], ...]}");
-    }
-    if (kind == MeshKind::gltf) {
-      diagnostics.report(Id::wrong_type, document.span(json),
-                         "a glTF is a file: {\"type\": \"gltf\", \"file\": \"model.glb\"}");
-    }
-    return default_shape(kind);
+    const auto number = find_mesh(json.string, where, diagnostics);
+    Json no_keys;
+    no_keys.kind = Json::Kind::object;
+    MeshReader reader(document, no_keys, "a mesh", diagnostics);
+    return number ? read_shape(document, *number, reader, where, diagnostics) : MeshShape{};
   }
-  ObjectReader reader(document, json, "a mesh", diagnostics);
-  MeshShape shape = default_shape(static_cast<MeshKind>(reader.choice("type", kinds)));
-  switch (shape.kind) {
-    case MeshKind::sphere:
-      shape.size = glm::vec3(reader.number("radius", sizes, 1.0f));
-      read_count(reader, "segments", around, shape.segments);
-      read_count(reader, "rings", {2, max_segments}, shape.rings);
-      break;
-    case MeshKind::plane: {
-      const auto size = reader.numbers<2>("size", sizes, {{1, 1}});
-      shape.size = {size[0], 0, size[1]};
-      read_count(reader, "segments", along, shape.segments);
-      break;
-    }
-    case MeshKind::box: shape.size = to_vec3(reader.numbers<3>("size", sizes, {{1, 1, 1}})); break;
-    case MeshKind::icosphere:
-      shape.size = glm::vec3(reader.number("radius", sizes, 1.0f));
-      read_count(reader, "subdivisions", {0, max_subdivisions}, shape.rings);
-      break;
-    case MeshKind::cylinder:
-    case MeshKind::cone:
-      read_radius_and_height(reader, shape);
-      read_count(reader, "segments", around, shape.segments);
-      read_count(reader, "rings", along, shape.rings);
-      shape.caps = reader.boolean("caps", true);
-      break;
-    case MeshKind::torus:
-      read_torus(document, json, reader, shape, diagnostics);
-      read_count(reader, "segments", around, shape.segments);
-      read_count(reader, "rings", around, shape.rings);
-      break;
-    case MeshKind::lathe:
-      shape.profile = parse_profile(document, reader, diagnostics);
-      read_count(reader, "segments", around, shape.segments);
-      break;
-    case MeshKind::gltf:
-      shape.file = reader.path("file");
-      shape.fit = reader.boolean("fit", false);
-      break;
-  }
+  MeshReader reader(document, json, "a mesh", diagnostics);
+  const size_t number = reader.read(key::type);
+  const MeshShape shape = read_shape(document, number, reader, where, diagnostics);
   reader.finish();
   return shape;
 }

@@ -13,61 +13,40 @@ using graph::Document;
 using graph::Json;
 using graph::Literal;
 using graph::Member;
-using graph::ObjectReader;
-using graph::Range;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
-using Need = ObjectReader::Need;
 
 namespace {
 
-constexpr Range degrees{-max_degrees, max_degrees};
-
-glm::vec3 parse_scale(const Document& document, ObjectReader& reader, const std::string& what,
+/// A scale without zeros, or 1 after a report.
+glm::vec3 check_scale(const std::array<float, 3>& scale, const std::string& what, const support::Span& where,
                       Diagnostics& diagnostics) {
-  constexpr Range range{-1e6, 1e6};
-  const Json* json = reader.value("scale", Need::optional);
-  const size_t errors_before = diagnostics.error_count();
-  glm::vec3 scale(1);
-  if (json == nullptr) return scale;
-  if (json->kind == Json::Kind::number) {
-    scale = glm::vec3(reader.number("scale", range));
-  } else if (json->kind == Json::Kind::array) {
-    scale = to_vec3(reader.numbers<3>("scale", range, {{1, 1, 1}}));
-  } else {
-    reader.report_wrong("scale", *json, "a number or an array of 3 numbers");
-  }
-  if (diagnostics.error_count() != errors_before) return glm::vec3(1);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(scale[axis]) >= 1e-6f) continue;
-    diagnostics.report(Id::degenerate, document.span(*json), "\"scale\" of " + what + " is zero or nearly so")
-        .note("a flattened object has no normals; use a plane");
-    return glm::vec3(1);
-  }
-  return scale;
+  const bool flat = std::ranges::any_of(scale, [](float factor) { return !(std::abs(factor) >= 1e-6f); });
+  if (!flat) return to_vec3(scale);
+  diagnostics.report(Id::degenerate, where, "\"scale\" of " + what + " is zero or nearly so")
+      .note("a flattened object has no normals; use a plane");
+  return glm::vec3(1);
 }
 
 Transform parse_transform(const Document& document, const Json& json, const std::string& object,
                           Diagnostics& diagnostics) {
+  namespace key = format::transform;
   Transform transform;
   const std::string what = "the transform of " + object;
-  ObjectReader reader(document, json, what, diagnostics);
-  transform.translate = to_vec3(reader.numbers<3>("translate", coordinates, {{0, 0, 0}}));
-  transform.scale = parse_scale(document, reader, what, diagnostics);
-  const Json* rotate = reader.value("rotate", Need::optional);
-  if (rotate != nullptr && rotate->kind == Json::Kind::array && rotate->items.size() == 4) {
-    const std::array<float, 4> q = reader.numbers<4>("rotate", {-1, 1});
-    const double square =
-        double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3];
-    if (std::abs(square - 1) < 1e-3) {
-      transform.rotation = q;
-    } else {
-      diagnostics.report(Id::out_of_range, document.span(*rotate),
-                         "\"rotate\" of " + what + " has 4 numbers, but they are no quaternion of length 1");
-    }
-  } else if (rotate != nullptr) {
-    transform.rotate = to_vec3(reader.numbers<3>("rotate", degrees, {{0, 0, 0}}));
+  format::Reader<format::Object::transform> reader(document, json, what, diagnostics);
+  transform.translate = to_vec3(reader.read(key::translate));
+  transform.scale = check_scale(reader.read(key::scale), what, reader.where(key::scale), diagnostics);
+  bool is_quaternion = false;
+  const std::array<float, 4> r = reader.read(key::rotate, is_quaternion);
+  const double square = double{r[0]} * r[0] + double{r[1]} * r[1] + double{r[2]} * r[2] + double{r[3]} * r[3];
+  if (!is_quaternion) {
+    transform.rotate = {r[0], r[1], r[2]};
+  } else if (std::abs(square - 1) < 1e-3) {
+    transform.rotation = r;
+  } else {
+    diagnostics.report(Id::out_of_range, reader.where(key::rotate),
+                       "\"rotate\" of " + what + " has 4 numbers, which are not a quaternion of length 1");
   }
   reader.finish();
   return transform;
@@ -82,25 +61,28 @@ size_t number_count(const Literal& literal) {
 std::optional<Variation> parse_variation(const Document& document, const Member& member, int64_t count,
                                          Diagnostics& diagnostics) {
   Variation variation{member.key, {}, false, document.key_span(member), document.span(member.value)};
-  ObjectReader reader(document, member.value, "the variation of " + quote(member.key), diagnostics);
-  const Json* values = reader.array("values", Need::optional);
-  variation.listed = values != nullptr;
-  if (values != nullptr) {
-    if (static_cast<int64_t>(values->items.size()) != count) {
+  namespace key = format::variation;
+  format::Reader<format::Object::variation> reader(document, member.value,
+                                                   "the variation of " + quote(member.key), diagnostics);
+  variation.listed = reader.has(key::values);
+  if (variation.listed) {
+    const Json* values = reader.read(key::values);
+    if (values != nullptr && static_cast<int64_t>(values->items.size()) != count) {
       diagnostics.report(Id::wrong_type, document.span(*values),
                          "\"values\" of " + quote(member.key) + " needs one value for each of " +
                              std::to_string(count) + " places, not " + std::to_string(values->items.size()));
     }
-    for (const Json& item : values->items) {
-      if (const auto literal = graph::parse_literal(document, item, member.key, diagnostics))
+    for (size_t i = 0; values != nullptr && i < values->items.size(); ++i) {
+      if (const auto literal = graph::parse_literal(document, values->items[i], member.key, diagnostics))
         variation.values.push_back(*literal);
     }
   } else {
-    for (const std::string_view key : {"from", "to"}) {
-      const Json* json = reader.value(key);
-      const auto literal = json ? graph::parse_literal(document, *json, key, diagnostics) : std::nullopt;
+    for (const auto* end : {&key::from, &key::to}) {
+      const Json* json = reader.read(*end);
+      const auto literal =
+          json ? graph::parse_literal(document, *json, end->name, diagnostics) : std::nullopt;
       if (!literal) continue;
-      if (number_count(*literal) == 0) reader.report_wrong(key, *json, "a number or an array of numbers");
+      if (number_count(*literal) == 0) reader.report_wrong(*end, *json, "a number or an array of numbers");
       variation.values.push_back(*literal);
     }
     if (variation.values.size() == 2 &&
@@ -116,10 +98,12 @@ std::optional<Variation> parse_variation(const Document& document, const Member&
 Repeat parse_repeat(const Document& document, const Json& json, const std::string& object,
                     Diagnostics& diagnostics) {
   Repeat repeat;
-  ObjectReader reader(document, json, "an axis of the grid of " + object, diagnostics);
-  repeat.count = reader.integer("count", {1, static_cast<double>(max_instances)});
-  repeat.step = to_vec3(reader.numbers<3>("step", coordinates));
-  if (const Json* variations = reader.object("parameters", Need::optional)) {
+  namespace key = format::repeat;
+  format::Reader<format::Object::repeat> reader(document, json, "an axis of the grid of " + object,
+                                                diagnostics);
+  repeat.count = reader.read(key::count);
+  repeat.step = to_vec3(reader.read(key::step));
+  if (const Json* variations = reader.read(key::parameters)) {
     for (const Member& member : variations->members) {
       auto variation = parse_variation(document, member, std::max<int64_t>(repeat.count, 1), diagnostics);
       if (variation) repeat.variations.push_back(*std::move(variation));
@@ -167,22 +151,21 @@ Object parse_object(const Document& document, const Member& member, Diagnostics&
   object.name = member.key;
   object.name_where = document.key_span(member);
   const std::string what = "object " + quote(member.key);
-  ObjectReader reader(document, member.value, what, diagnostics);
-  if (const Json* mesh = reader.value("mesh")) {
-    object.mesh = parse_mesh(document, *mesh, diagnostics);
-    object.mesh_where = document.span(*mesh);
-  }
-  object.effect = reader.path("effect");
-  if (const Json* effect = reader.value("effect", Need::optional))
-    object.effect_where = document.span(*effect);
-  if (const Json* transform = reader.object("transform", Need::optional))
+  namespace key = format::object;
+  format::Reader<format::Object::object> reader(document, member.value, what, diagnostics);
+  if (const Json* mesh = reader.read(key::mesh)) object.mesh = parse_mesh(document, *mesh, diagnostics);
+  object.mesh_where = reader.where(key::mesh);
+  object.effect = reader.read(key::effect);
+  object.effect_where = reader.where(key::effect);
+  if (const Json* transform = reader.read(key::transform))
     object.transform = parse_transform(document, *transform, what, diagnostics);
-  if (const Json* parameters = reader.object("parameters", Need::optional))
+  if (const Json* parameters = reader.read(key::parameters))
     object.parameters = parse_parameters(document, *parameters, diagnostics);
-  if (const Json* repeat = reader.array("repeat", Need::optional)) {
-    if (repeat->items.size() > 3) {
-      diagnostics.report(Id::out_of_range, document.span(*repeat),
-                         "the grid of " + what + " has more than 3 axes");
+  if (const Json* repeat = reader.read(key::repeat)) {
+    if (repeat->items.size() > key::repeat.type.most) {
+      diagnostics.report(
+          Id::out_of_range, document.span(*repeat),
+          "the grid of " + what + " has more than " + std::to_string(key::repeat.type.most) + " axes");
     } else {
       for (const Json& axis : repeat->items)
         object.repeat.push_back(parse_repeat(document, axis, what, diagnostics));

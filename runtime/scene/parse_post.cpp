@@ -10,11 +10,9 @@ namespace isoshade::scene {
 using graph::Document;
 using graph::Json;
 using graph::Member;
-using graph::ObjectReader;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
-using Need = ObjectReader::Need;
 
 namespace {
 
@@ -54,24 +52,22 @@ void parse_inputs(const Document& document, const Json& json, const std::vector<
 
 Post parse_post(const Document& document, const Json& json, const std::vector<Post>& before,
                 Diagnostics& diagnostics) {
+  namespace key = format::post;
   Post post;
-  ObjectReader reader(document, json, "a post of the scene", diagnostics);
-  post.name = reader.string("name");
-  if (const Json* name = reader.value("name", Need::optional)) {
-    post.name_where = document.span(*name);
-    if (name->kind == Json::Kind::string && name->string.empty())
-      diagnostics.report(Id::bad_id, post.name_where, "a post needs a name that is not empty");
-  }
-  post.effect = reader.path("effect");
-  if (const Json* effect = reader.value("effect", Need::optional)) post.effect_where = document.span(*effect);
-  if (const Json* parameters = reader.object("parameters", Need::optional))
+  format::Reader<format::Object::post> reader(document, json, "a post of the scene", diagnostics);
+  post.name = reader.read(key::name);
+  post.name_where = reader.where(key::name);
+  const Json* name = json.find(key::name.name);
+  if (name != nullptr && name->kind == Json::Kind::string && name->string.empty())
+    diagnostics.report(Id::bad_id, post.name_where, "a post needs a name that is not empty");
+  post.effect = reader.read(key::effect);
+  post.effect_where = reader.where(key::effect);
+  if (const Json* parameters = reader.read(key::parameters))
     post.parameters = parse_parameters(document, *parameters, diagnostics);
-  if (const Json* inputs = reader.object("inputs", Need::optional))
+  if (const Json* inputs = reader.read(key::inputs))
     parse_inputs(document, *inputs, before, post, diagnostics);
-  constexpr double smallest = 1.0 / max_size;
-  post.size = reader.number("size", {smallest, 1}, 1.0f);
-  const Json* size = reader.value("size", Need::optional);
-  post.size_where = size != nullptr ? document.span(*size) : post.name_where;
+  post.size = reader.read(key::size);
+  post.size_where = reader.has(key::size) ? reader.where(key::size) : post.name_where;
   reader.finish();
   return post;
 }

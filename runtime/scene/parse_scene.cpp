@@ -10,16 +10,12 @@ namespace isoshade::scene {
 using graph::Document;
 using graph::Json;
 using graph::Member;
-using graph::ObjectReader;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
-using Need = ObjectReader::Need;
+using SceneReader = format::Reader<format::Object::scene>;
 
 namespace {
-
-/// Names that settings give to the scene's own parts.
-constexpr std::string_view reserved_names[] = {"camera", "output"};
 
 /// Objects, lights and posts share their names, so that a setting means one thing.
 class Names {
@@ -32,8 +28,9 @@ class Names {
   }
 
   void enter(const std::string& name, const support::Span& where, std::string_view what) {
-    const bool reserved =
-        std::find(std::begin(reserved_names), std::end(reserved_names), name) != std::end(reserved_names);
+    // Settings call parts of the scene by these names.
+    const std::vector<std::string_view> parts = format::object_keys_of_scene();
+    const bool reserved = std::ranges::find(parts, name) != parts.end();
     if (!graph::is_id(name) || reserved) {
       diagnostics_.report(Id::bad_id, where, quote(name) + " cannot name " + std::string(what))
           .note(reserved ? "it names a part of the scene itself"
@@ -59,39 +56,22 @@ class Names {
   std::unordered_map<std::string, Named> names_;
 };
 
-void parse_size(const Document& document, ObjectReader& reader, Scene& scene, Diagnostics& diagnostics) {
-  const Json* size = reader.array("size", Need::optional);
-  if (size == nullptr) return;
-  const bool integers = size->items.size() == 2 && std::ranges::all_of(size->items, graph::is_whole);
-  if (!integers) {
-    diagnostics.report(Id::wrong_type, document.span(*size), "\"size\" of a scene is an array of 2 integers");
-    return;
-  }
-  const auto side = [&](const Json& json) {
-    return reader.check_range("size", json, {1, max_size}) ? static_cast<int>(document.to_integer(json)) : 1;
-  };
-  scene.width = side(size->items[0]);
-  scene.height = side(size->items[1]);
-}
-
-void parse_samples(const Document& document, ObjectReader& reader, Scene& scene, Diagnostics& diagnostics) {
-  const Json* json = document.root.find("samples");
-  const int64_t samples = reader.integer("samples", coordinates, 1);
-  if (json == nullptr) return;
-  scene.samples_where = document.span(*json);
-  scene.samples = static_cast<int>(samples);
-  if (samples == 1 || samples == 4 || samples == 16) return;
+int parse_samples(SceneReader& reader, Diagnostics& diagnostics) {
+  constexpr auto& key = format::scene::samples;
+  const int64_t samples = reader.read(key);
+  if (std::ranges::find(key.type.values, samples) != key.type.values.end()) return static_cast<int>(samples);
   diagnostics
-      .report(Id::out_of_range, scene.samples_where,
+      .report(Id::out_of_range, reader.where(key),
               "a pixel has 1, 4 or 16 samples, not " + std::to_string(samples))
-      .note("they lie in one row, two or four");
+      .note("they form 1, 2 or 4 rows of as many");
+  return key.type.fallback;
 }
 
 Output parse_output(const Document& document, const Json& json, Diagnostics& diagnostics) {
   Output output;
-  ObjectReader reader(document, json, "the output", diagnostics);
-  output.encoding = static_cast<Encoding>(reader.choice("encoding", {"srgb", "linear"}, 0));
-  output.exposure = reader.number("exposure", brightness, 1.0f);
+  format::Reader<format::Object::output> reader(document, json, "the output", diagnostics);
+  output.encoding = static_cast<Encoding>(reader.read(format::output::encoding));
+  output.exposure = reader.read(format::output::exposure);
   reader.finish();
   return output;
 }
@@ -136,7 +116,7 @@ void parse_posts(const Document& document, const Json& json, Names& names, Scene
     Post post = parse_post(document, item, scene.posts, diagnostics);
     if (post.name == scene_image_name) {
       diagnostics.report(Id::bad_id, post.name_where, "\"scene\" cannot name a post")
-          .note("it is the image that was drawn");
+          .note("it means the rendered image");
     } else if (!post.name.empty()) {
       names.enter(post.name, post.name_where, "a post");
     }
@@ -150,34 +130,36 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   const size_t errors_before = diagnostics.error_count();
   const auto kind = graph::document_kind(document, diagnostics);
   if (!kind) return std::nullopt;
-  ObjectReader reader(document, document.root, "a scene", diagnostics);
   if (*kind != graph::DocumentKind::scene) {
     diagnostics.report(
         Id::wrong_kind, document.span(document.root),
         "a scene is needed here, not a document of the kind " + std::string(graph::kind_name(*kind)));
     return std::nullopt;
   }
-  // "extends" is done already (load.h); here it is known for those who misspell it.
-  for (const std::string_view key : {"$schema", "isoshade", "doc", "extends"}) reader.ignore(key);
+  SceneReader reader(document, document.root, "a scene", diagnostics);
+  reader.skip_document_keys();
+  reader.skip(format::scene::extends);
 
   Scene scene;
   scene.source = document.source;
-  scene.name = reader.string("scene");
+  scene.name = reader.read(format::scene::scene);
   Names names(document, diagnostics);
-  parse_size(document, reader, scene, diagnostics);
-  parse_samples(document, reader, scene, diagnostics);
-  scene.time = reader.number("time", coordinates, 0.0f);
-  if (const Json* camera = reader.object("camera"))
+  const auto size = reader.read(format::scene::size);
+  scene.width = size[0];
+  scene.height = size[1];
+  scene.samples = parse_samples(reader, diagnostics);
+  scene.samples_where = reader.where(format::scene::samples);
+  scene.time = reader.read(format::scene::time);
+  if (const Json* camera = reader.read(format::scene::camera))
     scene.camera = parse_camera(document, *camera, diagnostics);
-  if (const Json* lights = reader.object("lights", Need::optional))
+  if (const Json* lights = reader.read(format::scene::lights))
     parse_lights(document, *lights, names, scene, diagnostics);
-  scene.background = reader.numbers<4>("background", brightness, {{0, 0, 0, 1}});
-  if (const Json* objects = reader.object("objects", Need::optional))
+  scene.background = reader.read(format::scene::background);
+  if (const Json* objects = reader.read(format::scene::objects))
     parse_objects(document, *objects, names, scene, diagnostics);
-  if (const Json* output = reader.object("output", Need::optional))
+  if (const Json* output = reader.read(format::scene::output))
     scene.output = parse_output(document, *output, diagnostics);
-  // Under another key than the one that says what kind a document is.
-  if (const Json* posts = reader.array("posts", Need::optional))
+  if (const Json* posts = reader.read(format::scene::posts))
     parse_posts(document, *posts, names, scene, diagnostics);
   reader.finish();
   if (diagnostics.error_count() != errors_before) return std::nullopt;

@@ -10,16 +10,14 @@ namespace isoshade::scene {
 using graph::Document;
 using graph::Json;
 using graph::Member;
-using graph::ObjectReader;
 using support::Diagnostics;
 using support::Id;
-using Need = ObjectReader::Need;
 
 namespace {
 
 void check_view(const Camera& camera, support::Span where, Diagnostics& diagnostics) {
   if (camera.position == camera.target) {
-    diagnostics.report(Id::degenerate, where, "the camera looks at where it stands")
+    diagnostics.report(Id::degenerate, where, "the position and the target of the camera are the same")
         .suggest("move \"target\" or \"position\"");
     return;
   }
@@ -36,18 +34,19 @@ void check_view(const Camera& camera, support::Span where, Diagnostics& diagnost
 }  // namespace
 
 Camera parse_camera(const Document& document, const Json& json, Diagnostics& diagnostics) {
+  namespace key = format::camera;
   Camera camera;
-  ObjectReader reader(document, json, "the camera", diagnostics);
-  camera.projection = static_cast<Projection>(reader.choice("type", {"perspective", "orthographic"}, 0));
-  camera.position = to_vec3(reader.numbers<3>("position", coordinates));
-  camera.target = to_vec3(reader.numbers<3>("target", coordinates));
-  camera.up = to_vec3(reader.numbers<3>("up", coordinates, {{0, 1, 0}}));
-  camera.near = reader.number("near", lengths, camera.near);
+  format::Reader<format::Object::camera> reader(document, json, "the camera", diagnostics);
+  camera.projection = static_cast<Projection>(reader.read(key::type));
+  camera.position = to_vec3(reader.read(key::position));
+  camera.target = to_vec3(reader.read(key::target));
+  camera.up = to_vec3(reader.read(key::up));
+  camera.near = reader.read(key::near);
   if (camera.projection == Projection::perspective) {
-    camera.fov = reader.number("fov", {0.01, 179}, camera.fov);
+    camera.fov = reader.read(key::fov);
   } else {
-    camera.height = reader.number("height", lengths);
-    camera.far = reader.number("far", lengths, camera.far);
+    camera.height = reader.read(key::height);
+    camera.far = reader.read(key::far);
     if (!(camera.far > camera.near)) {
       diagnostics.report(Id::out_of_range, document.span(json),
                          "\"far\" of the camera must be greater than \"near\"");
@@ -58,20 +57,22 @@ Camera parse_camera(const Document& document, const Json& json, Diagnostics& dia
 }
 
 Light parse_light(const Document& document, const Member& member, Diagnostics& diagnostics) {
+  namespace key = format::light;
   Light light;
   light.name = member.key;
-  ObjectReader reader(document, member.value, "light " + support::quote(member.key), diagnostics);
-  light.kind = static_cast<LightKind>(reader.choice("type", {"directional", "point", "spot"}));
-  light.color = to_vec3(reader.numbers<3>("color", brightness, {{1, 1, 1}}));
-  light.intensity = reader.number("intensity", brightness, 1.0f);
-  if (light.kind != LightKind::point) light.direction = to_vec3(reader.numbers<3>("direction", coordinates));
+  format::Reader<format::Object::light> reader(document, member.value, "light " + support::quote(member.key),
+                                               diagnostics);
+  light.kind = static_cast<LightKind>(reader.read(key::type));
+  light.color = to_vec3(reader.read(key::color));
+  light.intensity = reader.read(key::intensity);
+  if (light.kind != LightKind::point) light.direction = to_vec3(reader.read(key::direction));
   if (light.kind != LightKind::directional) {
-    light.position = to_vec3(reader.numbers<3>("position", coordinates));
-    light.range = reader.optional_number("range", lengths).value_or(0.0f);
+    light.position = to_vec3(reader.read(key::position));
+    light.range = reader.read(key::range);
   }
   if (light.kind == LightKind::spot) {
-    light.inner_angle = reader.number("inner_angle", {0, 89}, 0.0f);
-    light.outer_angle = reader.number("outer_angle", {0.01, 90}, 45.0f);
+    light.inner_angle = reader.read(key::inner_angle);
+    light.outer_angle = reader.read(key::outer_angle);
   }
   if (!reader.finish()) return light;
   if (light.direction == glm::vec3(0)) {

@@ -7,7 +7,7 @@
 #include <spng.h>
 
 #include "compiler/support/assert.h"
-#include "runtime/scene/image_codecs.h"
+#include "runtime/scene/image_file.h"
 #include "runtime/scene/scene.h"
 
 namespace isoshade::scene {
@@ -25,7 +25,7 @@ Context new_context(int flags) {
 
 std::string png(int width, int height, std::span<const uint8_t> rgba) {
   support::assert_that(rgba.size() == size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height),
-                 "png: image of odd size");
+                       "png: image of odd size");
   const Context context = new_context(SPNG_CTX_ENCODER);
   spng_ihdr header{};
   header.width = static_cast<uint32_t>(width);
@@ -33,7 +33,7 @@ std::string png(int width, int height, std::span<const uint8_t> rgba) {
   header.bit_depth = 8;
   header.color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
   int error = spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1);
-  // Half the time of the defaults, and files a twentieth larger.
+  // Takes half the time of the defaults; files are 5 % larger.
   if (error == 0) error = spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, 4);
   if (error == 0) error = spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_PAETH);
   if (error == 0) error = spng_set_ihdr(context.get(), &header);
@@ -57,15 +57,15 @@ uint32_t big_endian(std::string_view bytes, size_t at) {
   return value;
 }
 
-/// What stands in the chunks up to the first that is damaged.
+/// What the chunks before the first damaged one contain.
 struct Chunks {
   size_t data = 0;            ///< bytes of all IDAT
-  bool transparency = false;  ///< whether there is a tRNS before them
+  bool transparency = false;  ///< whether a tRNS precedes them
   bool end = false;           ///< whether there is an IEND
 };
 
 Chunks survey(std::string_view bytes) {
-  constexpr size_t around = 12;  // length and type before the data, CRC behind them
+  constexpr size_t around = 12;  // length and type before the data, CRC after it
   Chunks chunks;
   for (size_t at = signature_bytes; bytes.size() - at >= around;) {
     const size_t length = big_endian(bytes, at);
@@ -83,28 +83,28 @@ std::string reason_of(int error) {
   switch (error) {
     case SPNG_IO_EOF:
     case SPNG_EOF: return "the file ends early";
-    case SPNG_EMEM: return "there is no memory for it";
+    case SPNG_EMEM: return "there is not enough memory for it";
     case SPNG_ECHUNK_LIMITS: return "its texts and profiles take more than 64 MiB";
     default: return spng_strerror(error);
   }
 }
 
-/// A file whose header was read.
+/// A decoder that has read the header.
 struct Opened {
   Context context{nullptr, spng_ctx_free};
   spng_ihdr header{};
-  std::string reason;  ///< why it is not read; else empty
+  std::string reason;  ///< why the file is not read; empty if it is
 };
 
 Opened open(std::string_view bytes) {
   constexpr size_t header_end = 24;
-  if (bytes.size() >= header_end && bytes.substr(12, 4) == "IHDR") {  // libspng would tell no size
+  if (bytes.size() >= header_end && bytes.substr(12, 4) == "IHDR") {  // libspng would not tell the size
     std::string reason = refuse_size(big_endian(bytes, 16), big_endian(bytes, 20));
     if (!reason.empty()) return {.reason = std::move(reason)};
   }
   Opened opened{new_context(0), {}, {}};
   spng_ctx* context = opened.context.get();
-  // Texts and colour profiles are unpacked, though nobody asks for them.
+  // libspng decompresses texts and colour profiles, although they are not used.
   constexpr size_t most_texts = size_t{64} << 20;
   int error = spng_set_png_buffer(context, bytes.data(), bytes.size());
   if (error == 0) error = spng_set_chunk_limits(context, most_texts, most_texts);
@@ -116,8 +116,8 @@ Opened open(std::string_view bytes) {
   return opened;
 }
 
-/// The colours of a picture whose pixels are numbers of its palette; libspng would make those beyond it black. `packed`
-/// has rows of whole bytes. Returns why there are none; empty if all are there.
+/// Looks up the colours of a palette image; libspng would make indices beyond the palette black. Rows of `packed` are
+/// padded to bytes. Returns the reason if an index is invalid.
 std::string look_up(spng_ctx* context, const spng_ihdr& header, std::span<const uint8_t> packed,
                     std::vector<uint32_t>& colors) {
   spng_plte palette{};
@@ -165,10 +165,10 @@ Read<FileImage> decode_png(std::string_view bytes) {
   const bool indexed = header.color_type == SPNG_COLOR_TYPE_INDEXED;
   const bool wide = header.bit_depth == 16;
 
-  // Deflate packs 258 bytes into two bits at best: what has too few is refused before memory is taken.
+  // Deflate compresses at most 258 bytes into two bits: shorter files are refused before memory is allocated.
   constexpr size_t most_per_byte = 258 * 4;
   const Chunks chunks = survey(bytes);
-  if (!chunks.end) return {{}, reason_of(SPNG_IO_EOF)};  // libspng lets one pass that is cut short
+  if (!chunks.end) return {{}, reason_of(SPNG_IO_EOF)};  // libspng accepts truncated files
   size_t size = 0;
   if (const int error = spng_decoded_image_size(context, SPNG_FMT_PNG, &size); error != 0)
     return {{}, reason_of(error)};
@@ -191,7 +191,7 @@ Read<FileImage> decode_png(std::string_view bytes) {
                       : decode(image.bytes, pixels, SPNG_FMT_RGBA8);
   if (error == 0) error = spng_decode_chunks(context);  // up to the end
   if (error != 0) return {{}, reason_of(error)};
-  // libspng leaves out a tRNS that is damaged. With a channel for alpha it says nothing.
+  // libspng ignores a damaged tRNS. With an alpha channel it does not report it.
   spng_trns transparency;
   const bool has_alpha = (header.color_type & SPNG_COLOR_TYPE_GRAYSCALE_ALPHA) != 0;
   if (chunks.transparency && !has_alpha && spng_get_trns(context, &transparency) != 0)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/scene/settings.h"
-
+// Settings: --set.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -9,6 +8,8 @@
 #include "compiler/graph/files.h"
 #include "compiler/graph/graph.h"
 #include "compiler/support/visible.h"
+#include "runtime/scene/format.h"
+#include "runtime/scene/load.h"
 
 namespace isoshade::scene {
 
@@ -23,7 +24,7 @@ namespace {
 
 struct Setting {
   std::string_view text;  ///< as given
-  std::string_view name;  ///< empty if only a parameter was given
+  std::string_view name;  ///< empty if only a parameter is given
   std::string_view key;
   support::Source source;  ///< name.key=value, the value as JSON
   Json value;
@@ -59,7 +60,7 @@ std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics) {
   }
   const bool named = graph::is_id(setting.key) && (dot == std::string::npos || graph::is_id(setting.name));
   const auto value = equals == std::string_view::npos ? std::nullopt : to_json(text.substr(equals + 1));
-  // Parsed where it stands in the text.
+  // Parsed at its position in the text, so that spans are right.
   const std::string padding(target.size() + 1, ' ');
   auto parsed = named && value ? parse_json(padding + *value) : std::nullopt;
   if (parsed) {
@@ -94,7 +95,7 @@ class Editor {
   void set_parameter(Json& object, Setting& setting);
   /// Sets a member of an object, replacing or adding it.
   void set_member(Json& object, Setting& setting);
-  /// The object under a key of another one, which is made if there is none.
+  /// The object under a key of another one; added if it is missing.
   Json& part(Json& object, std::string_view key, const Setting& setting);
 
   std::vector<std::pair<std::string_view, Json*>> owners();
@@ -109,7 +110,7 @@ class Editor {
 const std::vector<std::string>& Editor::parameters_of_effect(const std::string& path) {
   const auto [found, is_new] = effects_.try_emplace(path);
   if (!is_new) return found->second;
-  // What is wrong with the effect is reported when it is compiled.
+  // Errors of the effect are reported when it is compiled.
   Diagnostics unheard;
   const support::Source source = graph::read_source(path, unheard, {document_.source, 0, 0});
   const auto effect = source ? graph::parse_document(source, unheard) : std::nullopt;
@@ -119,7 +120,7 @@ const std::vector<std::string>& Editor::parameters_of_effect(const std::string& 
   return found->second;
 }
 
-/// The objects of the scene, and its posts under the names that they have.
+/// The objects and posts of the scene, by name.
 std::vector<std::pair<std::string_view, Json*>> Editor::owners() {
   std::vector<std::pair<std::string_view, Json*>> all;
   if (Json* objects = find_object(document_.root, "objects")) {
@@ -187,7 +188,8 @@ void Editor::set_parameter(Json& object, Setting& setting) {
 }
 
 bool Editor::set_named(Setting& setting) {
-  std::vector<std::string_view> names = {"camera", "output"};
+  const std::vector<std::string_view> parts = format::object_keys_of_scene();
+  std::vector<std::string_view> names = parts;
   for (const auto& [name, owner] : owners()) {
     names.push_back(name);
     if (name != setting.name) continue;
@@ -210,7 +212,7 @@ bool Editor::set_named(Setting& setting) {
       return true;
     }
   }
-  if (setting.name == "camera" || setting.name == "output") {
+  if (std::ranges::find(parts, setting.name) != parts.end()) {
     set_member(part(document_.root, setting.name, setting), setting);
     return true;
   }
@@ -222,13 +224,13 @@ bool Editor::set_named(Setting& setting) {
 }
 
 bool Editor::set_bare(Setting& setting) {
-  constexpr std::string_view scene_keys[] = {"background", "size", "samples"};
+  const std::vector<std::string_view> scene_keys = format::plain_keys_of_scene();
   if (std::ranges::count(scene_keys, setting.key) != 0) {
     set_member(document_.root, setting);
     return true;
   }
   std::vector<std::pair<std::string_view, Json*>> having;
-  std::vector<std::string_view> all_parameters(std::begin(scene_keys), std::end(scene_keys));
+  std::vector<std::string_view> all_parameters = scene_keys;
   for (const auto& owner : owners()) {
     const std::vector<std::string_view> parameters = parameters_of(*owner.second);
     all_parameters.insert(all_parameters.end(), parameters.begin(), parameters.end());
@@ -249,7 +251,7 @@ bool Editor::set_bare(Setting& setting) {
   diagnostics_
       .report(Id::unknown_setting, "--set " + quote(setting.text) + ": " + std::to_string(having.size()) +
                                        " objects or posts have a parameter " + quote(setting.key))
-      .suggest("name the one: --set " + support::visible(std::string(having[0].first)) + "." +
+      .suggest("name one: --set " + support::visible(std::string(having[0].first)) + "." +
                std::string(setting.text));
   return false;
 }

@@ -4,7 +4,7 @@
 
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
-#include "runtime/scene/gltf.h"
+#include "runtime/scene/mesh_formats.h"
 #include "tests/fuzz/damage.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/fuzz/reader.h"
@@ -55,7 +55,7 @@ bool read(const std::string& bytes) {
   if (!model) return false;
   const scene::Mesh& mesh = model->mesh;
   size_t first_index = 0, first_vertex = 0;
-  for (const scene::GltfPart& part : model->parts) {
+  for (const scene::ModelPart& part : model->parts) {
     assert_that(part.first_index == first_index && part.first_vertex == first_vertex, "parts that do not follow");
     assert_that(part.index_count > 0 && part.index_count % 3 == 0, "a part that has no triangles");
     first_index += part.index_count;

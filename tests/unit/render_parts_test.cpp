@@ -104,7 +104,7 @@ TEST_F(Parts, OfOneMaterialAreOneDraw) {
   EXPECT_EQ(made->frame.picture().draws[1].indices[0], 0u);
 }
 
-TEST_F(Parts, AllHaveWhatTheObjectSays) {
+TEST_F(Parts, AllHaveTheParametersOfTheObject) {
   const auto made = plan(R"("effect": "flat.json", "parameters": {"base_color": [1, 0, 0.5]})");
   ASSERT_TRUE(made) << diagnostics_.text();
   const backends::Image image = draw(*made, *interpreter::create());
@@ -112,7 +112,7 @@ TEST_F(Parts, AllHaveWhatTheObjectSays) {
     EXPECT_EQ(color_of(image, square), (Color{1, 0, 0.5f})) << square;
 }
 
-TEST_F(Parts, ComePassAfterPassAndAreLeftOutEachByItsMaterial) {
+TEST_F(Parts, AreDrawnPassByPassAndSkippedPerMaterial) {
   const auto made = plan(R"("effect": "twice.json")");
   ASSERT_TRUE(made) << diagnostics_.text();
   ASSERT_EQ(made->stats.draws, 4);
@@ -135,7 +135,7 @@ TEST_F(Parts, OutsideOfTheViewAreACopyThatIs) {
   EXPECT_EQ(made->stats.skips[0].what, "1 of 2 copies of row");
 }
 
-TEST_F(Parts, CountForTheLimits) {
+TEST_F(Parts, CountTowardsTheLimits) {
   // Both passes of all copies are within the limit, but not each of their three parts.
   static_assert(65536 * 2 * (word::parameters + 4) < render::max_object_words);
   static_assert(65536 * 2 * 3 * (word::parameters + lower::view_word::matrix + 4) > render::max_object_words);

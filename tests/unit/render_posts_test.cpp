@@ -89,7 +89,7 @@ class PostsTest : public ::testing::Test {
   render::DrawStats stats_;
 };
 
-TEST_F(PostsTest, EachReadsTheImageOfTheOneBefore) {
+TEST_F(PostsTest, EachReadsTheImageOfThePostBefore) {
   EXPECT_EQ(red(""), 0.5f);
   EXPECT_EQ(stats_.kept_images, 0);
   EXPECT_EQ(red(post("a", "gain")), 1.5f);
@@ -148,7 +148,7 @@ class MeasuringBackend final : public backends::Backend {
   std::vector<size_t> bytes;  ///< at each post
 };
 
-TEST_F(PostsTest, ImagesThatAreNotReadAnyMoreTakeNoMemory) {
+TEST_F(PostsTest, UnusedImagesAreReleased) {
   std::string chain = post("p0", "gain");
   for (int i = 1; i < 32; ++i) chain += "," + post("p" + std::to_string(i), "gain");
   options_.width = options_.height = 512;
@@ -164,7 +164,7 @@ TEST_F(PostsTest, ImagesThatAreNotReadAnyMoreTakeNoMemory) {
   EXPECT_LE(most - least, size_t{8} << 20);
 }
 
-TEST_F(PostsTest, ThoseThatAreSwitchedOffPassOnWhatTheyGoOver) {
+TEST_F(PostsTest, PostsThatAreSwitchedOffPassOnTheirInput) {
   const std::string off = R"("parameters": {"gain": 0})";
   const auto made = plan(post("a", "gain") + "," + post("b", "gain", off));
   ASSERT_TRUE(made);
@@ -181,7 +181,7 @@ TEST_F(PostsTest, ThoseThatAreSwitchedOffPassOnWhatTheyGoOver) {
             0.5f);
 }
 
-TEST_F(PostsTest, ThoseWhoseImagesNobodyReadsAreLeftOut) {
+TEST_F(PostsTest, PostsWithUnusedImagesAreSkipped) {
   const auto made = plan(post("a", "gain") + "," + post("b", "fill") + "," + post("c", "gain"));
   ASSERT_TRUE(made);
   EXPECT_EQ(made->posts.steps.size(), 2u);
@@ -216,7 +216,7 @@ TEST_F(PostsTest, SizesAreFractionsRoundedUp) {
   EXPECT_EQ(red_of(*made), 0.5f * 27);
 }
 
-TEST_F(PostsTest, ImagesThatAreKeptHaveALimit) {
+TEST_F(PostsTest, KeptImagesAreLimited) {
   options_.width = options_.height = scene::max_size;
   const auto reading = [&](int count) {
     std::string chain = post("p0", "gain"), sums;
@@ -231,7 +231,7 @@ TEST_F(PostsTest, ImagesThatAreKeptHaveALimit) {
   EXPECT_TRUE(fails_with(reading(5), "error[too-large]: the images of the posts have more than"));
 }
 
-TEST_F(PostsTest, TheLastMakesTheWholeImage) {
+TEST_F(PostsTest, TheLastPostMakesTheWholeImage) {
   EXPECT_TRUE(fails_with(post("a", "gain", R"("size": 0.5)"),
                          "error[out-of-range]: post \"a\" makes the scene's image"));
   EXPECT_TRUE(fails_with(
@@ -241,7 +241,7 @@ TEST_F(PostsTest, TheLastMakesTheWholeImage) {
 
 TEST_F(PostsTest, ImagesAndParametersAreThoseOfTheDocument) {
   EXPECT_TRUE(
-      fails_with(post("a", "sum"), "error[unknown-image]: post \"a\" is not given the image \"other\""));
+      fails_with(post("a", "sum"), "error[unknown-image]: post \"a\" has no input for the image \"other\""));
   EXPECT_TRUE(fails_with(post("a", "sum", R"("inputs": {"othr": "scene", "other": "scene"})"),
                          "error[unknown-image]: the document of post \"a\" has no image \"othr\""));
   EXPECT_TRUE(fails_with(post("a", "gain", R"("parameters": {"gian": 1})"), "error[unknown-parameter]"));

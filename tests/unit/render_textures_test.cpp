@@ -135,7 +135,7 @@ TEST_F(Textures, DerivativesAreTheSlopesBetweenTexels) {
   }
 }
 
-TEST_F(Textures, OfAGltfAreThoseOfItsMaterial) {
+TEST_F(Textures, AreThoseOfTheMaterialOfAGltf) {
   const std::string png = scene::png(1, 1, std::vector<uint8_t>{51, 102, 255, 255});
   folder_.write("m.glb", testing::textured_glb(png));
   folder_.write("pbr.json", R"({"isoshade": 1, "effect": "pbr", "parameters": {
@@ -161,7 +161,7 @@ TEST_F(Textures, OfAGltfAreThoseOfItsMaterial) {
   EXPECT_NE(draw(*other)[0], shown[0]);
 }
 
-TEST_F(Textures, OfAGltfsColoursAreSrgbAtAnyDepth) {
+TEST_F(Textures, ColoursOfAGltfAreSrgbAtAnyBitDepth) {
   using testing::png_file;
   folder_.write("pbr.json", R"({"isoshade": 1, "effect": "pbr", "parameters": {
     "base_color_texture": {"type": "filename", "value": ""}},
@@ -186,7 +186,7 @@ TEST_F(Textures, OfAGltfsColoursAreSrgbAtAnyDepth) {
   EXPECT_EQ(shown(deep, R"("base_color_texture": "deep.png")")[0], static_cast<float>(0x8080) / 65535.0f);
 }
 
-TEST_F(Textures, WithoutAFileThereIsTheDefault) {
+TEST_F(Textures, WithoutAFileHaveTheDefault) {
   const auto made = plan(square("shown", R"("map": "")"));
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(draw(*made)[5], 0.25f);
@@ -197,7 +197,7 @@ TEST_F(Textures, WithoutAFileThereIsTheDefault) {
   EXPECT_EQ(render::text(made->stats).find("textures:"), std::string::npos);
 }
 
-TEST_F(Textures, WhatNoPassReadsIsNotLoaded) {
+TEST_F(Textures, UnusedImagesAreNotLoaded) {
   const auto made = plan(square("plain"));  // its default is missing
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_TRUE(made->frame.texels.empty());
@@ -207,7 +207,7 @@ TEST_F(Textures, WhatNoPassReadsIsNotLoaded) {
       std::string::npos);
 }
 
-TEST_F(Textures, AreStoredOnceWithMipsForAllWhereOneAsks) {
+TEST_F(Textures, AreStoredOnceWithMipsIfAnyUseNeedsThem) {
   const auto made = plan(R"("objects": {"a": {"mesh": "box", "effect": "shown.json"},
     "b": {"mesh": "box", "effect": "small.json", "parameters": {"map": "./a.png"}}})");
   ASSERT_TRUE(made) << diagnostics_.text();
@@ -219,7 +219,7 @@ TEST_F(Textures, AreStoredOnceWithMipsForAllWhereOneAsks) {
   EXPECT_EQ(made->frame.textures[word::smaller], 2);
 }
 
-TEST_F(Textures, OfBytesAndOfFloatsAreShownAlike) {
+TEST_F(Textures, OfBytesAndOfFloatsGiveTheSamePixels) {
   scene::FileImage image = *scene::read_image(path("a.png"), diagnostics_);
   image.rgba = scene::numbers_of(image);
   image.depth.resize(16);
@@ -237,7 +237,7 @@ TEST_F(Textures, OfBytesAndOfFloatsAreShownAlike) {
   }
 }
 
-TEST_F(Textures, AreRefusedBeforeTheyAreUnpackedWhereTheyDoNotFit) {
+TEST_F(Textures, AreRefusedBeforeDecompressionIfTooLarge) {
   const auto refusal = [&](const std::string& name, int64_t room, bool mips) {
     diagnostics_ = support::Diagnostics();
     render::TextureStore store(room);
@@ -263,7 +263,7 @@ TEST_F(Textures, AreRefusedBeforeTheyAreUnpackedWhereTheyDoNotFit) {
   expect_limit("floats.hdr", int64_t{16} * 4096 * 8192, false);
 }
 
-TEST_F(Textures, AreRefusedWhereTheirMipsDoNotFit) {
+TEST_F(Textures, AreRefusedIfTheirMipsDoNotFit) {
   for (const int64_t room : {4 * 16, 4 * 20, 4 * 21}) {
     diagnostics_ = support::Diagnostics();
     render::TextureStore store(room);
@@ -276,7 +276,7 @@ TEST_F(Textures, AreRefusedWhereTheirMipsDoNotFit) {
   }
 }
 
-TEST_F(Textures, GridsVaryThem) {
+TEST_F(Textures, VaryAlongGrids) {
   const auto made = plan(R"("objects": {"a": {"mesh": "box", "effect": "shown.json",
     "repeat": [{"count": 2, "step": [0.1, 0, 0], "parameters": {"map": {"values": ["", "a.png"]}}}]}})");
   ASSERT_TRUE(made) << diagnostics_.text();
@@ -288,7 +288,7 @@ TEST_F(Textures, GridsVaryThem) {
   EXPECT_EQ(image(1), 0.0f);
 }
 
-TEST_F(Textures, ThatCannotBeReadAreReportedWhereTheyAreNamed) {
+TEST_F(Textures, UnreadableFilesAreReportedWhereTheyAreNamed) {
   struct Case {
     std::string parameters, message;
   };

@@ -1,6 +1,7 @@
 isoshade_test(scene_test
   SOURCES
     unit/scene_exr_test.cpp
+    unit/scene_format_test.cpp
     unit/scene_gltf_test.cpp
     unit/scene_gltf_textures_test.cpp
     unit/scene_hdr_test.cpp

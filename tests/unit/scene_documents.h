@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "compiler/graph/document.h"
+#include "runtime/scene/load.h"
 #include "runtime/scene/scene.h"
-#include "runtime/scene/settings.h"
 
 namespace isoshade::testing {
 

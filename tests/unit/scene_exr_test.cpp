@@ -107,7 +107,7 @@ TEST(Exr, DataWindowIsPlacedInTheDisplayWindow) {
   }
 }
 
-TEST(Exr, DataOutsideOfTheDisplayWindowAreCropped) {
+TEST(Exr, DataOutsideTheDisplayWindowAreCropped) {
   for (const bool tiled : {false, true}) {
     ExrPart part;
     part.display = {{10, -20}, {13, -18}};
@@ -147,7 +147,7 @@ TEST(Exr, TheFirstPartWithColoursIsRead) {
             std::string::npos);
 }
 
-TEST(Exr, LayersAreReadWhereNothingElseHasColours) {
+TEST(Exr, FirstLayerWithColoursIsReadIfNoPartHasColours) {
   ExrPart part;
   part.channels = {{"light.R"},  {"light.G"},  {"light.B"}, {"albedo.B"},
                    {"albedo.G"}, {"albedo.R"}, {"noise.R"}};
@@ -156,7 +156,7 @@ TEST(Exr, LayersAreReadWhereNothingElseHasColours) {
   EXPECT_EQ(pixel(decoded(exr_file(part)), 0, 0), (std::array<float, 4>{6, 6, 6, 1}));
 }
 
-TEST(Exr, GreyIsThreeColoursAlike) {
+TEST(Exr, GreyBecomesThreeEqualColours) {
   ExrPart part;
   part.channels = {{"Y"}, {"A"}};
   EXPECT_EQ(pixel(decoded(exr_file(part)), 1, 0), (std::array<float, 4>{0.125f, 0.125f, 0.125f, 1.125f}));
@@ -178,7 +178,7 @@ TEST(Exr, ChromaAndSparseColoursAreRefusedByName) {
   EXPECT_NE(reason(exr_file(part)).find("neither channels R, G and B nor Y"), std::string::npos);
 }
 
-TEST(Exr, PrimariesBecomeThoseOfRec709) {
+TEST(Exr, PrimariesAreConvertedToRec709) {
   ExrPart part;
   part.channels = {{"R", Imf::FLOAT}, {"G", Imf::FLOAT}, {"B", Imf::FLOAT}};
   part.value = [](size_t channel, int x, int) {
@@ -209,7 +209,7 @@ TEST(Exr, PrimariesBecomeThoseOfRec709) {
   };
   expect_values(part, decoded(exr_file(part)), 0);
   part.chromaticities = Imf::Chromaticities({0.3f, 0.3f}, {0.3f, 0.3f}, {0.15f, 0.06f}, {0.3127f, 0.329f});
-  EXPECT_NE(reason(exr_file(part)).find("chromaticities span no colours"), std::string::npos);
+  EXPECT_NE(reason(exr_file(part)).find("chromaticities are degenerate"), std::string::npos);
 }
 
 TEST(Exr, TheMatrixOfRec2020HasTheseBits) {
@@ -221,7 +221,7 @@ TEST(Exr, TheMatrixOfRec2020HasTheseBits) {
                                                -0x1.2961d4p-6f, -0x1.9bf88cp-4f, 0x1.1e651p+0f}));
 }
 
-TEST(Exr, WhatIsNotFiniteIsClampedAndCounted) {
+TEST(Exr, NonFiniteNumbersAreClampedAndCounted) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT}) {
     ExrPart part;
@@ -255,7 +255,7 @@ TEST(Exr, TruncatedFilesAreErrors) {
   }
 }
 
-TEST(Exr, ChunksThatUnpackToTooLittleAreErrors) {
+TEST(Exr, ChunksWithTooFewSamplesAreErrors) {
   // A row of zlib that is whole, but shorter than the pixels; the row was never written by anyone otherwise.
   ExrPart part;
   part.display = {{0, 0}, {63, 0}};
@@ -287,7 +287,7 @@ TEST(Exr, ChunksOfZerosAreErrors) {
   }
 }
 
-TEST(Exr, SizesAreCheckedBeforeMemoryIsTaken) {
+TEST(Exr, SizesAreCheckedBeforeMemoryIsAllocated) {
   ExrPart part;
   const std::string whole = exr_file(part);
   const auto window = [&](const char* name, int32_t x, int32_t y) {
@@ -311,7 +311,7 @@ TEST(Exr, SizesAreCheckedBeforeMemoryIsTaken) {
       std::string::npos);
 }
 
-TEST(Exr, TilesAreNotTakenFromAHeaderThatHasNone) {
+TEST(Exr, TiledFilesWithoutATileSizeAreRefused) {
   // The type says tiles, the flag does not; and the other way round.
   std::string header("screenWindowWidth\0float\0\4\0\0\0\0\0\x80\x3f", 32);
   const std::string type("type\0string\0\12\0\0\0tiledimage", 26);
@@ -330,7 +330,7 @@ TEST(Exr, DeepFilesAreRefused) {
   EXPECT_EQ(reason(bytes), "it is deep: its pixels are lists");
 }
 
-TEST(Exr, WhatIsWrittenIsReadByOthersBitForBit) {
+TEST(Exr, WrittenFilesAreReadByOpenExrBitForBit) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   const float specials[] = {0.0f, -0.0f, 1e-40f, 65504, 1e30f, inf, -inf, nan, 0.1f, -1.5f};
   constexpr int width = 37, height = 21;

@@ -5,27 +5,27 @@
 #include <limits>
 
 #include "compiler/lower/frame_layout.h"
-#include "runtime/scene/gltf.h"
+#include "runtime/scene/mesh_formats.h"
 #include "tests/unit/gltf_files.h"
 
 namespace isoshade {
 namespace {
 
 using namespace testing;
-using scene::GltfModel;
+using scene::Model;
 namespace word = lower::vertex_word;
 
 class Gltf : public ::testing::Test {
  protected:
-  std::optional<GltfModel> load(const std::string& bytes, const std::string& name = "m.glb") {
+  std::optional<Model> load(const std::string& bytes, const std::string& name = "m.glb") {
     diagnostics_ = support::Diagnostics();
     return scene::load_gltf(folder_.write(name, bytes), {}, diagnostics_);
   }
 
-  GltfModel loaded(const std::string& json, const std::string& data = square_data()) {
+  Model loaded(const std::string& json, const std::string& data = square_data()) {
     auto model = load(glb(json, data));
     EXPECT_TRUE(model) << diagnostics_.text();
-    return model ? *std::move(model) : GltfModel{};
+    return model ? *std::move(model) : Model{};
   }
 
   /// Whether it is refused for this reason.
@@ -48,13 +48,13 @@ class Gltf : public ::testing::Test {
   support::Diagnostics diagnostics_;
 };
 
-glm::vec3 vector_at(const GltfModel& model, size_t vertex, int at) {
+glm::vec3 vector_at(const Model& model, size_t vertex, int at) {
   const float* v = &model.mesh.vertices[vertex * word::stride + static_cast<size_t>(at)];
   return {v[0], v[1], v[2]};
 }
 
-TEST_F(Gltf, HasWhatTheFileGives) {
-  const GltfModel model = loaded(square_json());
+TEST_F(Gltf, ReadsEveryAttributeOfTheFile) {
+  const Model model = loaded(square_json());
   ASSERT_EQ(model.mesh.vertices.size(), 4u * word::stride);
   EXPECT_EQ(model.mesh.indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
   EXPECT_EQ(vector_at(model, 2, word::position), glm::vec3(1, 1, 0));
@@ -72,23 +72,23 @@ TEST_F(Gltf, HasWhatTheFileGives) {
   EXPECT_EQ(material->roughness, 0.25f);  // what is perceptual is squared
 }
 
-TEST_F(Gltf, IsTheSameFromTextBesideItsBuffer) {
+TEST_F(Gltf, TextWithASeparateBufferGivesTheSameMesh) {
   folder_.write("a b.bin", square_data());
   const auto model = load(square_json(all_attributes, one_node, R"("uri": "a%20b.bin", )"), "m.gltf");
   ASSERT_TRUE(model) << diagnostics_.text();
   EXPECT_EQ(model->mesh.vertices, loaded(square_json()).mesh.vertices);
 }
 
-TEST_F(Gltf, FindsTangentsAlongUAndTheWayUpRightHanded) {
-  const GltfModel model = loaded(square_json());
+TEST_F(Gltf, ComputesRightHandedTangentsAlongU) {
+  const Model model = loaded(square_json());
   for (size_t v = 0; v < 4; ++v) {
     EXPECT_EQ(vector_at(model, v, word::tangent), glm::vec3(1, 0, 0));
     EXPECT_EQ(model.mesh.vertices[v * word::stride + word::tangent + 3], 1.0f);
   }
 }
 
-TEST_F(Gltf, IsFlatWithoutNormals) {
-  const GltfModel model = loaded(square_json(R"("POSITION": 0)"));
+TEST_F(Gltf, MeshesWithoutNormalsAreFlatShaded) {
+  const Model model = loaded(square_json(R"("POSITION": 0)"));
   ASSERT_EQ(model.mesh.vertices.size(), 6u * word::stride);
   for (size_t v = 0; v < 6; ++v) {
     EXPECT_EQ(vector_at(model, v, word::normal), glm::vec3(0, 0, 1));
@@ -97,8 +97,8 @@ TEST_F(Gltf, IsFlatWithoutNormals) {
   }
 }
 
-TEST_F(Gltf, PlacesNodesInEachOther) {
-  const GltfModel model = loaded(square_json(all_attributes, R"([
+TEST_F(Gltf, AppliesTheTransformsOfNestedNodes) {
+  const Model model = loaded(square_json(all_attributes, R"([
     {"children": [1], "translation": [10, 0, 0], "scale": [2, 2, 2]},
     {"mesh": 0, "rotation": [0, 0.70710678, 0, 0.70710678]}])"));
   const glm::vec3 corner = vector_at(model, 1, word::position), normal = vector_at(model, 1, word::normal);
@@ -106,8 +106,8 @@ TEST_F(Gltf, PlacesNodesInEachOther) {
   EXPECT_LT(glm::length(normal - glm::vec3(1, 0, 0)), 1e-6f);
 }
 
-TEST_F(Gltf, StaysOutsideOutInAMirror) {
-  const GltfModel model = loaded(square_json(all_attributes, R"([{"mesh": 0, "scale": [-1, 1, 1]}])"));
+TEST_F(Gltf, MirroringTransformsKeepTheOutsideOutside) {
+  const Model model = loaded(square_json(all_attributes, R"([{"mesh": 0, "scale": [-1, 1, 1]}])"));
   for (size_t t = 0; t < 6; t += 3) {
     const auto point = [&](size_t i) { return vector_at(model, model.mesh.indices[t + i], word::position); };
     EXPECT_GT(glm::cross(point(1) - point(0), point(2) - point(0)).z, 0.0f);
@@ -118,7 +118,7 @@ TEST_F(Gltf, StaysOutsideOutInAMirror) {
 }
 
 TEST_F(Gltf, HasAPartForEachMaterialInTheOrderOfTheFile) {
-  const GltfModel model = loaded(materials_json());
+  const Model model = loaded(materials_json());
   ASSERT_EQ(model.parts.size(), 3u);
   EXPECT_EQ(model.parts[0].material_index, 1);
   EXPECT_EQ(model.parts[0].index_count, 12u);  // the first square and the last
@@ -132,7 +132,7 @@ TEST_F(Gltf, HasAPartForEachMaterialInTheOrderOfTheFile) {
   EXPECT_EQ(model.mesh.high, glm::vec3(4, 1, 0));
   EXPECT_EQ(model.mesh.indices[12], 8u);
   size_t indices = 0, vertices = 0;
-  for (const scene::GltfPart& part : model.parts) {
+  for (const scene::ModelPart& part : model.parts) {
     EXPECT_EQ(part.first_index, indices);
     EXPECT_EQ(part.first_vertex, vertices);
     indices += part.index_count;
@@ -157,26 +157,26 @@ TEST_F(Gltf, RefusesMaterialsBeyondItsLimit) {
   EXPECT_TRUE(refuses(glb(json, square_data()), "more than 4096 materials"));
 }
 
-TEST_F(Gltf, HoldsNoDenormals) {
-  const GltfModel model = loaded(square_json(), square_data(1e-40f));
+TEST_F(Gltf, ContainsNoDenormals) {
+  const Model model = loaded(square_json(), square_data(1e-40f));
   EXPECT_EQ(vector_at(model, 2, word::position).x, 0.0f);
 }
 
-TEST_F(Gltf, RefusesNumbersThatAreNone) {
+TEST_F(Gltf, RefusesInfinityAndNaN) {
   for (const float bad : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
-    EXPECT_TRUE(refuses(glb(square_json(), square_data(bad)), "infinite or none"));
+    EXPECT_TRUE(refuses(glb(square_json(), square_data(bad)), "infinite or NaN"));
   EXPECT_TRUE(refuses(glb(square_json(), square_data(3e9f)), "beyond 1e9"));
 }
 
-TEST_F(Gltf, RefusesAccessorsThatLeaveTheirBuffer) {
+TEST_F(Gltf, RefusesAccessorsBeyondTheirBuffer) {
   EXPECT_TRUE(refuses_json(R"("count": 4, "type": "VEC3", "min")", R"("count": 13, "type": "VEC3", "min")",
-                           "accessor 0 leaves its buffer view"));
+                           "accessor 0 extends beyond its buffer view"));
   EXPECT_TRUE(refuses_json(R"("count": 4, "type": "VEC3", "min")",
-                           R"("count": 1537228672809129302, "type": "VEC3", "min")",
-                           "not a whole number"));
-  EXPECT_TRUE(refuses_json(R"("byteOffset": 48)", R"("byteOffset": 18446744073709551615)", "not a whole number"));
+                           R"("count": 1537228672809129302, "type": "VEC3", "min")", "not an integer"));
+  EXPECT_TRUE(
+      refuses_json(R"("byteOffset": 48)", R"("byteOffset": 18446744073709551615)", "not an integer"));
   EXPECT_TRUE(refuses_json(R"("byteOffset": 48)", R"("byteOffset": 2147483647)", "accessor 1"));
-  EXPECT_TRUE(refuses_json(R"("byteLength": 144)", R"("byteLength": 157)", "leaves its buffer"));
+  EXPECT_TRUE(refuses_json(R"("byteLength": 144)", R"("byteLength": 157)", "extends beyond its buffer"));
   EXPECT_TRUE(refuses_json(R"("byteOffset": 144)", R"("byteOffset": 2147483640)", "its buffer"));
   EXPECT_TRUE(refuses_json(R"("bufferView": 1)", R"("bufferView": 2)", "bufferView"));
   EXPECT_TRUE(refuses_json(R"("POSITION": 0)", R"("POSITION": 70)", "does not exist"));
@@ -186,14 +186,14 @@ TEST_F(Gltf, RefusesAccessorsThatLeaveTheirBuffer) {
   EXPECT_TRUE(refuses_json(R"("count": 6)", R"("count": 5)", "three corners"));
 }
 
-TEST_F(Gltf, RefusesIndicesWithoutVertices) {
+TEST_F(Gltf, RefusesOutOfRangeIndices) {
   std::string data = square_data();
   data[144] = 4;
-  EXPECT_TRUE(refuses(glb(square_json(), data), "index 4 points to none of 4 vertices"));
+  EXPECT_TRUE(refuses(glb(square_json(), data), "index 4 is out of range: there are 4 vertices"));
 }
 
-TEST_F(Gltf, RefusesIndicesThatAreNone) {
-  const std::string none = ", not a whole number from 0 to 2147483647";
+TEST_F(Gltf, RefusesIndicesThatAreNotIntegers) {
+  const std::string none = ", not an integer from 0 to 2147483647";
   EXPECT_TRUE(refuses_json(R"("POSITION": 0)", R"("POSITION": -7)",
                            "/meshes/0/primitives/0/attributes/POSITION is -7" + none));
   // Its lowest 32 bits are 0.
@@ -205,7 +205,7 @@ TEST_F(Gltf, RefusesIndicesThatAreNone) {
   EXPECT_TRUE(refuses_json(R"("componentType": 5126)", R"("componentType": 4294972422)", none));
 }
 
-TEST_F(Gltf, RefusesQuantitiesThatAreNone) {
+TEST_F(Gltf, RefusesQuantitiesThatAreNotNumbers) {
   EXPECT_TRUE(refuses_json(R"("metallicFactor": 0.75)", R"("metallicFactor": "0.75")",
                            "/materials/0/pbrMetallicRoughness/metallicFactor is a string, not a number"));
   EXPECT_TRUE(refuses_json(R"([0.5, 0.25, 1, 1])", R"([0.5, null, 1, 1])", "/baseColorFactor/1 is null"));
@@ -215,16 +215,16 @@ TEST_F(Gltf, RefusesQuantitiesThatAreNone) {
 
 TEST_F(Gltf, RefusesOtherVersions) {
   EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": "1.0"})", "of version \"1.0\", not 2"));
-  EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": 2.0})", "it is no glTF"));
+  EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": 2.0})", "it is not a glTF"));
 }
 
-TEST_F(Gltf, LooksAtNothingThatItDoesNotRead) {
+TEST_F(Gltf, IgnoresFaultsInUnusedParts) {
   std::string json = square_json();
   json.insert(1, R"("extras": {"source": -1}, "animations": [{"channels": [{"sampler": -1}]}], )");
   EXPECT_TRUE(load(glb(json, square_data()))) << diagnostics_.text();
 }
 
-TEST_F(Gltf, RefusesNodesInACircle) {
+TEST_F(Gltf, RefusesCyclesOfNodes) {
   EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"children": [1]}, {"children": [0], "mesh": 0}])",
                            "two parents, or is below itself"));
   EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"children": [7]}])", "a node does not exist"));
@@ -232,7 +232,7 @@ TEST_F(Gltf, RefusesNodesInACircle) {
   EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{}])", "no triangles"));
 }
 
-TEST_F(Gltf, StaysInItsFolder) {
+TEST_F(Gltf, RefusesFilesOutsideItsFolder) {
   folder_.write("secret.bin", square_data());
   for (const char* uri : {"../secret.bin", "%2e%2e/secret.bin", "../inside/../secret.bin"}) {
     const std::string json =
@@ -243,14 +243,14 @@ TEST_F(Gltf, StaysInItsFolder) {
       refuses(square_json(all_attributes, one_node, R"("uri": "/etc/passwd", )"), "not found", "m.gltf"));
 }
 
-TEST_F(Gltf, RefusesWhatWouldCrashItsReader) {
+TEST_F(Gltf, RefusesFilesThatWouldCrashTinygltf) {
   const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
   EXPECT_TRUE(refuses_json(R"("scene": 0)", R"("extras": )" + deep, "too-deep"));
   EXPECT_TRUE(refuses_json(R"("byteLength": 156)", R"("byteLength": 0)", "no byteLength"));
   EXPECT_TRUE(refuses_json(R"("byteLength": 156)", R"("byteLength": 400000000)", "more than 256 MiB"));
 }
 
-TEST_F(Gltf, WarnsOnceByNameOfWhatIsNotRead) {
+TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
   struct Case {
     const char* from;
     const char* to;
@@ -292,35 +292,40 @@ TEST_F(Gltf, WarnsOnceByNameOfWhatIsNotRead) {
     }
     ASSERT_NE(warned, std::string::npos) << test.to << "\n" << text;
     EXPECT_EQ(text.find("warning[ignored-feature]", warned + 1), std::string::npos) << text;
-    EXPECT_NE(text.find(std::string(" uses ") + test.name + ", which isoshade does not read"), std::string::npos)
+    EXPECT_NE(text.find(std::string(" uses ") + test.name + ", which isoshade does not read"),
+              std::string::npos)
         << text;
   }
 }
 
 TEST_F(Gltf, RefusesRequiredExtensionsAndLaterVersions) {
-  for (const char* name : {"KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness", "KHR_lights_punctual"})
-    EXPECT_TRUE(refuses_json(R"("scene": 0)", R"("extensionsRequired": [")" + std::string(name) + R"("])", name));
-  EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.0", "minVersion": "3.0")", "needs a reader of glTF"));
-  EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.1", "minVersion": "2.1")", "needs a reader of glTF"));
+  for (const char* name :
+       {"KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness", "KHR_lights_punctual"})
+    EXPECT_TRUE(
+        refuses_json(R"("scene": 0)", R"("extensionsRequired": [")" + std::string(name) + R"("])", name));
+  EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.0", "minVersion": "3.0")",
+                           "requires glTF"));
+  EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.1", "minVersion": "2.1")",
+                           "requires glTF"));
   std::string json = square_json();
   json.replace(json.find(R"("version": "2.0")"), 16, R"("version": "2.1", "minVersion": "2.0")");
   loaded(json);
 }
 
-TEST_F(Gltf, RefusesOffsetsThatAreNone) {
-  EXPECT_TRUE(refuses_json(R"("byteOffset": 48)", R"("byteOffset": -48)", "not a whole number"));
-  EXPECT_TRUE(refuses_json(R"("byteOffset": 144)", R"("byteOffset": 1e18)", "not a whole number"));
-  EXPECT_TRUE(refuses_json(R"("count": 4)", R"("count": -4)", "not a whole number"));
-  EXPECT_TRUE(refuses_json(R"("byteLength": 144)", R"("byteLength": 1.5)", "not a whole number"));
+TEST_F(Gltf, RefusesOffsetsThatAreNotIntegers) {
+  EXPECT_TRUE(refuses_json(R"("byteOffset": 48)", R"("byteOffset": -48)", "not an integer"));
+  EXPECT_TRUE(refuses_json(R"("byteOffset": 144)", R"("byteOffset": 1e18)", "not an integer"));
+  EXPECT_TRUE(refuses_json(R"("count": 4)", R"("count": -4)", "not an integer"));
+  EXPECT_TRUE(refuses_json(R"("byteLength": 144)", R"("byteLength": 1.5)", "not an integer"));
 }
 
-TEST_F(Gltf, NormalsOfAnyLengthStayDirections) {
+TEST_F(Gltf, NormalsOfAnyLengthAreNormalised) {
   for (const float length : {1e-37f, 1e-20f, 1.0f, 1e20f, 3e38f}) {
     std::string data = square_data();
     for (size_t v = 0; v < 4; ++v) std::memcpy(&data[48 + 12 * v + 8], &length, 4);
     for (const char* node : {R"([{"mesh": 0}])", R"([{"mesh": 0, "scale": [1000, 1000, 1000]}])",
                              R"([{"mesh": 0, "scale": [0.001, 0.001, 0.001]}])"}) {
-      const GltfModel model = loaded(square_json(all_attributes, node), data);
+      const Model model = loaded(square_json(all_attributes, node), data);
       for (size_t v = 0; v < 4; ++v)
         EXPECT_NEAR(glm::distance(vector_at(model, v, word::normal), glm::vec3(0, 0, 1)), 0, 2e-7f)
             << length << " " << node;
@@ -332,7 +337,7 @@ TEST_F(Gltf, NormalsOfAnyLengthStayDirections) {
                            "too large"));
 }
 
-TEST_F(Gltf, RefusesFilesThatAreNone) {
+TEST_F(Gltf, RefusesFilesThatAreNotGltf) {
   const std::string good = glb(square_json(), square_data());
   EXPECT_TRUE(refuses("glTF", "first chunk"));
   EXPECT_TRUE(refuses(good.substr(0, 200), "first chunk"));

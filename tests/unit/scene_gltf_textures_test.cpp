@@ -2,7 +2,7 @@
 // The images of materials of glTF files, and what is said of those that are none.
 #include <gtest/gtest.h>
 
-#include "runtime/scene/gltf.h"
+#include "runtime/scene/mesh_formats.h"
 #include "tests/unit/gltf_files.h"
 
 namespace isoshade {
@@ -10,7 +10,7 @@ namespace {
 
 class GltfTextures : public ::testing::Test {
  protected:
-  std::optional<scene::GltfModel> load(const std::string& bytes, const std::string& name = "m.glb") {
+  std::optional<scene::Model> load(const std::string& bytes, const std::string& name = "m.glb") {
     diagnostics_ = support::Diagnostics();
     return scene::load_gltf(folder_.write(name, bytes), {}, diagnostics_);
   }
@@ -42,7 +42,7 @@ class GltfTextures : public ::testing::Test {
   support::Diagnostics diagnostics_;
 };
 
-TEST_F(GltfTextures, AreKeptAsTheyAre) {
+TEST_F(GltfTextures, KeepTheirEncodedBytes) {
   const auto model = load(testing::textured_glb("no image"));
   ASSERT_TRUE(model && model->parts.at(0).material) << diagnostics_.text();
   const auto& textures = model->parts[0].material->textures;
@@ -50,7 +50,7 @@ TEST_F(GltfTextures, AreKeptAsTheyAre) {
   EXPECT_EQ(*textures.at("base_color_texture").bytes, "no image");
 }
 
-TEST_F(GltfTextures, OfBaseColourAndEmissionAreSrgb) {
+TEST_F(GltfTextures, BaseColourAndEmissionAreSrgb) {
   folder_.write("m.bin", testing::square_data());
   folder_.write("a.png", "no image");
   const auto model = load(gltf(R"({"uri": "a.png"})", R"({"source": 0})",
@@ -69,12 +69,12 @@ TEST_F(GltfTextures, ComeFromFilesBelowTheFolder) {
   const std::string file = folder_.write("maps/a b+c.png", "no image");
   const auto model = load(gltf(R"({"uri": "maps/a%20b+c.png"})"), "m.gltf");
   ASSERT_TRUE(model && model->parts.at(0).material) << diagnostics_.text();
-  const scene::GltfImage& image = model->parts[0].material->textures.at("base_color_texture");
+  const scene::MaterialImage& image = model->parts[0].material->textures.at("base_color_texture");
   EXPECT_EQ(image.name, file);
   EXPECT_EQ(*image.bytes, "no image");
 }
 
-TEST_F(GltfTextures, ThatCannotBeReadAreNamedWithTheReason) {
+TEST_F(GltfTextures, UnreadableImagesAreReportedWithTheReason) {
   EXPECT_TRUE(refuses(gltf(R"({"uri": "no%20such.png"})"),
                       "error[missing-file]: cannot read the image \"no such.png\" of \""));
   EXPECT_TRUE(refuses(gltf(R"({"uri": "no.png"})"), "No such file"));
@@ -87,14 +87,14 @@ TEST_F(GltfTextures, ThatCannotBeReadAreNamedWithTheReason) {
   EXPECT_TRUE(refuses(gltf(R"({"uri": "."})"), "cannot read the image \".\" of"));
 }
 
-TEST_F(GltfTextures, ThatNoMaterialReadsMayBeMissing) {
+TEST_F(GltfTextures, UnusedImagesMayBeMissing) {
   folder_.write("m.bin", testing::square_data());
   EXPECT_TRUE(load(gltf(R"({"uri": "no.png"}, {"uri": "../no.png"})", R"({"source": 0})", R"("extras": 1)"),
                    "m.gltf"))
       << diagnostics_.text();
 }
 
-TEST_F(GltfTextures, ThatLeaveTheirBufferAreRefused) {
+TEST_F(GltfTextures, ImagesBeyondTheirBufferAreRefused) {
   const std::string glb =
       replaced(testing::textured_glb("no image"), "\"byteOffset\": 156", "\"byteOffset\": 165");
   EXPECT_FALSE(load(glb));
@@ -102,7 +102,7 @@ TEST_F(GltfTextures, ThatLeaveTheirBufferAreRefused) {
       << diagnostics_.text();
 }
 
-TEST_F(GltfTextures, ThatLeadNowhereAreRefused) {
+TEST_F(GltfTextures, TexturesWithoutAnImageAreRefused) {
   const std::string image = R"({"uri": "m.bin"})", texture = R"({"source": 0})";
   EXPECT_TRUE(refuses(gltf(image, R"({"source": 1})"), "error[bad-image]: cannot read the texture 0 of"));
   EXPECT_TRUE(refuses(gltf(image, R"({"source": 1})"), "the image 1 does not exist"));
@@ -112,7 +112,7 @@ TEST_F(GltfTextures, ThatLeadNowhereAreRefused) {
   EXPECT_TRUE(refuses(gltf(image, texture, R"("baseColorTexture": {})"), "/baseColorTexture has no index"));
 }
 
-TEST_F(GltfTextures, ThatAreNowhereAreRefused) {
+TEST_F(GltfTextures, ImagesWithoutASourceAreRefused) {
   const std::string image = "error[bad-image]: cannot read the image 0 of ";
   for (const char* nowhere :
        {"{}", R"({"uri": 5})", R"({"uri": ""})", R"({"uri": "data:image/png;base64,@@@@"})",
@@ -120,8 +120,8 @@ TEST_F(GltfTextures, ThatAreNowhereAreRefused) {
     EXPECT_TRUE(refuses(gltf(nowhere), image)) << nowhere;
 }
 
-TEST_F(GltfTextures, OfIndicesThatAreNoneAreRefused) {
-  const std::string image = R"({"uri": "m.bin"})", none = ", not a whole number from 0 to 2147483647";
+TEST_F(GltfTextures, IndicesThatAreNotIntegersAreRefused) {
+  const std::string image = R"({"uri": "m.bin"})", none = ", not an integer from 0 to 2147483647";
   for (const std::string bad : {"-1", "1e18", "1000000000000000000", "4294967296", "0.5"}) {
     const std::string index = R"({"index": )" + bad + "}", message = " is " + bad + none;
     for (const char* key : {"baseColorTexture", "metallicRoughnessTexture"}) {

@@ -59,10 +59,10 @@ TEST(Hdr, ColoursAreDividedByEveryExposureAndCorrection) {
   EXPECT_EQ(colors(hdr("# EXPOSURE=2\n", one, unit)), (Floats{1, 0.5f, 0.25f}));
   for (const char* bad : {"EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=x\n", "EXPOSURE=nan\n", "EXPOSURE=1 2\n",
                           "EXPOSURE=1e30\nEXPOSURE=1e30\n", "COLORCORR=1 2\n", "COLORCORR=1 0 1\n"})
-    EXPECT_NE(reason(hdr(bad, one, unit)).find("is no positive number"), std::string::npos) << bad;
+    EXPECT_NE(reason(hdr(bad, one, unit)).find("is not a positive number"), std::string::npos) << bad;
 }
 
-TEST(Hdr, OldRunsAreRead) {
+TEST(Hdr, OldRunLengthsAreRead) {
   // "1 1 1 n" repeats the pixel before n times; a second one n * 256 times.
   EXPECT_EQ(colors(hdr("", "-Y 2 +X 4", (unit + "\1\1\1\3") + unit + "\1\1\1\3")).size(), size_t{24});
   EXPECT_EQ(reds(hdr("", "-Y 2 +X 4", red(7) + "\1\1\1\3" + red(5) + red(3) + "\1\1\1\2")),
@@ -75,7 +75,7 @@ TEST(Hdr, OldRunsAreRead) {
   EXPECT_FALSE(scene::decode_image(hdr("", "-Y 1 +X 4", "\1\1\1\4" + unit)).found);  // of nothing
 }
 
-TEST(Hdr, NewRunsAndPlainPixelsAreRead) {
+TEST(Hdr, NewRunLengthsAndPlainPixelsAreRead) {
   std::string row = "\2\2";
   row += std::string("\0\10", 2);
   row +=
@@ -101,10 +101,10 @@ TEST(Hdr, AllEightOrientationsAreTurnedUpright) {
   EXPECT_EQ(reds(hdr("", "-X 3 -Y 2", pixels)), (Floats{5, 3, 1, 6, 4, 2}));
   EXPECT_EQ(reds(hdr("", "-X 3 +Y 2", pixels)), (Floats{6, 4, 2, 5, 3, 1}));
   for (const char* bad : {"", "-Y 2", "-Y 2 +Y 3", "-Y 2 +X 3 4", "Y 2 X 3", "-Y two +X 3", "-Y 2 +X 3x"})
-    EXPECT_NE(reason(hdr("", bad, pixels)).find("its size is not told"), std::string::npos) << bad;
+    EXPECT_NE(reason(hdr("", bad, pixels)).find("its size is not stated"), std::string::npos) << bad;
 }
 
-TEST(Hdr, PrimariesBecomeThoseOfRec709) {
+TEST(Hdr, PrimariesAreConvertedToRec709) {
   const std::string one = "-Y 1 +X 1", red_only("\x80\0\0\x81", 4);
   const Floats wide =
       colors(hdr("PRIMARIES=0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n", one, red_only));
@@ -113,7 +113,7 @@ TEST(Hdr, PrimariesBecomeThoseOfRec709) {
   const Floats same = colors(hdr("PRIMARIES=0.640 0.330 0.300 0.600 0.150 0.060 0.3127 0.3290\n", one, unit));
   EXPECT_EQ(same, (Floats{1, 0.5f, 0.25f}));
   EXPECT_EQ(colors(hdr("PRIMARIES=0 0 0 0 0 0 0 0\n", one, unit)), (Floats{1, 0.5f, 0.25f}));
-  EXPECT_NE(reason(hdr("PRIMARIES=0.3 0.3 0.3 0.3 0.3 0.3 0.3 0.3\n", one, unit)).find("span no colours"),
+  EXPECT_NE(reason(hdr("PRIMARIES=0.3 0.3 0.3 0.3 0.3 0.3 0.3 0.3\n", one, unit)).find("are degenerate"),
             std::string::npos);
   EXPECT_NE(reason(hdr("PRIMARIES=1 2 3\n", one, unit)).find("eight numbers"), std::string::npos);
 }
@@ -123,7 +123,7 @@ TEST(Hdr, XyzIsRefusedByName) {
             std::string::npos);
 }
 
-TEST(Hdr, WhatOverflowsIsClampedAndCounted) {
+TEST(Hdr, OverflowIsClampedAndCounted) {
   const auto image =
       scene::decode_image(hdr("EXPOSURE=2e-38\n", "-Y 1 +X 2", std::string("\xff\1\0\x90\0\0\0\0", 8)));
   ASSERT_TRUE(image.found) << image.reason;

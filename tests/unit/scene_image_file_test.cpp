@@ -122,7 +122,7 @@ TEST_F(ImageFile, PngKeepsEveryByte) {
   }
 }
 
-TEST_F(ImageFile, RefusesNamesOfNoFormatBeforeAnythingIsRendered) {
+TEST_F(ImageFile, RefusesUnknownExtensionsBeforeRendering) {
   Diagnostics diagnostics;
   EXPECT_TRUE(scene::check_image_path("a.png", diagnostics));
   EXPECT_TRUE(scene::check_image_path("-", diagnostics));
@@ -153,7 +153,7 @@ TEST_F(ImageFile, RefusesDamagedFilesWithAReason) {
   EXPECT_EQ(diagnostics.error_count(), 3u);
 }
 
-TEST_F(ImageFile, FilesAreReplacedWholeAndKeepTheirMode) {
+TEST_F(ImageFile, FilesAreReplacedAtomicallyAndKeepTheirMode) {
   Diagnostics diagnostics;
   ASSERT_TRUE(scene::write_file(path("f"), "old", diagnostics));
   fs::permissions(path("f"), fs::perms::owner_read | fs::perms::owner_write);
@@ -186,7 +186,7 @@ TEST_F(ImageFile, DevicesAreWrittenTo) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST_F(ImageFile, ReportsWhatCannotBeWritten) {
+TEST_F(ImageFile, ReportsFilesThatCannotBeWritten) {
   const std::string in_no_folder = path("none/f");
   const std::string folder = folder_.string();
   for (const std::string& target : {in_no_folder, folder, std::string("/dev/full"), std::string("")}) {
@@ -206,7 +206,7 @@ TEST(Encode, ClampsAndQuantises) {
   EXPECT_EQ(bytes, (std::vector<uint8_t>{0, 0, 1, 255, 0, 255, 255, 0, 0, 255, 255, 255}));
 }
 
-TEST(Encode, FollowsTheSrgbCurveButForAlpha) {
+TEST(Encode, FollowsTheSrgbCurveExceptForAlpha) {
   const float values[] = {0.25f, 0.001f, 0.107f, 0.5f};
   const auto bytes = scene::encode(values, Encoding::srgb, 1);
   EXPECT_EQ(bytes, (std::vector<uint8_t>{188, 7, 127, 128}));
@@ -232,7 +232,7 @@ TEST(Encode, DividesColoursByAlpha) {
             (std::vector<uint8_t>{51, 102, 153, 0, 51, 102, 153, 255}));
 }
 
-TEST(Encode, GivesBackEveryByteThatSrgbDecodes) {
+TEST(Encode, InvertsSrgbDecodeForEveryByte) {
   for (int byte = 0; byte < 256; ++byte) {
     const double encoded = byte / 255.0;
     const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);

@@ -10,7 +10,7 @@ namespace {
 
 using namespace testing;
 
-TEST(ImageFormats, HdrHasNumbersBeyondOne) {
+TEST(ImageFormats, HdrKeepsNumbersAboveOne) {
   const Floats read = rgba_of(hdr_file(2, 1, {0.25f, 0.5f, 1, 100, 50, 0}), false);
   EXPECT_EQ(read, (Floats{0.25f, 0.5f, 1, 1, 100, 50, 0, 1}));
 }
@@ -20,11 +20,11 @@ TEST(ImageFormats, ExrIsReadBitForBit) {
   EXPECT_EQ(rgba_of(scene::exr(image.view()), false), image.rgba);
 }
 
-TEST(ImageFormats, SidesAreCheckedBeforeAnythingIsUnpacked) {
+TEST(ImageFormats, SizesAreCheckedBeforeDecompression) {
   EXPECT_FALSE(scene::decode_image("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n").found);
 }
 
-TEST(ImageFormats, WhatIsNoneOfThemIsRefused) {
+TEST(ImageFormats, OtherFormatsAreRefused) {
   for (const char* bytes : {"", "BM", "GIF89a\1\0\1\0", "P6 1 1 255 abc", "\x89PNG", "{}", "\xff\xd8\xff"})
     EXPECT_FALSE(scene::decode_image(bytes).found) << bytes;
 }

@@ -47,7 +47,7 @@ std::string without(std::string bytes, int marker) {
 
 constexpr int sof0 = 0xc0, dht = 0xc4, eoi = 0xd9, sos = 0xda, dqt = 0xdb;
 
-TEST(Jpeg, IsNearlyWhatWasWritten) {
+TEST(Jpeg, DecodesCloseToTheOriginal) {
   for (const bool progressive : {false, true}) {
     std::vector<uint8_t> rgb;
     for (int y = 0; y < 13; ++y)
@@ -62,7 +62,7 @@ TEST(Jpeg, IsNearlyWhatWasWritten) {
   }
 }
 
-TEST(Jpeg, OfGreyHasThreeColoursAlike) {
+TEST(Jpeg, GreyBecomesThreeEqualColours) {
   const Floats read = rgba_of(
       jpeg_file(8, 8, std::vector<uint8_t>(64, 102), {.across = 1, .down = 1, .colors = JCS_GRAYSCALE}),
       true);
@@ -101,7 +101,7 @@ TEST(Jpeg, DecodesToTheSameBytesWithAllInstructionsAndAnyMemory) {
   }
 }
 
-TEST(Jpeg, CutShortGivesNoPicture) {
+TEST(Jpeg, TruncatedFilesAreRefused) {
   for (const bool progressive : {false, true}) {
     const std::string bytes = rgb_file({.quality = 40, .progressive = progressive});
     ASSERT_EQ(reason_of(bytes), "");
@@ -114,7 +114,7 @@ TEST(Jpeg, CutShortGivesNoPicture) {
   }
 }
 
-TEST(Jpeg, WithoutAScanIsRefused) {
+TEST(Jpeg, FilesWithoutAScanAreRefused) {
   const std::string bytes = rgb_file({.progressive = true});
   std::vector<size_t> scans = segments(bytes, sos);
   scans.push_back(segments(bytes, eoi).back());
@@ -161,7 +161,7 @@ std::string scan_by_scan(const std::vector<int>& channels) {
   return chosen + bytes.substr(bytes.size() - 2);
 }
 
-TEST(Jpeg, WithoutAChannelIsRefused) {
+TEST(Jpeg, FilesWithoutAChannelAreRefused) {
   EXPECT_EQ(reason_of(scan_by_scan({0, 1, 2})), "");
   EXPECT_EQ(reason_of(scan_by_scan({0})), "scans are missing");
   EXPECT_NE(reason_of(scan_by_scan({1, 2})), "");
@@ -170,7 +170,7 @@ TEST(Jpeg, WithoutAChannelIsRefused) {
   EXPECT_NE(reason_of(scan_by_scan({})), "");
 }
 
-TEST(Jpeg, WithoutTablesIsRefusedAlsoAfterOneThatHasThem) {
+TEST(Jpeg, FilesWithoutTablesAreRefusedEvenAfterAFileWithTables) {
   for (const bool progressive : {false, true}) {
     const std::string whole = rgb_file({.progressive = progressive});
     for (const int marker : {dht, dqt}) {
@@ -191,7 +191,7 @@ TEST(Jpeg, WithoutTablesIsRefusedAlsoAfterOneThatHasThem) {
   EXPECT_NE(reason_of(second), "");
 }
 
-TEST(Jpeg, OfManyScansIsRefusedAtOnce) {
+TEST(Jpeg, FilesWithTooManyScansAreRefusedBeforeDecoding) {
   // 8192 x 8192 pixels, 500 scans that do nothing.
   std::string bytes = rgb_file({.progressive = true});
   const std::vector<size_t> sizes = segments(bytes, sof0 + 2);
@@ -207,7 +207,7 @@ TEST(Jpeg, OfManyScansIsRefusedAtOnce) {
   EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(1));
 }
 
-TEST(Jpeg, WhatIsTooShortForItsSizeTakesNoMemory) {
+TEST(Jpeg, FilesTooShortForTheirSizeAllocateNoMemory) {
   for (const bool progressive : {false, true}) {
     std::string bytes = rgb_file({.progressive = progressive});
     const size_t size = segments(bytes, progressive ? sof0 + 2 : sof0).at(0);
@@ -220,18 +220,18 @@ TEST(Jpeg, WhatIsTooShortForItsSizeTakesNoMemory) {
   }
 }
 
-TEST(Jpeg, OfOtherKindsIsRefusedWithAWayOut) {
+TEST(Jpeg, UnsupportedKindsAreRefusedWithASuggestion) {
   EXPECT_EQ(
       reason_of(jpeg_file(8, 8, std::vector<uint8_t>(256), {.across = 1, .down = 1, .colors = JCS_CMYK})),
       "it is CMYK: convert it to RGB");
   EXPECT_EQ(reason_of(rgb_file({.arithmetic = true})),
-            "it is packed by arithmetic coding: save it with Huffman coding");
+            "it uses arithmetic coding: save it with Huffman coding");
   std::string deep = rgb_file();
   deep[segments(deep, sof0).at(0) + 4] = 12;
   EXPECT_EQ(reason_of(deep), "Unsupported JPEG data precision 12");
 }
 
-TEST(Jpeg, HeedsNoOrientation) {
+TEST(Jpeg, IgnoresTheOrientation) {
   // An EXIF of one entry: the first row is the right side.
   const std::string exif = std::string(
       "\xff\xe1\0\x22"
@@ -243,7 +243,7 @@ TEST(Jpeg, HeedsNoOrientation) {
   EXPECT_EQ(rgba_of(bytes, true), plain);
 }
 
-TEST(Jpeg, BytesThatNobodyReadsDoNoHarm) {
+TEST(Jpeg, UnusedBytesAreIgnored) {
   std::string bytes = rgb_file();
   const Floats plain = rgba_of(bytes, true);
   bytes.insert(segments(bytes, dqt).at(0), "abc");

@@ -68,7 +68,7 @@ TEST_F(LoadScene, ExtendsAnother) {
   EXPECT_EQ(scene->posts.size(), 1u);
 }
 
-TEST_F(LoadScene, PathsCountFromTheFileThatHasThem) {
+TEST_F(LoadScene, PathsAreRelativeToTheFileThatContainsThem) {
   const auto scene = load(R"("extends": "base/base.json",
       "objects": {"floor": {"mesh": "plane", "effect": "e.json"}})");
   ASSERT_TRUE(scene) << diagnostics_.text();
@@ -77,7 +77,7 @@ TEST_F(LoadScene, PathsCountFromTheFileThatHasThem) {
   EXPECT_EQ(scene->posts[0].effect, (folder_ / "scenes/base/fog.json").string());
 }
 
-TEST_F(LoadScene, ExtendsWhatExtends) {
+TEST_F(LoadScene, ExtendsASceneThatExtendsAnother) {
   write("scenes/middle.json",
         R"({"isoshade": 1, "scene": "m", "extends": "base/base.json", "time": 4, "posts": []})");
   const auto scene = load(R"("extends": "middle.json", "size": [2, 2])");
@@ -88,7 +88,7 @@ TEST_F(LoadScene, ExtendsWhatExtends) {
   EXPECT_EQ(scene->objects.size(), 2u);
 }
 
-TEST_F(LoadScene, SettingsReachWhatIsExtended) {
+TEST_F(LoadScene, SettingsApplyToTheExtendedScene) {
   const auto scene =
       load(R"("extends": "base/base.json")", {"ball.a=7", "sun.outer_angle=30", "camera.fov=45"});
   ASSERT_TRUE(scene) << diagnostics_.text();
@@ -106,7 +106,7 @@ TEST_F(LoadScene, ErrorsPointIntoTheirFile) {
   EXPECT_EQ(diagnostics_.all()[0].where.line(), 2u);
 }
 
-TEST_F(LoadScene, RefusesWhatIsNoSceneToExtend) {
+TEST_F(LoadScene, RefusesToExtendOtherDocuments) {
   write("scenes/effect.json", R"({"isoshade": 1, "effect": "e"})");
   write("scenes/self.json", R"({"isoshade": 1, "scene": "s", "extends": "top.json"})");
   write("outside.json", R"({"isoshade": 1, "scene": "s"})");
@@ -120,7 +120,7 @@ TEST_F(LoadScene, RefusesWhatIsNoSceneToExtend) {
   EXPECT_NE(error(R"("extends": "../outside.json")").find("outside-reference: "), std::string::npos);
 }
 
-TEST_F(LoadScene, WhatExtendsIsADocumentItself) {
+TEST_F(LoadScene, AnExtendingSceneNeedsTheKeysOfADocument) {
   const auto first_error = [&](const std::string& text) {
     write("scenes/part.json", text);
     return error(R"("extends": "part.json")");
@@ -129,7 +129,7 @@ TEST_F(LoadScene, WhatExtendsIsADocumentItself) {
             "missing-key: the document has no version");
   EXPECT_EQ(first_error(R"({"isoshade": 1, "extends": "base/base.json"})"),
             "wrong-kind: a document must be a function, effect, post or scene");
-  EXPECT_NE(first_error(R"({"isoshade": 1, "post": "p", "extends": "base/base.json"})").find("is no scene"),
+  EXPECT_NE(first_error(R"({"isoshade": 1, "post": "p", "extends": "base/base.json"})").find("is not a scene"),
             std::string::npos);
 }
 
@@ -138,7 +138,7 @@ TEST_F(LoadScene, SuggestsTheKeyThatExtends) {
   EXPECT_NE(diagnostics_.text().find("did you mean \"extends\"?"), std::string::npos) << diagnostics_.text();
 }
 
-TEST_F(LoadScene, RefusesAnEndlessRow) {
+TEST_F(LoadScene, RefusesTooManyLevels) {
   for (size_t i = 0; i < 2 * max_bases; ++i) {
     write("scenes/s" + std::to_string(i) + ".json",
           R"({"isoshade": 1, "scene": "s", "extends": "s)" + std::to_string(i + 1) + R"(.json"})");

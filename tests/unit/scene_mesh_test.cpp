@@ -156,7 +156,7 @@ TEST(Mesh, TangentsAreUnitAndRunAlongUWithTheirNormalsAndUpRightHanded) {
   }
 }
 
-TEST(Mesh, HoldsNoDenormalsAndNoNegativeZeros) {
+TEST(Mesh, ContainsNoDenormalsOrNegativeZeros) {
   for (const MeshShape& shape : shapes) {
     for (const float value : scene::make_mesh(shape).vertices) {
       ASSERT_TRUE(std::isnormal(value) || value == 0) << value;
@@ -164,7 +164,7 @@ TEST(Mesh, HoldsNoDenormalsAndNoNegativeZeros) {
   }
 }
 
-TEST(Mesh, IsTheSameBitsOnEveryMachine) {
+TEST(Mesh, HasTheSameBitsOnEveryMachine) {
   // Recorded with g++ 12 on x86-64; any compiler and any level of optimisation must give it.
   struct Recorded {
     MeshShape shape;

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(OutputFile, MayHaveTheLongestNameThatThereIs) {
+TEST(OutputFile, AcceptsTheLongestFileName) {
   std::string pattern = (fs::temp_directory_path() / "isoshade-output-XXXXXX").string();
   const fs::path folder = mkdtemp(pattern.data());
   constexpr size_t most = 255;  // bytes of a name, on all usual file systems

@@ -188,7 +188,7 @@ TEST(ParseScene, RefusesViewsWithoutDirection) {
                   .fails_with("\"far\""));
 }
 
-TEST(ParseScene, RefusesWhatHasNoExtentOrDirection) {
+TEST(ParseScene, RefusesScalesAndDirectionsOfZero) {
   const auto transform = [](const std::string& members) {
     return parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e", "transform": {)" + members +
                          "}}}");
@@ -219,7 +219,7 @@ TEST(ParseScene, RefusesNumbersBeyondItsLimits) {
                   .fails_with("out-of-range"));
 }
 
-TEST(ParseScene, KnowsThreeNumbersOfSamples) {
+TEST(ParseScene, AcceptsOneFourOrSixteenSamples) {
   EXPECT_EQ(parse_members("").scene->samples, 1);
   for (const int samples : {1, 4, 16}) {
     const ParsedScene parsed = parse_members("\"samples\": " + std::to_string(samples));
@@ -235,7 +235,7 @@ TEST(ParseScene, KnowsThreeNumbersOfSamples) {
   EXPECT_TRUE(parse_members("\"samples\": \"4\"").fails_with("wrong-type"));
 }
 
-TEST(ParseScene, BoundsTheCopiesOfAScene) {
+TEST(ParseScene, LimitsTheNumberOfCopies) {
   const auto grid = [](const std::string& count) {
     const std::string axis = R"({"count": )" + count + R"(, "step": [1, 0, 0]})";
     return parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e", "repeat": [)" + axis + "," +
@@ -248,7 +248,7 @@ TEST(ParseScene, BoundsTheCopiesOfAScene) {
   EXPECT_TRUE(grid("-1").fails_with("out-of-range"));
 }
 
-TEST(ParseScene, BoundsTheLightsOfAScene) {
+TEST(ParseScene, LimitsTheNumberOfLights) {
   std::string lights;
   for (size_t i = 0; i <= scene::max_lights; ++i) {
     lights += (i == 0 ? "" : ",") + ("\"l" + std::to_string(i)) +
@@ -257,7 +257,7 @@ TEST(ParseScene, BoundsTheLightsOfAScene) {
   EXPECT_TRUE(parse_members("\"lights\": {" + lights + "}").fails_with("too-large"));
 }
 
-TEST(ParseScene, GivesAParameterOneSource) {
+TEST(ParseScene, RefusesAParameterThatIsSetTwice) {
   const ParsedScene parsed = parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e",
     "parameters": {"roughness": 0.5},
     "repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"roughness": {"from": 0, "to": 1}}}]}})");
@@ -278,7 +278,7 @@ TEST(ParseScene, ChecksVariations) {
   EXPECT_TRUE(varied(R"({"values": [true, false, true]})").scene);
 }
 
-TEST(ParseScene, VariesNoValueBeyondItsEnds) {
+TEST(ParseScene, VariationsStayBetweenTheirEnds) {
   const auto number = [](float value) {
     graph::Literal literal;
     literal.number = value;
@@ -298,7 +298,7 @@ TEST(ParseScene, VariesNoValueBeyondItsEnds) {
   }
 }
 
-TEST(ParseScene, KeepsNamesApart) {
+TEST(ParseScene, RefusesDuplicateNames) {
   EXPECT_TRUE(parse_members(std::string(ball) +
                             R"(, "lights": {"ball": {"type": "directional", "direction": [0, -1, 0]}})")
                   .fails_with("duplicate-name"));
@@ -327,7 +327,7 @@ TEST(ParseScene, ReadsPostsInTheirOrder) {
   EXPECT_EQ(posts[1].inputs[1].source, 0);
 }
 
-TEST(ParseScene, PostsReadOnlyWhatIsMadeBefore) {
+TEST(ParseScene, PostsReadOnlyImagesOfEarlierPosts) {
   const auto reading = [](const std::string& image) {
     return parse_members(R"("posts": [{"name": "first", "effect": "e", "inputs": {"color": ")" + image +
                          R"("}}, {"name": "second", "effect": "e"}])");

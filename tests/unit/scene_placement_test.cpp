@@ -42,7 +42,7 @@ TEST(Placement, AnglesAreExactAtQuartersAndSymmetric) {
   }
 }
 
-TEST(Placement, PerspectiveDepthIsReversedAndEndless) {
+TEST(Placement, PerspectiveDepthIsReversedWithAnInfiniteFarPlane) {
   const lanes::FpGuard guard;
   Camera camera;
   camera.position = {1, 2, 3};
