@@ -19,7 +19,7 @@ using support::Diagnostics;
 using support::Id;
 using support::quote;
 
-/// A side of an image that is this part of another's; exact, as a double holds the product.
+/// A side of an image that is this fraction of another side; exact, as a double holds the product.
 int part_of(int side, float part) {
   return static_cast<int>(std::ceil(static_cast<double>(side) * static_cast<double>(part)));
 }
@@ -48,7 +48,7 @@ class ChainPlanner {
 
   bool read_post(size_t p);
   bool find_sources(size_t p, Planned& planned);
-  /// What an image is when posts that are switched off pass on the one that they would go over.
+  /// The image that results when posts that are switched off pass on the image that they would process.
   int passed_on(int image) const;
   void drop_unread();
   bool check_result(int result) const;
@@ -90,7 +90,7 @@ bool ChainPlanner::find_sources(size_t p, Planned& planned) {
     if (planned.sources[i] != scene::no_image) continue;
     diagnostics_
         .report(Id::unknown_image, post.name_where,
-                "post " + quote(post.name) + " is not given the image " + quote(names[i]))
+                "post " + quote(post.name) + " has no input for the image " + quote(names[i]))
         .suggest("write \"inputs\": {\"" + std::string(names[i]) +
                  "\": \"scene\"}, or the name of an earlier post");
     good = false;
@@ -120,7 +120,7 @@ int ChainPlanner::passed_on(int image) const {
   return image;
 }
 
-/// From the last post backwards: those that none reads which runs, nor the scene's result.
+/// Drops the posts, from the last one backwards, whose images neither a post that runs nor the scene's result uses.
 void ChainPlanner::drop_unread() {
   std::vector<bool> read(planned_.size());
   const auto mark = [&](int image) {
@@ -146,12 +146,12 @@ bool ChainPlanner::check_result(int result) const {
   if (part_of(width_, post.size) == width_ && part_of(height_, post.size) == height_) return true;
   diagnostics_
       .report(Id::out_of_range, post.size_where,
-              "post " + quote(post.name) + " makes the scene's image, but not in its full size")
+              "post " + quote(post.name) + " makes the scene's image, but not at full size")
       .suggest("leave out its \"size\", or add a post after it");
   return false;
 }
 
-/// The images of the chain come and go as run_posts has them.
+/// Counts the images that run_posts keeps at a time.
 bool ChainPlanner::check_size(const PostChain& chain) const {
   std::vector<int64_t> kept{static_cast<int64_t>(width_) * height_};
   for (size_t s = 0; s < chain.steps.size(); ++s) {
@@ -215,7 +215,7 @@ struct Layer {
   bool finite = true;
 };
 
-/// Notes what of the image that a step made is not finite, and whether that is the step's doing.
+/// Reports pixels of a step's image that are not finite, and whether the step caused them.
 void note_non_finite(const PostStep& step, const std::vector<Layer>& layers, Layer& made,
                      NonFiniteReport& report) {
   report.result = find_non_finite(made.rgba, made.width);

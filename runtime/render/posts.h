@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The post chain: which posts run over which images, and how long each image is kept.
+// The post chain: which posts process which images, and how long each image is kept.
 #pragma once
 
 #include <optional>
@@ -12,25 +12,25 @@
 
 namespace isoshade::render {
 
-/// One post that is run. Images are numbered: 0 is the one that was drawn, and step i makes image 1 + i.
+/// A post that runs. Images are numbered: 0 is the rendered image, and step i makes image 1 + i.
 struct PostStep {
   const driver::Post* post = nullptr;
   std::vector<float> record;  ///< its parameters and numbers of taps
-  int width = 0, height = 0;  ///< of the image that it makes
-  /// The image that it goes over, then those that its document lists; not_read where it does not look at it.
+  int width = 0, height = 0;  ///< of its image
+  /// The image that it processes, then those that its document lists; not_read if the program does not read it.
   std::vector<int> sources;
   size_t post_number = 0;  ///< in Scene::posts
   static constexpr int not_read = -1;
 };
 
-/// What is run for a scene, in order.
+/// The posts that run for a scene, in order.
 struct PostChain {
   std::vector<PostStep> steps;
   std::vector<int> last_reader;  ///< of each image: the last step that reads it, or none
   int result = 0;                ///< the image that the scene becomes
   static constexpr int none = -1;
 
-  /// Whether an image made before is not needed any more after a step.
+  /// Whether no step after this one needs an earlier image.
   bool is_done(size_t image, size_t step) const {
     return last_reader[image] <= static_cast<int>(step) && static_cast<int>(image) != result;
   }
@@ -39,15 +39,15 @@ struct PostChain {
 /// A limit that keeps hostile scenes harmless: the pixels of all images at a time.
 inline constexpr int64_t max_kept_pixels = int64_t{4} * scene::max_size * scene::max_size;
 
-/// Works out the chain: leaves out posts that are switched off, and those whose images nobody reads then, and says so
-/// in `skips`; with `skip` off all run. `documents`: of each post of the scene. The sizes are the frame's. Computed
-/// under lanes::FpGuard, which the caller holds. Reports inputs and parameters that a document has not, a result
-/// that is not of the frame's size, and images beyond the limit.
+/// Plans the chain: leaves out posts that are switched off and posts whose images are then unused, and records them in
+/// `skips`; with `skip` off all run. `documents`: one for each post of the scene. The size is that of the frame. The
+/// caller holds lanes::FpGuard. Reports inputs and parameters that a document does not have, a result that does not have
+/// the size of the frame, and images beyond the limit.
 std::optional<PostChain> plan_posts(const scene::Scene& scene,
                                     const std::vector<const driver::Post*>& documents, int width, int height,
                                     bool skip, std::vector<Skip>& skips, support::Diagnostics& diagnostics);
 
-/// Runs the chain over the frame's picture. Depth stays as it is.
+/// Runs the chain over the image of the frame. Does not change the depth.
 bool run_posts(const PostChain& chain, const backends::Frame& frame, backends::Backend& backend,
                backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
 

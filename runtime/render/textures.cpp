@@ -11,7 +11,7 @@
 namespace isoshade::render {
 namespace {
 
-/// Of a texture of this size, with its mip levels or without.
+/// The number of texels of a texture of this size, with or without mip levels.
 int64_t texel_count(const scene::ImageHeader& header, bool mips) {
   int64_t width = header.width, height = header.height, count = width * height;
   while (mips && (width > 1 || height > 1)) {
@@ -170,7 +170,7 @@ void TextureStore::store(backends::Frame& frame) {
       if (smaller > 0) next = scene::half_size(next);
     }
     texture.largest = scene::ByteLevel{};
-    // Each level of bytes is made of floats that are not yet rounded to bytes, so that errors do not add up.
+    // Each level of bytes is computed from floats before they are rounded to bytes, so that errors do not accumulate.
     while (smaller-- > 0) {
       if (texture.header.bytes)
         add_level(scene::byte_level(next, texture.srgb), texture.srgb, smaller, frame);

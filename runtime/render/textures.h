@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The textures of a frame: each file read once, stored once for each way in which it is decoded.
+// The textures of a frame: each file is read once, and stored once for each decoding.
 #pragma once
 
 #include <map>
@@ -18,17 +18,17 @@
 namespace isoshade::render {
 
 /// Limits that keep hostile scenes harmless. A side is limited by scene::max_size.
-/// Of all textures with their mip levels: 4 bytes a texel where a file has 8 bits a number or fewer, else 16. It is
-/// known before an image is unpacked.
+/// Of all textures with their mip levels: 4 bytes per texel for files with at most 8 bits per channel, otherwise 16.
+/// Checked before an image is decompressed.
 inline constexpr int64_t max_texture_bytes = int64_t{3} << 29;
 inline constexpr size_t max_textures = 4096;
 
 /// Where an image comes from.
 struct ImageSource {
-  std::string path;                          ///< of its file, or what else it is called
-  std::shared_ptr<const std::string> bytes;  ///< of the file, if it is none on the disk
-  support::Span where;                       ///< what names it
-  /// Whether whole numbers that are read as a colour are sRGB, also those of 16 bits.
+  std::string path;                          ///< of its file, or another name that identifies it
+  std::shared_ptr<const std::string> bytes;  ///< of the image, if it is not a file on disk
+  support::Span where;                       ///< the text that names it
+  /// Whether integers that are read as a colour are sRGB, also those of 16 bits.
   bool srgb = false;
 };
 
@@ -39,12 +39,12 @@ class TextureStore {
  public:
   explicit TextureStore(int64_t most_bytes = max_texture_bytes) : most_bytes_(most_bytes) {}
 
-  /// The number of the texture; it is `mips` for all who ask for it, if it is for one. Reports what is no image, or too
+  /// The number of the texture; it has mip levels if any caller passes `mips`. Reports what is not an image, or too
   /// large.
   std::optional<int> find(const ImageSource& source, lower::Decoding decoding, bool mips,
                           support::Diagnostics& diagnostics);
 
-  /// Fills what the frame has of textures, after the last find(); the images are not kept.
+  /// Fills the texture buffers of the frame. Call it after the last find(); it releases the images.
   void store(backends::Frame& frame);
   /// The record of a stored texture, by its number; -1 for -1.
   int record(int number) const { return number < 0 ? -1 : records_[static_cast<size_t>(number)]; }
@@ -54,7 +54,7 @@ class TextureStore {
 
  private:
   struct Texture {
-    ImageSource source;  ///< of whoever asked first
+    ImageSource source;  ///< of the first find()
     bool srgb;
     bool mips;
     scene::ImageHeader header;
@@ -64,7 +64,7 @@ class TextureStore {
     int64_t bytes() const;
     backends::Largest described() const;
   };
-  /// Whether there is room for this many bytes more, and one texture more if it is a new one.
+  /// Whether this many more bytes fit the limits, and one more texture if it is new.
   bool fits(int64_t bytes, bool is_new, const ImageSource& source, support::Diagnostics& diagnostics) const;
 
   int64_t most_bytes_;

@@ -46,7 +46,7 @@ Vector xyz(const std::array<float, 2>& xy) {
   return {x, y, 1 - x - y};
 }
 
-/// With Y = 1.
+/// XYZ with Y = 1.
 Vector white_of(const Chromaticities& from) {
   const Vector white = xyz(from.white);
   return {white[0] / white[1], 1, white[2] / white[1]};
@@ -88,7 +88,7 @@ ToRec709 to_rec709(const Chromaticities& from) {
   const Matrix whole = multiply(multiply(*inverse(*to_xyz(rec709)), adapted), *source);
   ColorMatrix matrix;
   for (size_t i = 0; i < 9; ++i) {
-    // Real primaries give numbers of about 1; whatever else would give texels that are not finite.
+    // Real primaries give numbers near 1; much larger ones would make texels infinite.
     if (!(std::abs(whole[i / 3][i % 3]) < 1000)) return {};
     matrix[i] = static_cast<float>(whole[i / 3][i % 3]);
   }

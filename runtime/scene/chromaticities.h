@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of files that say what their red, green and blue are.
+// Conversion of colours from files that state their primaries.
 #pragma once
 
 #include <array>
@@ -16,18 +16,19 @@ struct Chromaticities {
 /// Row by row.
 using ColorMatrix = std::array<float, 9>;
 
-/// What colours are multiplied by to become those of Rec. 709 with white D65, which sRGB shares.
+/// The conversion to the primaries of Rec. 709 and white D65, which sRGB shares.
 struct ToRec709 {
-  bool valid = false;                 ///< false: the primaries span no colours
-  std::optional<ColorMatrix> matrix;  ///< none where they are those of Rec. 709, each number within 0.0005
+  bool valid = false;  ///< false: the primaries are degenerate
+  std::optional<ColorMatrix>
+      matrix;  ///< none if the primaries are those of Rec. 709, each number within 0.0005
 };
 
 /// The matrix is inverse(M(Rec. 709)) B M(from): M takes red, green and blue to XYZ so that their sum is the white with
-/// Y = 1 (SMPTE RP 177), B takes one white to the other (linearised Bradford, as ICC.1:2010 annex E has it). So white
-/// stays white. It is computed in doubles by + - * / alone, and rounded once to floats.
+/// Y = 1 (SMPTE RP 177), B adapts one white to the other (linearised Bradford, ICC.1:2010 annex E). So white
+/// stays white. Computed in doubles with + - * / only, then rounded once to floats.
 ToRec709 to_rec709(const Chromaticities& from);
 
-/// Of 4 floats a pixel, the fourth of which stays. Colours outside of Rec. 709 get negative numbers. The caller holds
+/// Converts pixels of 4 floats; the fourth float is kept. Colours outside Rec. 709 become negative. The caller holds
 /// lanes::FpGuard.
 void transform(const ColorMatrix& matrix, std::span<float> rgba);
 

@@ -7,7 +7,7 @@ namespace isoshade::scene {
 namespace {
 
 uint8_t quantise(float x) {
-  // NaN is not above 0.
+  // NaN fails this comparison.
   const float clamped = x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
   return static_cast<uint8_t>(lanes::to_int(lanes::floor(clamped * 255.0f + 0.5f)));
 }

@@ -57,14 +57,14 @@ std::optional<Elements> find(const tinygltf::Model& model, int index, int width,
 
   // Sizes in the order in which none can overflow: each is found to be small before it is used.
   const size_t all = buffer->data.size();
-  if (view->byteOffset > all || view->byteLength > all - view->byteOffset) return refuse("leaves its buffer");
+  if (view->byteOffset > all || view->byteLength > all - view->byteOffset) return refuse("extends beyond its buffer");
   const size_t element = component * static_cast<size_t>(width);
   const size_t stride = view->byteStride == 0 ? element : view->byteStride;
   if (stride < element) return refuse("has elements that overlap");
   if (accessor->count == 0) return refuse("is empty");
   if (accessor->byteOffset > view->byteLength || element > view->byteLength - accessor->byteOffset ||
       accessor->count - 1 > (view->byteLength - accessor->byteOffset - element) / stride) {
-    return refuse("leaves its buffer view");
+    return refuse("extends beyond its buffer view");
   }
   if (accessor->count > 3 * static_cast<size_t>(max_gltf_triangles)) return refuse("is too long");
   return Elements{buffer->data.data() + view->byteOffset + accessor->byteOffset, stride, accessor->count,
@@ -94,7 +94,7 @@ std::optional<Numbers> read_numbers(const tinygltf::Model& model, int accessor, 
   const bool shorts = elements->type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
   const bool normalized = model.accessors[static_cast<size_t>(accessor)].normalized;
   if (!floats && !(integers && normalized && (bytes || shorts))) {
-    refusal.refuse("accessor " + std::to_string(accessor) + " has components of a type that is not for it");
+    refusal.refuse("accessor " + std::to_string(accessor) + " has components of an unsuitable type");
     return std::nullopt;
   }
   Numbers numbers;
@@ -112,7 +112,7 @@ std::optional<Numbers> read_numbers(const tinygltf::Model& model, int accessor, 
         value = static_cast<float>(load<uint16_t>(from + 2 * c)) / 65535.0f;
       }
       if (!std::isfinite(value)) {
-        refusal.refuse("accessor " + std::to_string(accessor) + " has a number that is infinite or none");
+        refusal.refuse("accessor " + std::to_string(accessor) + " has a number that is infinite or NaN");
         return std::nullopt;
       }
       numbers.values.push_back(value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warnings of what a glTF file holds and isoshade does not read.
+// Warnings about features of a glTF file that isoshade does not read.
 #include <iterator>
 #include <set>
 
@@ -24,7 +24,7 @@ bool is_not_repeat(const Json& value) { return value.number != 10497; }
 bool is_point_or_line(const Json& value) { return value.number < 4; }
 bool is_given(const Json& value) { return value.kind != Json::Kind::array || !value.items.empty(); }
 
-/// A key of the glTF 2.0 specification, and with which values it asks for what is not read.
+/// A key of the glTF 2.0 specification, and which of its values request a feature that is not read.
 struct Feature {
   std::string_view key;
   std::string_view name;

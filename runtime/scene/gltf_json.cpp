@@ -19,12 +19,12 @@ uint32_t word_at(const std::string& bytes, size_t at) {
   return word;
 }
 
-/// The keys of what is read whose values are numbers of things, or codes: whole, and not negative.
+/// The keys whose values are indices, counts or codes: integers that are not negative.
 bool is_index(std::string_view key) {
   static constexpr std::string_view keys[] = {
-      "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "children", "componentType",
-      "count",         "index",      "indices",    "material",   "mesh",       "mode",     "nodes",
-      "scene",         "source",     "texCoord"};
+      "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "children",
+      "componentType", "count",      "index",      "indices",    "material",   "mesh",
+      "mode",          "nodes",      "scene",      "source",     "texCoord"};
   return std::ranges::find(keys, key) != std::end(keys);
 }
 
@@ -34,10 +34,10 @@ bool check_index(const graph::Document& document, const Json& value, Refusal& re
   return refusal.refuse(graph::pointer_at(document, value.begin) + " is " +
                         (is_number ? std::string(document.text(value).substr(0, 40))
                                    : std::string(graph::kind_name(value.kind))) +
-                        ", not a whole number from 0 to 2147483647");
+                        ", not an integer from 0 to 2147483647");
 }
 
-/// The keys of what is read whose values are numbers: tinygltf takes what is none for nothing.
+/// The keys whose values are numbers: tinygltf ignores values of other types.
 bool is_quantity(std::string_view key) {
   static constexpr std::string_view keys[] = {"baseColorFactor", "emissiveFactor",  "matrix",
                                               "metallicFactor",  "roughnessFactor", "rotation",
@@ -53,7 +53,7 @@ bool check_quantity(const graph::Document& document, const Json& value, Refusal&
                                             std::string(graph::kind_name(wrong->kind)) + ", not a number");
 }
 
-/// All below `value`, whose own members all are indices if `attributes`.
+/// Checks everything below `value`; with `attributes`, all of its members are indices.
 bool check_indices(const graph::Document& document, const Json& value, bool attributes, Refusal& refusal) {
   for (const Json& item : value.items)
     if (!check_indices(document, item, false, refusal)) return false;
@@ -72,17 +72,17 @@ bool check_indices(const graph::Document& document, const Json& value, bool attr
   return true;
 }
 
-/// That it says it is glTF 2.
+/// Checks the version: glTF 2.
 bool check_version(const Json& root, Refusal& refusal) {
   const Json* asset = root.find("asset");
   const Json* version = asset == nullptr ? nullptr : asset->find("version");
   if (version == nullptr || version->kind != Json::Kind::string)
-    return refusal.refuse("it is no glTF: it has no \"asset\" with a \"version\"");
+    return refusal.refuse("it is not a glTF: it has no \"asset\" with a \"version\"");
   if (version->string != "2" && !version->string.starts_with("2."))
     return refusal.refuse("it is of version " + quote(version->string) + ", not 2");
   const Json* least = asset->find("minVersion");
   if (least == nullptr || least->string == "2" || least->string == "2.0") return true;
-  return refusal.refuse("it needs a reader of glTF " + quote(least->string) + ", and isoshade reads 2.0");
+  return refusal.refuse("it requires glTF " + quote(least->string) + ", and isoshade reads 2.0");
 }
 
 bool decodes(const std::string& uri) {
@@ -91,7 +91,7 @@ bool decodes(const std::string& uri) {
   return !tinygltf::IsDataURI(uri) || tinygltf::DecodeDataURI(&bytes, type, uri, 0, false);
 }
 
-/// That each image says where its bytes are: tinygltf would refuse the whole file for one.
+/// Checks that each image has a source: otherwise tinygltf would refuse the whole file.
 bool check_images(const Json& root, Refusal& refusal) {
   const Json* images = root.find("images");
   if (images == nullptr) return true;
@@ -99,9 +99,9 @@ bool check_images(const Json& root, Refusal& refusal) {
     const Json* uri = images->items[i].find("uri");
     std::string_view reason;
     if ((images->items[i].find("bufferView") != nullptr) == (uri != nullptr))
-      reason = "it has not one of \"uri\" and \"bufferView\"";
+      reason = "it needs either \"uri\" or \"bufferView\"";
     else if (uri != nullptr && (uri->kind != Json::Kind::string || uri->string.empty()))
-      reason = "its \"uri\" is no text, or an empty one";
+      reason = "its \"uri\" is not a string, or is empty";
     else if (uri != nullptr && !decodes(uri->string))
       reason = "its data URI cannot be decoded";
     if (!reason.empty())

@@ -14,7 +14,7 @@ namespace {
 constexpr float half_pi = 1.57079637f;
 constexpr float radians_per_degree = 0.0174532924f;
 
-/// `angle` is at most an eighth of a turn, and is added to a number of quarters.
+/// `angle` is at most an eighth of a turn; `quarters` quarter turns are added.
 SinCos add_quarters(float angle, int quarters) {
   const float s = functions::sin(angle);
   const float c = functions::cos(angle);
@@ -26,10 +26,10 @@ SinCos add_quarters(float angle, int quarters) {
   }
 }
 
-/// Zeros have no sign: a corner of a mesh is one point, however it is reached.
+/// Removes the sign of zeros, so that equal points of a mesh have equal bits.
 float positive_zero(float x) { return x == 0 ? 0.0f : x; }
 
-/// The same numbers as the library's types, and back.
+/// Conversion to the function library's types, and back.
 template <int N>
 functions::vec<float, N> to_lanes(const glm::vec<N, float>& a) {
   if constexpr (N == 3) return {a[0], a[1], a[2]};
@@ -60,10 +60,10 @@ glm::mat<N, N, float> to_glm(const functions::mat<float, N>& a) {
 }  // namespace
 
 SinCos sin_cos_of_turn(int64_t part, int64_t whole) {
-  // In eighths of `whole`, so that everything up to the angle itself is an integer.
+  // Counted in eighths of `whole`, so that everything but the angle is an integer.
   const int64_t quarters = (8 * part + whole) / (2 * whole);
   const int64_t rest = 4 * part - quarters * whole;  // of a quarter turn, in 1/whole; at most half of it
-  // Through the magnitude: the library's sin is odd, but the quotient should be too.
+  // Computed with the magnitude, so that the quotient is odd, as the library's sin is.
   const float magnitude = static_cast<float>(rest < 0 ? -rest : rest) / static_cast<float>(whole) * half_pi;
   const SinCos result = add_quarters(rest < 0 ? -magnitude : magnitude, static_cast<int>(quarters));
   return {positive_zero(result.sin), positive_zero(result.cos)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The copies of a repeated object. Floats are computed under lanes::FpGuard, which the callers hold.
+// The copies of a repeated object. The callers hold lanes::FpGuard.
 #include <algorithm>
 
 #include "runtime/scene/scene.h"
@@ -43,7 +43,7 @@ graph::Literal variation_value(const Variation& variation, int64_t place, int64_
   const graph::Literal& from = variation.values[0];
   const graph::Literal& to = variation.values[1];
   const float t = count == 1 ? 0.0f : static_cast<float>(place) / static_cast<float>(count - 1);
-  // Rounding may lead beyond the ends, and they may be all that a parameter's range allows.
+  // Rounding could leave the interval, and with it the parameter's range.
   const auto between = [t](float a, float b) {
     return t == 1.0f ? b : std::clamp(a * (1.0f - t) + b * t, std::min(a, b), std::max(a, b));
   };

@@ -17,13 +17,13 @@ using Corners = std::array<uint32_t, 3>;
 
 constexpr float pi = 3.14159274f;
 
-/// Points on the unit sphere, and triangles of them.
+/// Points on the unit sphere, and triangles.
 struct Ball {
   std::vector<glm::vec3> points;
   std::vector<Corners> triangles;
 };
 
-/// With a point at each pole.
+/// The icosahedron with a vertex at each pole.
 Ball icosahedron() {
   Ball ball;
   const float height = 1.0f / std::sqrt(5.0f);
@@ -49,7 +49,7 @@ Ball icosahedron() {
   return ball;
 }
 
-/// Each triangle into four.
+/// Divides each triangle into four.
 Ball subdivided(const Ball& coarse) {
   Ball fine{coarse.points, {}};
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
@@ -69,13 +69,13 @@ Ball subdivided(const Ball& coarse) {
 
 bool is_pole(const glm::vec3& p) { return p.x == 0 && p.z == 0; }
 
-/// Of a full turn, from -z over -x; in [0, 1).
+/// Longitude as a fraction of a turn, from -z over -x; in [0, 1).
 float longitude_of(const glm::vec3& p) {
   const float turn = functions::atan2(-p.x, -p.z) / (2 * pi);
   return turn < 0 ? turn + 1 : turn;
 }
 
-/// From the north pole at 0 to the south pole at 1.
+/// Latitude from 0 at the north pole to 1 at the south pole.
 float latitude_of(const glm::vec3& p) { return functions::atan2(std::sqrt(p.x * p.x + p.z * p.z), p.y) / pi; }
 
 struct Placing {
@@ -83,7 +83,7 @@ struct Placing {
   glm::vec3 tangent;
 };
 
-/// A triangle over the seam has its whole texture beyond it; at a pole the middle of the other two corners'.
+/// The u of the corners: a triangle across the seam continues beyond 1; a corner at a pole has the mean of the other two.
 std::array<Placing, 3> place(const std::array<glm::vec3, 3>& points) {
   std::array<Placing, 3> corners;
   float low = 1, high = 0;

@@ -16,9 +16,9 @@ struct Ring {
   float v;
 };
 
-/// Vertices of `rings` rings from top to bottom, and the bands between them. A ring that is a pole is one point
-/// but many vertices: each of its triangles has its own u there. Any other has a seam: its two ends are one
-/// point. `add(ring, u, longitude)` adds a vertex.
+/// Adds the vertices of `rings` rings from top to bottom and the bands between them. A pole is one point but many
+/// vertices, as each triangle has its own u there. Other rings have a seam: their first and last vertices coincide.
+/// `add(ring, u, longitude)` adds a vertex.
 template <class IsPole, class Add>
 void add_bands(Mesh& mesh, int64_t rings, int64_t segments, const IsPole& is_pole, const Add& add) {
   std::vector<int64_t> first;
@@ -51,7 +51,7 @@ void add_bands(Mesh& mesh, int64_t rings, int64_t segments, const IsPole& is_pol
 /// Seen from outside, u runs to the right.
 glm::vec3 tangent_at(SinCos longitude) { return normalize(glm::vec3(-longitude.cos, 0, longitude.sin)); }
 
-/// Rings from top to bottom: the outside is to the left of the way along them.
+/// Rings from top to bottom: the outside is to the left of the direction along them.
 void add_surface(Mesh& mesh, const std::vector<Ring>& rings, int64_t segments) {
   const auto ring_at = [&](int64_t i) -> const Ring& { return rings[static_cast<size_t>(i)]; };
   const auto is_pole = [&](int64_t i) { return ring_at(i).radius == 0; };
@@ -59,7 +59,7 @@ void add_surface(Mesh& mesh, const std::vector<Ring>& rings, int64_t segments) {
             [&](int64_t i, float u, SinCos longitude) {
               const Ring& ring = ring_at(i);
               const auto turned = [&](float away, float up) {
-                // A zero has no sign: a pole is one point.
+                // Removes the sign of zeros, so that a pole is one point.
                 return glm::vec3(away * -longitude.sin + 0.0f, up, away * -longitude.cos + 0.0f);
               };
               add_vertex(mesh, turned(ring.radius, ring.height),
@@ -67,7 +67,7 @@ void add_surface(Mesh& mesh, const std::vector<Ring>& rings, int64_t segments) {
             });
 }
 
-/// A flat end, of which the upper side is outside.
+/// A flat cap whose upper side is outside.
 void add_top(Mesh& mesh, float radius, float height, int64_t segments) {
   add_surface(mesh, {{0, height, {0, 1}, 0}, {radius, height, {0, 1}, 1}}, segments);
 }
@@ -78,7 +78,7 @@ void add_bottom(Mesh& mesh, float radius, float height, int64_t segments) {
 
 glm::vec2 unit(const glm::vec2& a) { return normalize(glm::vec3(a, 0)); }
 
-/// The way of a lathe from top to bottom: what its points and the straight pieces between them are like.
+/// The profile of a lathe from top to bottom: its points and the straight segments between them.
 class Way {
  public:
   explicit Way(const std::vector<ProfilePoint>& profile) : points_(profile.rbegin(), profile.rend()) {
@@ -94,18 +94,18 @@ class Way {
 
   size_t pieces() const { return normals_.size(); }
 
-  /// The ring at a point, as an end of a piece that meets it.
+  /// The ring at a point, with the normal of one of the segments that meet there.
   Ring ring(size_t point, size_t piece) const {
     const ProfilePoint& p = points_[point];
     return {p.radius, p.height, normal(point, piece), lengths_[point] / lengths_.back()};
   }
 
-  /// Whether the pieces that meet at the point share a normal there.
+  /// Whether the segments that meet at the point share a normal.
   bool smooth(size_t point) const {
     const bool end = point == 0 || point == pieces();
     if (end && !closed_) return false;
     const bool wanted = end ? points_.front().smooth && points_.back().smooth : points_[point].smooth;
-    // Of a piece that turns back upon the one before there is no middle.
+    // A segment that reverses the one before has no mean normal with it.
     return wanted && glm_dot(normals_[before(point)], normals_[after(point)]) > -0.999f;
   }
 
@@ -116,14 +116,14 @@ class Way {
 
   glm::vec2 normal(size_t point, size_t piece) const {
     const glm::vec2& own = normals_[piece];
-    // The other side of the axis has the mirrored normal.
+    // Across the axis the normal is mirrored.
     if (points_[point].radius == 0) return points_[point].smooth ? unit({0, own.y}) : own;
     return smooth(point) ? unit(normals_[before(point)] + normals_[after(point)]) : own;
   }
 
   std::vector<ProfilePoint> points_;
   bool closed_ = false;
-  std::vector<glm::vec2> normals_;    ///< of each piece
+  std::vector<glm::vec2> normals_;    ///< of each segment
   std::vector<float> lengths_ = {0};  ///< from the top to each point
 };
 

@@ -41,22 +41,19 @@ Position position_of(const glm::vec3& p) {
   return position;
 }
 
-/// Of a weld: all vertices at one position.
+/// A weld: all vertices at one position.
 struct Sum {
   glm::vec3 normal{0, 0, 0};
   float angle = 0;
 };
 
-// Of unit vectors: those of surfaces that are one, and those of the two sides of a sheet.
+// Cosines: of normals of one smooth surface, and of the two sides of a sheet.
 constexpr float alike = 0.999f, opposite = -0.99f;
 
-/// Up to three of the normals of the surfaces that meet at a position, far apart from each other; `smooth` where there is
-/// but one.
+/// Up to three very different normals of the surfaces that meet at a position; `smooth` if there is only one.
 std::array<glm::vec3, 3> corner_normals(const std::vector<glm::vec3>& normals, const glm::vec3& smooth) {
-  // The least alike to what is chosen already.
-  const auto next = [&](auto likeness) {
-    return *std::ranges::min_element(normals, {}, likeness);
-  };
+  // Chooses the normal that is least similar to those chosen so far.
+  const auto next = [&](auto likeness) { return *std::ranges::min_element(normals, {}, likeness); };
   const glm::vec3 first = next([&](const glm::vec3& n) { return dot(n, smooth); });
   const auto to_first = [&](const glm::vec3& n) { return dot(n, first) < opposite ? 1.0f : dot(n, first); };
   const glm::vec3 second = next(to_first);
@@ -68,21 +65,23 @@ std::array<glm::vec3, 3> corner_normals(const std::vector<glm::vec3>& normals, c
   return {first, second, to_both(third) > alike ? first : third};
 }
 
-/// Between unit vectors; also of nearly parallel ones, where the arc cosine would know little.
+/// The angle between unit vectors; accurate also for nearly parallel ones, unlike the arc cosine.
 float angle_between(const glm::vec3& a, const glm::vec3& b) {
   const glm::vec3 sine = cross(a, b);
   return functions::atan2(std::sqrt(dot(sine, sine)), dot(a, b));
 }
 
-/// After the outline normals are there; vertices are welded as for them.
+/// Runs after the outline normals are known; vertices are welded in the same way.
 void add_corner_normals(Mesh& mesh, const std::vector<size_t>& weld_of, size_t welds) {
   std::vector<std::vector<uint32_t>> vertices_of_weld(welds);
-  for (size_t v = 0; v < weld_of.size(); ++v) vertices_of_weld[weld_of[v]].push_back(static_cast<uint32_t>(v));
+  for (size_t v = 0; v < weld_of.size(); ++v)
+    vertices_of_weld[weld_of[v]].push_back(static_cast<uint32_t>(v));
   std::vector<glm::vec3> normals;
   for (const std::vector<uint32_t>& vertices : vertices_of_weld) {
     normals.clear();
     for (const uint32_t v : vertices)
-      if (const glm::vec3 normal = vector_at(mesh, v, word::normal); normal != glm::vec3(0)) normals.push_back(normal);
+      if (const glm::vec3 normal = vector_at(mesh, v, word::normal); normal != glm::vec3(0))
+        normals.push_back(normal);
     const glm::vec3 outline = vector_at(mesh, vertices[0], word::outline_normal);
     const glm::vec3 smooth = outline == glm::vec3(0) ? glm::vec3(0, 1, 0) : outline;
     if (normals.empty()) normals.push_back(smooth);
@@ -123,7 +122,7 @@ void add_outline_normals(Mesh& mesh) {
   }
   for (size_t v = 0; v < vertices; ++v) {
     const Sum& sum = sums[weld_of[v]];
-    // What is left where normals cancel out is rounding.
+    // Where normals cancel out, only rounding errors are left.
     const bool has_one = dot(sum.normal, sum.normal) > 1e-6f * sum.angle * sum.angle;
     const glm::vec3 normal = has_one ? normalize(sum.normal) : vector_at(mesh, v, word::normal);
     for (int i = 0; i < 3; ++i)

@@ -29,7 +29,7 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-/// 0, or the errno of what failed.
+/// Returns 0, or the errno of what failed.
 int write_directly(const char* path, std::string_view bytes) {
   const int descriptor = ::open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
   if (descriptor < 0) return errno;
@@ -37,7 +37,7 @@ int write_directly(const char* path, std::string_view bytes) {
   return ::close(descriptor) == 0 || failure != 0 ? failure : errno;
 }
 
-/// `old`: of the file that is replaced, null if there is none.
+/// `old`: the status of the file that is replaced; null if there is none.
 int write_through_temporary(const fs::path& target, std::string_view bytes, const struct stat* old) {
   support::TemporaryFile file(target.parent_path().string());
   if (!file.is_open() || !write_all(file.descriptor(), bytes)) return errno;
@@ -45,9 +45,9 @@ int write_through_temporary(const fs::path& target, std::string_view bytes, cons
   return file.rename_to(target.string()) ? 0 : errno;
 }
 
-/// The file that a chain of links names, which need not be there. 0, or an errno.
+/// Follows symbolic links to a file, which need not exist. Returns 0, or an errno.
 int follow_links(fs::path& target) {
-  constexpr int most_links = 40;  // as the system has it
+  constexpr int most_links = 40;  // the system's limit
   std::error_code error;
   for (int i = 0; fs::is_symlink(fs::symlink_status(target, error)); ++i) {
     if (i == most_links) return ELOOP;
@@ -61,10 +61,10 @@ int follow_links(fs::path& target) {
 int write_to(const std::string& path, std::string_view bytes) {
   struct stat status {};
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  // The system may forbid to follow a link of someone else.
+  // The system may forbid following another user's link.
   if (!exists && errno != ENOENT) return errno;
   if (exists && S_ISDIR(status.st_mode)) return EISDIR;
-  // Before links are followed: /dev/stdout may name a pipe, which has no path.
+  // Done before following links: /dev/stdout may be a pipe, which has no path.
   if (exists && !S_ISREG(status.st_mode)) return write_directly(path.c_str(), bytes);
   if (exists && ::access(path.c_str(), W_OK) != 0) return errno;
   fs::path target(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are written whole or not at all.
+// Files that are written completely or not at all.
 #pragma once
 
 #include <string>
@@ -9,10 +9,9 @@
 
 namespace isoshade::scene {
 
-/// Writes a file through a temporary one beside it, which then takes its name: readers see the old bytes or
-/// the new ones. A symbolic link is kept, and the file that it names is written, which need not be there yet. What is
-/// no regular file (a pipe, /dev/null) is written directly; "-" is standard output. Reports what goes wrong, and then
-/// leaves the old file as it was.
+/// Writes a temporary file in the same folder and renames it, so that readers see the old bytes or the new ones. Follows
+/// a symbolic link and keeps it; its target need not exist. Writes directly to what is not a regular file (a pipe,
+/// /dev/null); "-" is standard output. Reports failures, and then leaves the old file unchanged.
 bool write_file(const std::string& path, std::string_view bytes, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::scene

@@ -8,7 +8,7 @@
 namespace isoshade::scene {
 namespace {
 
-/// World space to a space with the camera at the origin, looking along -z, y up.
+/// From world space to view space: the camera at the origin, looking along -z, y up.
 glm::mat4 view_matrix(const glm::vec3& right, const glm::vec3& up, const glm::vec3& back,
                       const glm::vec3& position) {
   glm::mat4 view(1);
@@ -139,7 +139,7 @@ std::array<float, lower::light_word::stride> light_record(const Light& light) {
   if (light.kind == LightKind::spot) {
     const float inner = sin_cos_of_degrees(light.inner_angle).cos;
     const float outer = sin_cos_of_degrees(light.outer_angle).cos;
-    // The least difference is that of glTF's KHR_lights_punctual.
+    // The minimum difference is that of glTF's KHR_lights_punctual.
     const float scale = 1.0f / std::max(0.001f, inner - outer);
     record[word::cone_scale] = scale;
     record[word::cone_offset] = -outer * scale;

@@ -11,14 +11,14 @@ namespace {
 
 namespace word = lower::vertex_word;
 
-/// Where u and v grow at a vertex: sums of unit vectors, one a triangle.
+/// The directions of u and v at a vertex: sums of unit vectors, one per triangle.
 struct Gradients {
   glm::vec3 along_u{0, 0, 0}, along_v{0, 0, 0};
 };
 
 glm::vec3 vector_at(const float* vertex, int at) { return {vertex[at], vertex[at + 1], vertex[at + 2]}; }
 
-/// Of a triangle; zeros where the texture has no area.
+/// For a triangle; zeros if it has no area in the texture.
 Gradients gradients_of(const float* a, const float* b, const float* c) {
   const glm::vec3 origin = vector_at(a, word::position);
   const glm::vec3 e1 = vector_at(b, word::position) - origin, e2 = vector_at(c, word::position) - origin;
@@ -61,7 +61,7 @@ void add_tangents(Mesh& mesh, int64_t first, size_t first_index) {
     float* vertex = record(static_cast<size_t>(first) + i);
     const glm::vec3 normal = vector_at(vertex, word::normal);
     glm::vec3 tangent = normalize(sums[i].along_u - normal * dot(normal, sums[i].along_u));
-    // Of a normal that lies along u, rounding is all that is left.
+    // Where the normal lies along u, only rounding errors are left.
     if (!(std::abs(dot(tangent, normal)) < 0.01f) || tangent == glm::vec3(0))
       tangent = perpendicular_to(normal);
     const float sign = dot(cross(normal, tangent), sums[i].along_v) > 0 ? -1.0f : 1.0f;

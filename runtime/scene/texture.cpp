@@ -22,14 +22,14 @@ float finite(float x) {
   return canonical(std::clamp(x, -most, most));
 }
 
-/// The texels of a row or column that one of half as many covers: `first` and those after it.
+/// The texels that a texel of the next level covers along an axis: `first` and those after it.
 struct Cover {
   size_t first;
   size_t count;
   std::array<float, 3> weights;
 };
 
-/// Of n texels to max(1, n / 2).
+/// From n texels to max(1, n / 2).
 std::vector<Cover> covers(int n) {
   const int m = std::max(1, n / 2);
   std::vector<Cover> all;
@@ -53,7 +53,7 @@ float weighted(const Cover& cover, const float* from, size_t step) {
   return finite(sum);
 }
 
-/// half_size of a level whose row y is at row(y).
+/// half_size of a level whose row y is row(y).
 template <class Row>
 TextureLevel halved(int width, int height, Row row) {
   const lanes::FpGuard guard;
@@ -61,7 +61,7 @@ TextureLevel halved(int width, int height, Row row) {
   const size_t values = channels * across.size();
   TextureLevel half{static_cast<int>(across.size()), static_cast<int>(down.size()), {}};
   half.texels.reserve(values * down.size());
-  std::vector<float> narrow(3 * values);  // the rows that one of half as many covers
+  std::vector<float> narrow(3 * values);  // the rows that a row of the next level covers
   for (const Cover& rows : down) {
     for (size_t i = 0; i < rows.count; ++i) {
       const float* from = row(rows.first + i);
@@ -75,8 +75,8 @@ TextureLevel halved(int width, int height, Row row) {
   return half;
 }
 
-/// The byte whose float is nearest to a value in [0, 1], or a little above; half-way the lower one. What is half-way is
-/// exact in double.
+/// The byte whose float is nearest to a value in [0, 1] or slightly above; of two equally near ones the lower. The
+/// midpoints are exact in double.
 class NearestByte {
  public:
   explicit NearestByte(const ByteTable& table) {
@@ -99,7 +99,7 @@ class NearestByte {
   std::array<uint32_t, cells + 1> first_{};  ///< the byte of each multiple of 1 / cells
 };
 
-/// The floats of words, four each.
+/// The floats of words, four per word.
 void decode(std::span<const uint32_t> words, const ByteTable& colors, float* to) {
   const ByteTable& alphas = byte_table(false);
   for (const uint32_t word : words) {

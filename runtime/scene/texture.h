@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images as shaders read them: linear, finite, with smaller versions of themselves.
+// Images as shaders read them: linear and finite, with mip levels.
 #pragma once
 
 #include <array>
@@ -10,37 +10,37 @@
 
 namespace isoshade::scene {
 
-/// One size of a texture. Rows run top down; r g b a a texel. No value is infinite, NaN or denormal.
+/// A level of a texture. Rows from top to bottom, r g b a per texel. No value is infinite, NaN or denormal.
 struct TextureLevel {
   int width = 0;
   int height = 0;
   std::vector<float> texels;
 };
 
-/// One size of a texture whose file has bytes: as there, a word a texel, r g b a from its lowest byte on.
+/// A level of a texture whose file has bytes: one word per texel, r in the lowest byte, then g b a.
 struct ByteLevel {
   int width = 0;
   int height = 0;
   std::vector<uint32_t> texels;
 };
 
-/// What each byte is as a float: n / 255; under `srgb` srgb_decode of that, as for all bytes but alpha.
+/// The float of each byte: n / 255; with `srgb`, which does not apply to alpha, srgb_decode of that.
 using ByteTable = std::array<float, 256>;
 const ByteTable& byte_table(bool srgb);
 
-/// The image with its numbers made linear: `srgb`, by srgb_decode, but for the fourth. NaN becomes 0, infinities the
-/// greatest numbers of their sign.
+/// Makes the numbers of an image linear: with `srgb`, applies srgb_decode to all but alpha. NaN becomes 0, infinities
+/// the greatest number of their sign.
 TextureLevel linear_level(FileImage image, bool srgb);
-/// The floats that bytes are.
+/// The floats of bytes.
 TextureLevel linear_level(const ByteLevel& level, bool srgb);
-/// The bytes that are nearest to the floats; between two, the lower one.
+/// The bytes nearest to the floats; of two equally near ones the lower.
 ByteLevel byte_level(const TextureLevel& level, bool srgb);
 
-/// The next mip level: max(1, floor(n / 2)) of n columns, and so of the rows. Each texel is the mean of what it covers:
-/// of two columns, or where n is odd of three, the outer ones in the parts that lie in it. Across, then down; the alpha
-/// takes no part in the weights.
+/// The next mip level: max(1, floor(n / 2)) of n columns, and rows likewise. Each texel is the mean of the texels it
+/// covers: two columns, or three if n is odd, the outer ones weighted by the covered fraction. Columns first, then rows.
+/// Alpha does not affect the weights.
 TextureLevel half_size(const TextureLevel& level);
-/// The same of the floats that bytes are.
+/// The same for the floats of bytes.
 TextureLevel half_size(const ByteLevel& level, bool srgb);
 
 }  // namespace isoshade::scene
