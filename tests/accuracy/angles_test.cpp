@@ -137,7 +137,7 @@ void merge(Worst& into, const Worst& from) {
   into.count += from.count;
 }
 
-TEST(Angles, HaveTheSinesThatLongDoubleGives) {
+TEST(Angles, ReferenceMatchesLongDouble) {
   for (int64_t i = std::bit_cast<int32_t>(0x1p-126f); i < std::bit_cast<int32_t>(INFINITY); i += 40'009) {
     for (const float x : {from_order(i), -from_order(i)}) {
       const Exact exact = exact_of(x);
@@ -152,7 +152,7 @@ TEST(Angles, HaveTheSinesThatLongDoubleGives) {
   }
 }
 
-TEST(Angles, KeepTheirBoundsOverAllFiniteFloatsInEveryTier) {
+TEST(Angles, ErrorStaysWithinBoundInEveryTier) {
   const int64_t first = std::bit_cast<int32_t>(0x1p-126f), last = std::bit_cast<int32_t>(0x1.fffffep127f);
   const int64_t stride = std::getenv("ISOSHADE_FULL") != nullptr ? 1 : 4099;
   const char* asked = std::getenv("ISOSHADE_THREADS");

@@ -127,7 +127,7 @@ std::vector<std::string> documents() {
 
 class ShippedGraph : public testing::TestWithParam<std::string> {};
 
-TEST_P(ShippedGraph, ErrsNowhereByMoreThanItsBound) {
+TEST_P(ShippedGraph, MeasuredErrorStaysWithinProvedBound) {
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
   const auto graph = front_end.check_file(GetParam());
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
@@ -149,7 +149,7 @@ std::string name_of(const testing::TestParamInfo<std::string>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, ShippedGraph, testing::ValuesIn(documents()), name_of);
+INSTANTIATE_TEST_SUITE_P(Graphs, ShippedGraph, testing::ValuesIn(documents()), name_of);
 
 struct Proved {
   prove::Subject subject;
@@ -187,7 +187,7 @@ TEST(Bound, HoldsInEveryTier) {
   EXPECT_GT(errors[1], 1.2 * errors[2]);
 }
 
-TEST(Bound, HoldsWhereInputsAreRestricted) {
+TEST(Bound, HoldsForRestrictedInputs) {
   const std::vector<prove::Restriction> where = {
       {"n_dot_l", {0.1, 1}}, {"n_dot_v", {0.1, 1}}, {"roughness", {0.1, 1}}, {"h2", {0.1, 4.1}}};
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
@@ -202,7 +202,7 @@ TEST(Bound, HoldsWhereInputsAreRestricted) {
 }
 
 // What finds nothing wrong must be able to: a bound of a half of what is measured is refuted.
-TEST(Bound, ThatIsTooSmallIsFound) {
+TEST(Bound, IsRefutedWhenHalved) {
   for (const char* document : {"library/brdf/ggx_d", "library/brdf/schlick_f", "library/tonemap/aces"}) {
     const Proved it = proved(document);
     const Verdict right = Measurement(it.subject.tape).run(it.proof.outputs, it.proof.followed);
@@ -214,7 +214,7 @@ TEST(Bound, ThatIsTooSmallIsFound) {
 
 // But for the sign of zeros the same floats as the interpreter's, and the same numbers as the reference backend's: what is compared above is what
 // these compute.
-TEST(Tape, ComputesWhatTheBackendsCompute) {
+TEST(Tape, MatchesInterpreterAndReferenceBackend) {
   for (const char* document :
        {"library/brdf/ggx_d", "library/brdf/cook_torrance", "library/brdf/smith_g_correlated",
         "library/fog/height_density", "library/toon/highlight", "library/tonemap/aces", "library/sky"}) {

@@ -53,7 +53,7 @@ double albedo_of_cook_torrance(float roughness, double n_dot_v, float f0) {
   return albedo;
 }
 
-TEST(Brdf, CookTorranceReturnsInAWhiteFurnaceWhatQuadratureTells) {
+TEST(Brdf, CookTorranceAlbedoMatchesQuadratureInAWhiteFurnace) {
   for (const auto& row : table("white_furnace")) {
     const double roughness = row.at("roughness");
     const double albedo = albedo_of_cook_torrance(static_cast<float>(roughness), row.at("n_dot_v"), 1);
@@ -63,7 +63,7 @@ TEST(Brdf, CookTorranceReturnsInAWhiteFurnaceWhatQuadratureTells) {
   }
 }
 
-TEST(Brdf, DielectricsReturnNoMoreLightThanTheyGet) {
+TEST(Brdf, DielectricsConserveEnergy) {
   // What is not mirrored is scattered by a white base: kd = 1 - F(n.v). With F(v.h) instead, another one for each light,
   // a surface seen at a grazing angle would return up to 1.55 times what it gets.
   const Subject fresnel = Subject::document("library/brdf/schlick_f");
@@ -77,7 +77,7 @@ TEST(Brdf, DielectricsReturnNoMoreLightThanTheyGet) {
   }
 }
 
-TEST(Brdf, GridOfRoughnessAndMetalnessIsFiniteAndNearTheReference) {
+TEST(Brdf, CookTorranceIsNearTheReferenceOverRoughnessAndMetalness) {
   // Also with the light in the horizon, and with roughness as materials clamp it.
   const Subject lit = Subject::document("library/brdf/cook_torrance");
   std::vector<float> inputs;
@@ -107,7 +107,7 @@ TEST(Brdf, GridOfRoughnessAndMetalnessIsFiniteAndNearTheReference) {
   for (size_t i = 6; i < heights.size(); i += 6) EXPECT_LT(heights[i], heights[i - 6]);
 }
 
-TEST(Brdf, SmithsMaskingIsMitsubas) {
+TEST(Brdf, SmithMaskingMatchesMitsuba) {
   const Subject g = Subject::document("library/brdf/smith_g_separable");
   std::vector<float> inputs;
   const auto rows = table("mitsuba_ggx_g1");
@@ -120,7 +120,7 @@ TEST(Brdf, SmithsMaskingIsMitsubas) {
   for (size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(results[2 * i], rows[i].at("g1"), 4e-6) << i;
 }
 
-TEST(Brdf, DistributionIsMitsubas) {
+TEST(Brdf, GgxDistributionMatchesMitsuba) {
   const Subject d = Subject::document("library/brdf/ggx_d");
   std::vector<float> inputs;
   std::vector<double> wanted;
@@ -137,7 +137,7 @@ TEST(Brdf, DistributionIsMitsubas) {
   for (size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(results[i], wanted[i], 2e-5 * wanted[i]) << i;
 }
 
-TEST(Brdf, SmithsMaskingReturnsInAWhiteFurnaceWhatQuadratureTells) {
+TEST(Brdf, SmithAlbedoMatchesQuadratureInAWhiteFurnace) {
   const Subject forms[] = {Subject::document("library/brdf/smith_g_correlated"),
                            Subject::document("library/brdf/smith_g_separable")};
   const char* const columns[] = {"correlated", "separable"};
@@ -163,7 +163,7 @@ TEST(Brdf, SmithsMaskingReturnsInAWhiteFurnaceWhatQuadratureTells) {
   }
 }
 
-TEST(Brdf, SmithsMaskingIsNearTheReferenceDownToTheHorizon) {
+TEST(Brdf, SmithMaskingIsNearTheReferenceDownToTheHorizon) {
   for (const char* name : {"library/brdf/smith_g_correlated", "library/brdf/smith_g_separable"}) {
     const Subject g = Subject::document(name);
     std::vector<float> inputs;

@@ -60,7 +60,7 @@ int jumps(const backends::Image& image) {
   return count;
 }
 
-TEST(Cartoon, HighlightsHaveNoJaggedEdges) {
+TEST(Cartoon, HighlightEdgesAreAntialiased) {
   const std::string smooth = text_of(ISOSHADE_GRAPHS "/library/toon/highlight.json");
   const std::string hard = replaced(smooth, "smoothstep(-w, w, inwards)", "step(0 * w, inwards)");
   const int soft_jumps = jumps(ball_with_highlights_by(smooth));

@@ -52,8 +52,8 @@ void expect_as_cycles(const std::string& effect, const std::string& file) {
   EXPECT_LE(at(0.95), 1e-3);
 }
 
-TEST(PixelsAreThoseOfCycles, ForALambertSphere) { expect_as_cycles("white_lambert", "lambert.exr"); }
-TEST(PixelsAreThoseOfCycles, ForASphereOfMicrofacets) { expect_as_cycles("white_ggx", "ggx_white_r0.6.exr"); }
+TEST(CyclesComparison, LambertSphereMatches) { expect_as_cycles("white_lambert", "lambert.exr"); }
+TEST(CyclesComparison, GgxSphereMatches) { expect_as_cycles("white_ggx", "ggx_white_r0.6.exr"); }
 
 }  // namespace
 }  // namespace isoshade::equivalence

@@ -289,7 +289,7 @@ void expect_op(Op op, const std::function<Real(Real, Real)>& exact) {
   expect_derivatives(std::string(ir::name(op)), f, reference, ranges, 2e-6L);
 }
 
-TEST(DerivativeMatchesTheDifferenceQuotient, OfEveryOpOfFloats) {
+TEST(DerivativeMatchesTheDifferenceQuotient, EveryFloatOp) {
   expect_op(Op::fadd, [](Real x, Real y) { return x + y; });
   expect_op(Op::fsub, [](Real x, Real y) { return x - y; });
   expect_op(Op::fmul, [](Real x, Real y) { return x * y; });
@@ -300,7 +300,7 @@ TEST(DerivativeMatchesTheDifferenceQuotient, OfEveryOpOfFloats) {
   expect_op(Op::fabs, [](Real x, Real) { return std::abs(x); });
 }
 
-TEST(DerivativeMatchesTheDifferenceQuotient, OfOneOperandWhereTheOtherIsConstant) {
+TEST(DerivativeMatchesTheDifferenceQuotient, OpsWithOneConstantOperand) {
   for (const bool first : {true, false}) {
     for (const Op op : {Op::fadd, Op::fsub, Op::fmul, Op::fdiv}) {
       Differentiated f({ir::float_type}, {ir::float_type}, [&](ir::Builder& b) {
@@ -317,7 +317,7 @@ TEST(DerivativeMatchesTheDifferenceQuotient, OfOneOperandWhereTheOtherIsConstant
   }
 }
 
-TEST(DerivativeMatchesTheDifferenceQuotient, ThroughSelectBranchAndLoop) {
+TEST(DerivativeMatchesTheDifferenceQuotient, SelectBranchAndLoop) {
   const std::vector<ir::Type> two(2, ir::float_type);
   const auto side = [](Real x, Real y) { return x < y ? x * y : y * y * x; };
   const auto sides = [](ir::Builder& b) {
@@ -365,7 +365,7 @@ TEST(DerivativeMatchesTheDifferenceQuotient, ThroughSelectBranchAndLoop) {
   expect_derivatives("loop", loop, horner, std::vector<Range>(2, Range{0.1, 1.5}), 5e-6L);
 }
 
-TEST(Derivative, IsZeroWhereItWouldBeInfiniteOrHasNoSide) {
+TEST(Derivative, IsZeroWhereInfiniteOrUndefined) {
   const auto of = [](const char* row, int width) {
     const ir::Type type = width == 1 ? ir::float_type : ir::vector_type(width);
     const functions::Variant* variant = functions::find(row, std::array{type});

@@ -90,7 +90,7 @@ support::Source height_fog_in_world_space() {
   return std::make_shared<support::SourceFile>("fog.json", text);
 }
 
-TEST(Fog, IsExactTo21BitsWithTheCameraAThousandUnitsUp) {
+TEST(Fog, HeightFogIsAccurateTo21BitsAtCameraHeight1000) {
   double worst = 0, worst_in_world_space = 0;
   for (const float pitch : {-0.4f, -0.05f, 0.0f, 0.3f}) {
     for (const float fov : {30.0f, 60.0f}) {
@@ -108,7 +108,7 @@ TEST(Fog, IsExactTo21BitsWithTheCameraAThousandUnitsUp) {
   EXPECT_GT(worst_in_world_space, 2 * worst);
 }
 
-TEST(Fog, IsGuardedWhereItBeginsAsItEnds) {
+TEST(Fog, HeightFogIsFiniteWhenBeginEqualsEnd) {
   Screen screen(height_fog(), 2, 1, {2, 1, {0.5f, 0.01f}}, {{2, 1, std::vector<float>(8, 0.25f)}});
   screen.set("fog_begin", {1});
   screen.set("fog_end", {1});
@@ -125,7 +125,7 @@ TEST(Fog, IsGuardedWhereItBeginsAsItEnds) {
   EXPECT_EQ(found[4 + 3], 1.0f);
 }
 
-TEST(Fog, DistancesAreExactToTwoRoundings) {
+TEST(Fog, LinearDepthIsWithinTwoRoundings) {
   const float near = 0.1f, far = 2000.0f;
   scene::Camera camera;
   camera.near = near;

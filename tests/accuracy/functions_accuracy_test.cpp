@@ -12,7 +12,7 @@ namespace {
   }
 #include "compiler/functions/functions.def"
 
-TEST(FunctionErrorIsWithinItsBound, AndTheBoundIsWhatUsersCountOn) {
+TEST(FunctionTable, BoundsAndDomainsMeetTheirTargets) {
   EXPECT_EQ(rows::div_exact_row::bound, 0);
   EXPECT_EQ(rows::sqrt_exact_row::bound, 0);
   EXPECT_LE(rows::rsqrt_row::bound, 2);
@@ -40,7 +40,7 @@ TEST(FunctionErrorIsWithinItsBound, AndTheBoundIsWhatUsersCountOn) {
   holds_over(rows::srgb_decode_row::domain()[0], 0, 1);
 }
 
-TEST(EveryFloat, KeepsTheBoundOfFunctionsOfOneFloat) {
+TEST(UnaryFunctions, StayWithinTheirBoundsForEveryFloat) {
   if (std::getenv("ISOSHADE_FULL") == nullptr) GTEST_SKIP() << "long; set ISOSHADE_FULL=1";
 #define FUNCTION(row, signature, ulp, domain, reference_, unit_) \
   expect_all_floats_within<rows::row##_row>(#row, rows::row##_row::Variants{});

@@ -33,22 +33,26 @@ void expect_rising(Function function, float low, float high) {
   }
 }
 
-TEST(SrgbEncode, RisesFromZeroToOne) { expect_rising(functions::srgb_encode<float>, 0, 1); }
-TEST(SrgbDecode, RisesFromZeroToOne) { expect_rising(functions::srgb_decode<float>, 0, 1); }
-TEST(SrgbEncode, RisesWhereItsPiecesMeet) {
+TEST(SrgbEncode, IsMonotonicFromZeroToOne) { expect_rising(functions::srgb_encode<float>, 0, 1); }
+TEST(SrgbDecode, IsMonotonicFromZeroToOne) { expect_rising(functions::srgb_decode<float>, 0, 1); }
+TEST(SrgbEncode, IsMonotonicAcrossItsSegments) {
   expect_rising(functions::srgb_encode<float>, 0.0031306f, 0.0031310f);
   expect_rising(functions::srgb_encode<float>, 0.05115f, 0.05125f);  // eighths of 0.8^4
 }
-TEST(SrgbDecode, RisesWhereItsPiecesMeet) {
+TEST(SrgbDecode, IsMonotonicAcrossItsSegments) {
   expect_rising(functions::srgb_decode<float>, 0.0404f, 0.0405f);
   expect_rising(functions::srgb_decode<float>, 0.2799f, 0.2801f);
 }
 
-TEST(FastSrgbEncode, RisesFromZeroToOne) { expect_rising(functions::fast::srgb_encode<float>, 0, 1); }
-TEST(FastSrgbDecode, RisesFromZeroToOne) { expect_rising(functions::fast::srgb_decode<float>, 0, 1); }
-TEST(PreciseSrgbEncode, RisesFromZeroToOne) { expect_rising(functions::precise::srgb_encode<float>, 0, 1); }
-TEST(PreciseSrgbDecode, RisesFromZeroToOne) { expect_rising(functions::precise::srgb_decode<float>, 0, 1); }
-TEST(SrgbOfEveryTier, RisesWhereItsPiecesMeetAndAtItsEnd) {
+TEST(FastSrgbEncode, IsMonotonicFromZeroToOne) { expect_rising(functions::fast::srgb_encode<float>, 0, 1); }
+TEST(FastSrgbDecode, IsMonotonicFromZeroToOne) { expect_rising(functions::fast::srgb_decode<float>, 0, 1); }
+TEST(PreciseSrgbEncode, IsMonotonicFromZeroToOne) {
+  expect_rising(functions::precise::srgb_encode<float>, 0, 1);
+}
+TEST(PreciseSrgbDecode, IsMonotonicFromZeroToOne) {
+  expect_rising(functions::precise::srgb_decode<float>, 0, 1);
+}
+TEST(SrgbOfEveryTier, IsMonotonicAcrossItsSegmentsAndNearOne) {
   for (const auto encode : {functions::fast::srgb_encode<float>, functions::precise::srgb_encode<float>}) {
     expect_rising(encode, 0.0031306f, 0.0031310f);
     expect_rising(encode, 0.9999f, 1.0001f);
@@ -58,7 +62,7 @@ TEST(SrgbOfEveryTier, RisesWhereItsPiecesMeetAndAtItsEnd) {
     expect_rising(decode, 0.9999f, 1.0001f);
   }
 }
-TEST(SrgbOfEveryTier, IsExactAtItsEndsAndBeyond) {
+TEST(SrgbOfEveryTier, IsExactAtAndBeyondZeroAndOne) {
   const lanes::FpGuard guard;
   for (const auto curve : {functions::fast::srgb_encode<float>, functions::precise::srgb_encode<float>,
                            functions::srgb_encode<float>, functions::fast::srgb_decode<float>,

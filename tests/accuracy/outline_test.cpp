@@ -104,7 +104,7 @@ std::pair<int, int> widths(const Picture& picture, bool across) {
   return {count(line.begin(), first), count(first, line.end())};
 }
 
-TEST(Outline, OfACubeIsOneRingAlongSmoothNormalsAndBrokenAlongThoseOfItsFaces) {
+TEST(Outline, CubeOutlineIsClosedWithSmoothNormalsAndBrokenWithFaceNormals) {
   for (const int width : {960, 333}) {
     const Picture both = picture(plan(scene_path("outline_cube"), width, width / 2));
     const Picture smooth = both.cut(0, width / 2), shading = both.cut(width / 2, width / 2);
@@ -116,7 +116,7 @@ TEST(Outline, OfACubeIsOneRingAlongSmoothNormalsAndBrokenAlongThoseOfItsFaces) {
   }
 }
 
-TEST(Outline, OfWidthZeroIsNotDrawn) {
+TEST(Outline, ZeroWidthIsNotDrawn) {
   const std::string camera = R"("position": [0, 0, 5], "target": [0, 0, 0], "fov": 40)";
   const render::Plan with = scene_of(camera, "\"box\"", "", "\"outline\": 0.05");
   const render::Plan without = scene_of(camera, "\"box\"", "", "\"outline\": 0");
@@ -128,7 +128,7 @@ TEST(Outline, OfWidthZeroIsNotDrawn) {
   EXPECT_EQ(picture(without).count(Seen::outline), 0);
 }
 
-TEST(Outline, IsSoManyPixelsWideAtAnyDistanceIfTheWidthIsOfTheScreen) {
+TEST(Outline, ScreenWidthIsIndependentOfDistance) {
   const std::string parameters = R"("outline": 6, "outline_width_mode": "screen")";
   const std::string mesh = R"({"type": "icosphere", "radius": 1, "subdivisions": 6})";
   for (const char* camera :
@@ -148,7 +148,7 @@ TEST(Outline, IsSoManyPixelsWideAtAnyDistanceIfTheWidthIsOfTheScreen) {
   EXPECT_EQ(parts(seen, Seen::outline), 1);
 }
 
-TEST(Outline, IsSoManyPixelsWideAtEverySideOfMeshesWithEdges) {
+TEST(Outline, ScreenWidthIsUniformAroundMeshesWithHardEdges) {
   const std::string parameters = R"("outline": 6, "outline_width_mode": "screen")";
   const std::string camera =
       R"("type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": 6, "far": 100)";
@@ -177,7 +177,7 @@ TEST(Outline, IsSoManyPixelsWideAtEverySideOfMeshesWithEdges) {
   }
 }
 
-TEST(Outline, IsAsWideWithSeveralSamplesAPixel) {
+TEST(Outline, ScreenWidthIsIndependentOfSampleCount) {
   const std::string mesh = R"({"type": "icosphere", "radius": 1, "subdivisions": 6})";
   const std::string camera = R"("position": [0, 0, 4], "target": [0, 0, 0], "fov": 60)";
   for (const int samples : {4, 16}) {
@@ -191,7 +191,7 @@ TEST(Outline, IsAsWideWithSeveralSamplesAPixel) {
   }
 }
 
-TEST(Outline, NarrowsWithTheDistanceIfTheWidthIsOfTheWorld) {
+TEST(Outline, WorldWidthShrinksWithDistance) {
   const std::string mesh = R"({"type": "icosphere", "radius": 1, "subdivisions": 5})";
   int last = 1000;
   for (const char* distance : {"4", "8", "16"}) {
@@ -204,7 +204,7 @@ TEST(Outline, NarrowsWithTheDistanceIfTheWidthIsOfTheWorld) {
   }
 }
 
-TEST(Outline, IsAsWideOnBothSidesAwayFromTheMiddleOfTheView) {
+TEST(Outline, WorldWidthIsEqualOnBothSidesOffCentre) {
   const std::string camera = R"("position": [0, 0, 9], "target": [0, 0, 0], "fov": 40)";
   const std::string place = R"("transform": {"translate": [-2.5, 0, 0]}, )";
   const Picture seen =
@@ -214,7 +214,7 @@ TEST(Outline, IsAsWideOnBothSidesAwayFromTheMiddleOfTheView) {
   EXPECT_NEAR(outer, inner, 1);  // that of graphs/source_forms/hull_position.json is half as wide there
 }
 
-TEST(Outline, OfAMirroredMeshIsThatOfTheMeshItIsTheImageOf) {
+TEST(Outline, MirroringASymmetricMeshKeepsItsOutline) {
   const std::string camera = R"("position": [1, 2, 5], "target": [0, 0, 0], "fov": 40)";
   const std::string place = R"("transform": {"rotate": [0, 20, 10], "scale": )";
   for (const char* normals : {"smooth", "shading"}) {
@@ -231,7 +231,7 @@ TEST(Outline, OfAMirroredMeshIsThatOfTheMeshItIsTheImageOf) {
   }
 }
 
-TEST(Outline, HullsAreInTheDepthBuffer) {
+TEST(Outline, HullsWriteDepth) {
   const auto cpu = cpu_backend();
   const std::string camera = R"("position": [0, 0, 4], "target": [0, 0, 0], "fov": 40)";
   const render::Plan made = scene_of(camera, "\"sphere\"", "", "\"outline\": 0.3");

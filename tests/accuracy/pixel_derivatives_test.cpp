@@ -47,13 +47,13 @@ void expect_differences(const std::string& camera, float share) {
   EXPECT_GT(compared, width * height);
 }
 
-TEST(PixelDerivatives, OfTexcoordsAreWhatNeighboursDifferByUnderPerspective) {
+TEST(PixelDerivatives, TexcoordDerivativesMatchPixelDifferencesInPerspective) {
   expect_differences(
       R"({"type": "perspective", "position": [1, 4, 6], "target": [0, 0, 0], "up": [0.2, 1, 0.1], "fov": 40})",
       2e-3f);
 }
 
-TEST(PixelDerivatives, OfTexcoordsAreWhatNeighboursDifferByUnderOrthographicProjection) {
+TEST(PixelDerivatives, TexcoordDerivativesMatchPixelDifferencesInOrthographic) {
   expect_differences(
       R"({"type": "orthographic", "position": [1, 4, 6], "target": [0, 0, 0], "up": [0.2, 1, 0.1], "height": 6})",
       1e-4f);

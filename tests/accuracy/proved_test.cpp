@@ -68,14 +68,14 @@ TEST_P(ShippedGraph, IsProved) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, ShippedGraph, testing::ValuesIn(documents()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Graphs, ShippedGraph, testing::ValuesIn(documents()), [](const auto& info) {
   std::string name = fs::path(info.param).replace_extension().string();
   std::ranges::replace_if(
       name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
   return name;
 });
 
-TEST(ShippedGraphs, OfTheSourceAreRefutedWhereTheyBreak) {
+TEST(ShippedGraphs, SourceFormOfGgxIsRefutedAtItsDivision) {
   FrontEnd front_end(ISOSHADE_GRAPHS "/library");
   const auto graph = front_end.check_file((graphs / "source_forms/ggx_d.json").string());
   ASSERT_NE(graph, nullptr);

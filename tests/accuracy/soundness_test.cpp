@@ -310,7 +310,7 @@ std::string examine(uint64_t seed, functions::Tier tier, int rows, Count& counte
                              ": " + wrong + "\n" + text;
 }
 
-TEST(RandomDocuments, HoldWhatIsProvedOfThem) {
+TEST(RandomDocuments, SatisfyTheirProofs) {
   const bool full = std::getenv("ISOSHADE_FULL") != nullptr;
   uint64_t first = 0, last = ~0ull;
   if (const char* given = std::getenv("ISOSHADE_SEEDS")) std::sscanf(given, "%lu,%lu", &first, &last);
@@ -329,7 +329,7 @@ TEST(RandomDocuments, HoldWhatIsProvedOfThem) {
 }
 
 // What finds nothing wrong must be able to: of bounds that are half as large many are refuted.
-TEST(RandomDocuments, RefuteBoundsThatAreTooSmall) {
+TEST(RandomDocuments, RefuteHalvedBounds) {
   Count counted;
   for (uint64_t seed = 0; seed < 100; ++seed)
     if (!examine(seed, functions::Tier::standard, normal_rows, counted, 0.5).empty()) ++counted.lies;

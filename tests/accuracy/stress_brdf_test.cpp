@@ -71,14 +71,14 @@ void expect_same_bits(const std::vector<float>& a, const std::vector<float>& b) 
   EXPECT_EQ(differing, 0u) << "of " << a.size();
 }
 
-TEST(StressProperty, SwappingLightAndViewerChangesNoBitOfTheBrdf) {
+TEST(StressProperty, BrdfIsReciprocalBitForBit) {
   std::vector<Surface> all = surfaces(100000);
   const std::vector<float> straight = specular(all);
   for (Surface& s : all) std::swap(s.l, s.v);
   expect_same_bits(straight, specular(all));
 }
 
-TEST(StressProperty, MirroringAndExchangingAxesChangesNoBitOfTheBrdf) {
+TEST(StressProperty, MirroringAndSwappingAxesChangesNoBitOfTheBrdf) {
   const std::vector<Surface> all = surfaces(20000);
   const std::vector<float> straight = specular(all);
   for (int mirrored = 0; mirrored < 8; ++mirrored) {
@@ -96,7 +96,7 @@ TEST(StressProperty, MirroringAndExchangingAxesChangesNoBitOfTheBrdf) {
   }
 }
 
-TEST(StressProperty, PowersOfTwoInTheLightAreFactorsOfTheResult) {
+TEST(StressProperty, ScalingLightByAPowerOfTwoScalesTheResultExactly) {
   const Subject lit = Subject::expression({"specular:color3", "diffuse:color3", "light:color3", "cosine"},
                                           "(diffuse + specular) * (light * color3(max(cosine, 0)))");
   Random random;
@@ -112,7 +112,7 @@ TEST(StressProperty, PowersOfTwoInTheLightAreFactorsOfTheResult) {
   expect_same_bits(scaled, lit(brighter));
 }
 
-TEST(StressProperty, DistributionRisesTowardsItsPeak) {
+TEST(StressProperty, GgxDistributionIsMonotonicTowardsItsPeak) {
   const Subject d = Subject::document("library/brdf/ggx_d");
   Random random;
   for (const float r : {1e-3f, 0.01f, 0.1f, 0.5f}) {
@@ -134,7 +134,7 @@ TEST(StressProperty, DistributionRisesTowardsItsPeak) {
   }
 }
 
-TEST(StressProperty, DistributionIsContinuousAtItsPeak) {
+TEST(StressProperty, GgxDistributionIsContinuousAtItsPeak) {
   const Subject d = Subject::document("library/brdf/ggx_d");
   for (double r = 1e-3; r <= 1; r *= 1.01) {
     const auto roughness = static_cast<float>(r);
@@ -144,7 +144,7 @@ TEST(StressProperty, DistributionIsContinuousAtItsPeak) {
   }
 }
 
-TEST(StressProperty, PeakOfTheDistributionFallsWithRoughness) {
+TEST(StressProperty, GgxPeakDecreasesWithRoughness) {
   const Subject d = Subject::document("library/brdf/ggx_d");
   std::vector<float> inputs;
   for (int i = 0; i < 4096; ++i)
@@ -157,7 +157,7 @@ TEST(StressProperty, PeakOfTheDistributionFallsWithRoughness) {
   }
 }
 
-TEST(StressProperty, FresnelFallsWithTheCosineAndStaysInRange) {
+TEST(StressProperty, FresnelDecreasesWithCosineAndStaysInRange) {
   const Subject schlick = Subject::document("library/brdf/schlick_f");
   Random random;
   for (const float f0 : {0.0f, 0.04f, 0.5f, 0.95f, 1.0f}) {

@@ -13,7 +13,7 @@ namespace {
 
 using reference::Real;
 
-TEST(StressProperty, TheHighlightsStepSwitchesOnceAtItsLiteral) {
+TEST(StressProperty, HighlightStepSwitchesExactlyAtItsThreshold) {
   for (const auto& [literal, text] : {std::pair{0.0001f, "0.0001"}, std::pair{0.1f, "0.1"}}) {
     const Subject step = Subject::expression({"scale"}, std::string("step(") + text + ", scale)");
     const Subject highlight = Subject::document("library/toon/highlight");
@@ -30,7 +30,7 @@ TEST(StressProperty, TheHighlightsStepSwitchesOnceAtItsLiteral) {
   }
 }
 
-TEST(StressProperty, AnglesAreContinuousDownToNothing) {
+TEST(StressProperty, AngleBetweenIsContinuousDownToZero) {
   const Subject angle = Subject::document("library/geometry/angle_between");
   const Subject source = Subject::document("source_forms/angle_between");
   Random random;
@@ -73,7 +73,7 @@ TEST(StressProperty, AnglesAreContinuousDownToNothing) {
   EXPECT_GT(worst_of_source, 0.1) << "the source's form, which this replaces";
 }
 
-TEST(StressProperty, DistancesSurviveReversedDepths) {
+TEST(StressProperty, DistancesSurviveTheReversedDepthRoundTrip) {
   const Subject to_depth = Subject::expression({"z", "near"}, "near / z");
   const Subject from_depth = Subject::document("library/depth/from_infinite_reversed");
   std::vector<float> distances, inputs, depths;
@@ -87,7 +87,7 @@ TEST(StressProperty, DistancesSurviveReversedDepths) {
     ASSERT_LE(std::abs(double{back[i]} - distances[i]), 2.5e-7 * distances[i]) << distances[i];
 }
 
-TEST(StressProperty, NormalizedVectorsAreUnitAndDoNotDependOnScale) {
+TEST(StressProperty, NormalizeReturnsUnitVectorsAtAnyScale) {
   const Subject normalize = Subject::expression({"v:vector3"}, "normalize(v)");
   Random random;
   std::vector<float> inputs;
@@ -119,7 +119,7 @@ TEST(StressProperty, NormalizedVectorsAreUnitAndDoNotDependOnScale) {
   EXPECT_GT(compared, 80000u);
 }
 
-TEST(StressProperty, LimitsAreReached) {
+TEST(StressProperty, LimitingCasesReachTheirLimits) {
   Random random;
   std::vector<float> rough, grazing, metals, colors, fogs;
   for (int i = 0; i < 10000; ++i) {
@@ -169,7 +169,7 @@ TEST(StressProperty, FogIsContinuousInDepth) {
   }
 }
 
-TEST(StressProperty, FlushedDenormalsKeepEveryCase) {
+TEST(StressProperty, EveryCasePassesWithFlushedDenormals) {
   // Tables are read so: denormals become zeros. What is accepted holds all the same, and no result is one.
   size_t with_denormals = 0;
   for (const Form& form : library_forms()) {
@@ -182,7 +182,7 @@ TEST(StressProperty, FlushedDenormalsKeepEveryCase) {
   EXPECT_GE(with_denormals, 4u);
 }
 
-TEST(StressProperty, MixReachesBothEndsAndKeepsWhatIsAlike) {
+TEST(StressProperty, MixIsExactAtBothEndsAndForEqualOperands) {
   const Subject mix = Subject::row("mix", 3);
   Random random;
   std::vector<float> inputs;

@@ -116,7 +116,7 @@ struct RowOf {
   }
 #include "compiler/functions/functions.def"
 
-TEST(EveryFloat, KeepsTheBoundOfItsTier) {
+TEST(UnaryFunctions, StayWithinTierBoundsForEveryFloat) {
   if (std::getenv("ISOSHADE_FULL") == nullptr) GTEST_SKIP() << "long; set ISOSHADE_FULL=1";
 #define TIER(tier, row, ulp, domain, unit) \
   expect_all_floats_within<rows::tier##_##row##_row>(#row, rows::tier##_##row##_row::Variants{});

@@ -2,6 +2,7 @@
 // Every executor computes the same bits: each program of cases.h, on the same inputs, against the interpreter.
 #include <gtest/gtest.h>
 #include <memory>
+#include <string>
 #include <tuple>
 
 #include "backends/cpu/backend.h"
@@ -70,7 +71,7 @@ void expect_same_bits(backends::Backend& backend) {
 
 class CpuLanes : public testing::TestWithParam<const char*> {};
 
-TEST_P(CpuLanes, ComputeTheInterpretersBits) {
+TEST_P(CpuLanes, MatchTheInterpreterBitForBit) {
   if (!cpu::lane_count(GetParam())->available())
     GTEST_SKIP() << "this machine has no registers of so many lanes";
   support::Diagnostics diagnostics;
@@ -81,13 +82,14 @@ TEST_P(CpuLanes, ComputeTheInterpretersBits) {
   expect_same_bits(*backend);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conformance, CpuLanes, testing::Values("1", "4", "8", "16", "8x2", "16x2"));
+INSTANTIATE_TEST_SUITE_P(Conformance, CpuLanes, testing::Values("1", "4", "8", "16", "8x2", "16x2"),
+                         [](const auto& info) { return std::string(info.param); });
 
 #ifdef ISOSHADE_VULKAN
 using VulkanCase = std::tuple<driver::Division, vulkan::EvalStage>;
 class Vulkan : public testing::TestWithParam<VulkanCase> {};
 
-TEST_P(Vulkan, ComputesTheInterpretersBits) {
+TEST_P(Vulkan, MatchesTheInterpreterBitForBit) {
   support::Diagnostics diagnostics;
   vulkan::VulkanOptions options;
   std::tie(options.division, options.eval_stage) = GetParam();
@@ -99,7 +101,13 @@ TEST_P(Vulkan, ComputesTheInterpretersBits) {
 INSTANTIATE_TEST_SUITE_P(Conformance, Vulkan,
                          testing::Combine(testing::Values(driver::Division::native, driver::Division::exact),
                                           testing::Values(vulkan::EvalStage::fragment,
-                                                          vulkan::EvalStage::vertex)));
+                                                          vulkan::EvalStage::vertex)),
+                         [](const auto& info) {
+                           const driver::Division division = std::get<0>(info.param);
+                           const vulkan::EvalStage stage = std::get<1>(info.param);
+                           return std::string(division == driver::Division::native ? "native" : "exact") +
+                                  (stage == vulkan::EvalStage::fragment ? "_fragment" : "_vertex");
+                         });
 #endif
 
 }  // namespace

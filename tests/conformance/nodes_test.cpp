@@ -2,6 +2,7 @@
 // Every node computes the same bits on every backend, against the interpreter, on 10,000 inputs.
 #include <gtest/gtest.h>
 #include <memory>
+#include <string>
 
 #include "backends/cpu/backend.h"
 #include "backends/cpu/lane_count.h"
@@ -58,7 +59,7 @@ void expect_same_bits(backends::Backend& backend) {
 
 class NodesOnCpu : public testing::TestWithParam<const char*> {};
 
-TEST_P(NodesOnCpu, ComputeTheInterpretersBits) {
+TEST_P(NodesOnCpu, MatchTheInterpreterBitForBit) {
   if (!cpu::lane_count(GetParam())->available())
     GTEST_SKIP() << "this machine has no registers of so many lanes";
   support::Diagnostics diagnostics;
@@ -70,10 +71,11 @@ TEST_P(NodesOnCpu, ComputeTheInterpretersBits) {
 }
 
 // The lane types themselves are held to the interpreter by conformance_test.
-INSTANTIATE_TEST_SUITE_P(Nodes, NodesOnCpu, testing::Values("1", "8"));
+INSTANTIATE_TEST_SUITE_P(Nodes, NodesOnCpu, testing::Values("1", "8"),
+                         [](const auto& info) { return std::string(info.param); });
 
 #ifdef ISOSHADE_VULKAN
-TEST(NodesOnVulkan, ComputeTheInterpretersBits) {
+TEST(NodesOnVulkan, MatchTheInterpreterBitForBit) {
   support::Diagnostics diagnostics;
   const auto backend = vulkan::create({}, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();

@@ -107,9 +107,9 @@ std::vector<std::string> ids_here() {
   return ids;
 }
 
-class DiagnosticOf : public testing::TestWithParam<std::string> {};
+class DiagnosticExample : public testing::TestWithParam<std::string> {};
 
-TEST_P(DiagnosticOf, IsWhatTheDocumentGets) {
+TEST_P(DiagnosticExample, PrintsTheRecordedMessage) {
   const std::string& id = GetParam();
   ASSERT_NE(command_for(id), "") << "no document for " << id << ": write tests/diagnostics/" << id
                                  << ".json that is wrong in this way, then run diagnostics_test --update";
@@ -126,13 +126,13 @@ TEST_P(DiagnosticOf, IsWhatTheDocumentGets) {
   EXPECT_EQ(text, read(expected));
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, DiagnosticOf, testing::ValuesIn(ids_here()), [](const auto& id) {
+INSTANTIATE_TEST_SUITE_P(Ids, DiagnosticExample, testing::ValuesIn(ids_here()), [](const auto& id) {
   std::string name = id.param;
   std::ranges::replace(name, '-', '_');
   return name;
 });
 
-TEST(Diagnostics, OthersHaveATestElsewhere) {
+TEST(Diagnostics, IdsWithoutAnExampleAreTestedElsewhere) {
   for (const Elsewhere& row : elsewhere) {
     if (row.test == nullptr) continue;
     const std::string id(support::id_text(row.id));
@@ -163,7 +163,7 @@ std::string page_text() {
   return text;
 }
 
-TEST(Diagnostics, ThePageShowsThem) {
+TEST(Diagnostics, PageIsUpToDate) {
   EXPECT_TRUE(update || read(page) == page_text()) << "run diagnostics_test --update";
 }
 

@@ -31,7 +31,7 @@ int by_rule(int at, int size, const std::string& edge) {
   return std::clamp(at, 0, size - 1);
 }
 
-TEST(Posts, ReadBeyondTheImageByTheRuleThatTheyAsk) {
+TEST(Posts, SceneColorAppliesItsEdgeModeOutsideTheImage) {
   const Pixels image = numbered(5, 4);
   for (const std::string edge : {"clamp", "mirror", "constant"}) {
     for (const int dx : {-11, -5, -2, 0, 1, 4, 9, 100}) {
@@ -55,7 +55,7 @@ TEST(Posts, ReadBeyondTheImageByTheRuleThatTheyAsk) {
   }
 }
 
-TEST(Posts, FindThePixelUnderTheirOwnInImagesOfOtherSizes) {
+TEST(Posts, SceneColorReadsTheCoincidentPixelOfImagesOfOtherSizes) {
   // Of every pair of sizes here, exactly in integers.
   for (const int made : {1, 2, 3, 5, 8, 13, 640}) {
     for (const int read : {1, 2, 3, 4, 7, 320, 641}) {
@@ -78,7 +78,7 @@ std::pair<int, float> between(int at, int made, int read) {
   return inside < 0 ? std::pair{under - 1, inside + 1.0f} : std::pair{under, inside};
 }
 
-TEST(Posts, FilterLinearlyInProportion) {
+TEST(Posts, LinearFilterInterpolatesBetweenPixels) {
   const Pixels image = numbered(3, 2);
   constexpr int width = 7, height = 5;
   Screen screen(post_text(R"("color": {"type": "scenecolor", "filter": "linear"})"), width, height, {},
@@ -96,13 +96,13 @@ TEST(Posts, FilterLinearlyInProportion) {
   }
 }
 
-TEST(Posts, FilteredAtItsOwnSizeAnImageIsItself) {
+TEST(Posts, LinearFilterAtEqualSizeIsTheIdentity) {
   const Pixels image = numbered(33, 17);
   Screen screen(post_text(R"("color": {"type": "scenecolor", "filter": "linear"})"), 33, 17, {}, {image});
   EXPECT_EQ(screen.interpreted(), image.floats);
 }
 
-TEST(Posts, HalvedLinearlyAnImageIsTheMeanOfFourPixels) {
+TEST(Posts, LinearFilterAtHalfSizeAveragesFourPixels) {
   const Pixels image = numbered(8, 6);
   Screen screen(post_text(R"("color": {"type": "scenecolor", "filter": "linear"})"), 4, 3, {}, {image});
   const std::vector<float> found = screen.interpreted();
@@ -114,7 +114,7 @@ TEST(Posts, HalvedLinearlyAnImageIsTheMeanOfFourPixels) {
                           4);
 }
 
-TEST(Posts, SumTheirTapsInOrderFromZero) {
+TEST(Posts, SumTapsAddsInOrderFromZero) {
   const Pixels image = numbered(9, 1);
   Screen screen(post_text(R"json("i": {"type": "tapindex"}, "c": {"type": "scenecolor", "offsetx": "i"},
     "w": {"type": "expression", "code": "c.rgb * (1 + 0.1 * i)", "c": "c", "i": "i"},
@@ -131,7 +131,7 @@ TEST(Posts, SumTheirTapsInOrderFromZero) {
   }
 }
 
-TEST(Posts, KnowTheirPixelAndTheScreen) {
+TEST(Posts, PixelAndScreenNodesReturnTheirCoordinates) {
   Screen screen(
       post_text(
           R"json("p": {"type": "pixelcoord"}, "uv": {"type": "screencoord"}, "s": {"type": "screensize"},
@@ -185,7 +185,7 @@ void expect_points_found_again(const scene::Camera& camera) {
   EXPECT_NEAR(found[4 * 40 + 3], 1 + 0.37f * 9 + 0.21f, 1e-4f);
 }
 
-TEST(Posts, FindWorldPositionsUnderPerspective) {
+TEST(Posts, WorldPositionIsReconstructedInPerspective) {
   scene::Camera camera;
   camera.position = {3, 40, -7};
   camera.target = {1, 38, -12};
@@ -193,7 +193,7 @@ TEST(Posts, FindWorldPositionsUnderPerspective) {
   expect_points_found_again(camera);
 }
 
-TEST(Posts, FindWorldPositionsUnderOrthographicProjection) {
+TEST(Posts, WorldPositionIsReconstructedInOrthographic) {
   scene::Camera camera;
   camera.projection = scene::Projection::orthographic;
   camera.position = {3, 40, -7};
@@ -213,7 +213,7 @@ constexpr const char* everything = R"json("i": {"type": "tapindex"},
           "p": "p", "v": "v", "uv": "uv", "d": "d.linear", "c": "c", "i": "i", "n": "n", "dir": "dir"},
   "color": {"type": "sum_taps", "in": "one", "first": -3, "last": 4})json";
 
-TEST(Posts, AreTheSameOnEveryBackendAtEverySize) {
+TEST(Posts, AreIdenticalOnEveryBackendAtEverySize) {
   scene::Camera camera;
   camera.position = {3, 4, 7};
   camera.target = {1, 2, 0};
@@ -238,7 +238,7 @@ TEST(Posts, AreTheSameOnEveryBackendAtEverySize) {
   }
 }
 
-TEST(Posts, WithoutEffectKeepEveryBitWhetherTheyRunOrNot) {
+TEST(Posts, SkippingPostsWithoutEffectChangesNoBit) {
   const auto backend = cpu_backend();
   for (const auto& [name, switches] : {std::pair{"fog_balls", std::vector<std::string>{"fog_density"}},
                                        {"bloom_balls", {"bloom_strength"}}}) {
@@ -252,7 +252,7 @@ TEST(Posts, WithoutEffectKeepEveryBitWhetherTheyRunOrNot) {
   }
 }
 
-TEST(Posts, OfShippedScenesAreTheSameInAThinImage) {
+TEST(Posts, ShippedScenesAreIdenticalInANarrowImage) {
   const auto first = cpu_backend("1", 1);
   for (const char* name : {"fog_balls", "bloom_balls"}) {
     const render::Plan made = plan(scene_path(name), 3, 2000);

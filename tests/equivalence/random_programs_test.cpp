@@ -231,7 +231,7 @@ driver::Program large_program() {
 }
 
 // They are cut into parts that call each other.
-TEST(RandomPrograms, LargeOnesAreIdenticalInCpp) {
+TEST(RandomPrograms, LargeProgramsAreIdenticalInCpp) {
   const driver::Program program = large_program();
   EXPECT_NE(driver::cpp(program).find("large_part_1"), std::string::npos);
   support::Diagnostics diagnostics;

@@ -41,11 +41,9 @@ void expect_parts_to_make_up_the_whole(backends::Backend& backend) {
   }
 }
 
-TEST(Samples, DrawnPartByPartAreThoseDrawnAtOnceOnTheCpu) {
-  expect_parts_to_make_up_the_whole(*cpu_backend());
-}
+TEST(Samples, DrawingInPartsMatchesDrawingAtOnceOnCpu) { expect_parts_to_make_up_the_whole(*cpu_backend()); }
 
-TEST(Samples, KeepTheirHash) {
+TEST(Samples, MatchTheRecordedHashes) {
   const auto cpu = cpu_backend();
   const auto hash = [&](int samples) {
     return compare::image_hash(draw(plan_of(scene_path("material_balls"), samples, 160, 90), *cpu));
@@ -80,7 +78,7 @@ TEST(Samples, AreIdenticalOnTheInterpreter) {
 }
 
 #ifdef ISOSHADE_VULKAN
-TEST(Samples, DrawnPartByPartAreThoseDrawnAtOnceOnVulkan) {
+TEST(Samples, DrawingInPartsMatchesDrawingAtOnceOnVulkan) {
   expect_parts_to_make_up_the_whole(*vulkan_backend());
 }
 
@@ -156,7 +154,7 @@ class WideTriangles {
   std::mt19937 random_;
 };
 
-TEST(Parts, ShowTrianglesThatBeginFarBeforeThemAsTheCpuDoes) {
+TEST(Parts, TrianglesThatStartFarOutsideMatchTheCpu) {
   const auto cpu = cpu_backend();
   const auto vulkan = vulkan_backend();
   render::Plan made = plan(scene_path("borders"));

@@ -66,7 +66,7 @@ TEST(Scenes, AreIdenticalForEveryLaneCountAndThreadCount) {
   }
 }
 
-TEST(Scenes, AreIdenticalWhicheverCompilerBuiltThem) {
+TEST(Scenes, AreIdenticalWithEitherCompiler) {
   const auto gcc = cpu_backend("", 0, "g++");
   const auto clang = cpu_backend("", 0, "clang++");
   for (const std::string& path : shipped_scenes()) {
@@ -75,13 +75,13 @@ TEST(Scenes, AreIdenticalWhicheverCompilerBuiltThem) {
   }
 }
 
-TEST(Scenes, KeepEveryBitWhenWhatCannotBeSeenIsSkipped) {
+TEST(Scenes, SkippingInvisibleDrawsChangesNoBit) {
   const auto cpu = cpu_backend();
   for (const std::string& path : shipped_scenes())
     expect_identical(draw(plan(path, 320, 180, true), *cpu), draw(plan(path, 320, 180, false), *cpu), path);
 }
 
-TEST(Golden, HoldsEveryShippedSceneAtItsOwnSize) {
+TEST(Golden, MatchesEveryShippedSceneAtItsOwnSize) {
   support::Diagnostics diagnostics;
   const auto goldens = compare::read_goldens(ISOSHADE_GOLDENS, diagnostics);
   ASSERT_TRUE(goldens.has_value()) << diagnostics.text();

@@ -106,7 +106,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
 const std::string function_head =
     "(?:^|\n)(?:ISOSHADE_INLINE |precise )?[A-Za-z_0-9]+(?:<F>)? ([a-zA-Z_0-9]+)\\([^\n;]*\\) \\{";
 
-TEST(Text, GlslCompilesAsItStands) {
+TEST(Text, GlslCompilesUnmodified) {
   const Folder folder;
   std::string files;
   for (const Texts& texts : shipped()) {
@@ -121,7 +121,7 @@ TEST(Text, GlslCompilesAsItStands) {
     expect_success("glslangValidator -V " + path + " -o " + path + ".spv");
 }
 
-TEST(Text, CppCompilesWithoutWarningsByBothCompilers) {
+TEST(Text, CppCompilesWithoutWarningsInBothCompilers) {
   const Folder folder;
   for (const Texts& texts : shipped()) {
     const std::string path = folder.write(texts.name + ".cpp", texts.cpp).string();
@@ -131,7 +131,7 @@ TEST(Text, CppCompilesWithoutWarningsByBothCompilers) {
   }
 }
 
-TEST(Text, CompilesWhereAProgramReadsNothing) {
+TEST(Text, CompilesForProgramsWithoutInputs) {
   support::Diagnostics diagnostics;
   check::Library library("");
   driver::CompileOptions options;
@@ -161,7 +161,7 @@ TEST(Text, CompilesWhereAProgramReadsNothing) {
   }
 }
 
-TEST(Text, CompilesWhateverItsPartsAreCalled) {
+TEST(Text, CompilesWithReservedWordsAsNames) {
   // Keywords and macros of both languages, and what the texts around functions say, some with forms of their own.
   const std::vector<std::string> names = {"main",
                                           "template",
@@ -226,7 +226,7 @@ TEST(Text, CompilesWhateverItsPartsAreCalled) {
                    " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + cpp);
 }
 
-TEST(Text, NoWordOfADocumentBecomesCode) {
+TEST(Text, DocumentTextCannotInjectCode) {
   // What would be code, end a comment or join lines, wherever a document or its path has text.
   const std::string evil =
       R"(*/ \n#error evil\n#include <evil.h>\n// \\\n #pragma evil ??/\n \u2028 evil();)";
@@ -268,7 +268,7 @@ TEST(Text, NoWordOfADocumentBecomesCode) {
   }
 }
 
-TEST(Text, ReadsAlikeInBothLanguages) {
+TEST(Text, HasTheSameStructureInBothLanguages) {
   for (const Texts& texts : shipped()) {
     SCOPED_TRACE(texts.name);
     // The same functions in the same order, and the same nodes of the same lines.
@@ -320,7 +320,7 @@ TEST(Text, PreciseReachesEveryOperation) {
   }
 }
 
-TEST(Text, HoldsOnlyWhatTheGraphNeeds) {
+TEST(Text, ContainsNoUnusedFunctionsOrBuffers) {
   for (const Texts& texts : shipped()) {
     SCOPED_TRACE(texts.name);
     for (const std::string* text : {&texts.glsl, &texts.exact, &texts.cpp}) {

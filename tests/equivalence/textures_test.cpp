@@ -68,7 +68,7 @@ class TextureFiles : public ::testing::Test {
   testing::Folder folder_;
 };
 
-TEST_F(TextureFiles, OfBytesGiveTheTexelsThatTheirFloatsGive) {
+TEST_F(TextureFiles, ByteAndFloatTexelsAreIdentical) {
   const render::Plan bytes = plan_of(texels("p.png"));
   EXPECT_GT(bytes.frame.texel_bytes.size(), size_t{37 * 23});
   const backends::Image shown = draw_everywhere(bytes, "bytes");
@@ -77,7 +77,7 @@ TEST_F(TextureFiles, OfBytesGiveTheTexelsThatTheirFloatsGive) {
   expect_identical(shown, draw_everywhere(floats, "floats"), "bytes and floats");
 }
 
-TEST_F(TextureFiles, HaveTheSameMipLevelsEverywhere) {
+TEST_F(TextureFiles, MipLevelsAreIdenticalOnEveryBackend) {
   for (const char* file : {"p.png", "p.exr"}) draw_everywhere(plan_of(mips(file)), file);
 }
 

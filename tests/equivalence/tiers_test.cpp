@@ -44,7 +44,7 @@ TEST(Tiers, AreIdenticalForEveryLaneCountAndOnTheInterpreter) {
   }
 }
 
-TEST(Tiers, SeeTheSamePixels) {
+TEST(Tiers, HaveTheSameDepth) {
   const auto cpu = cpu_backend();
   for (const std::string& path : shipped_scenes()) {
     const backends::Image expected = draw(plan(path, 320, 180), *cpu);
@@ -53,7 +53,7 @@ TEST(Tiers, SeeTheSamePixels) {
   }
 }
 
-TEST(Tiers, DifferFromTheDefaultAndStayNearIt) {
+TEST(Tiers, DifferFromTheDefaultButStayNearIt) {
   const auto cpu = cpu_backend();
   const backends::Image expected = draw(plan(scene_path("material_balls"), 320, 180), *cpu);
   for (const Tier tier : others) {
@@ -65,7 +65,7 @@ TEST(Tiers, DifferFromTheDefaultAndStayNearIt) {
   }
 }
 
-TEST(Golden, HoldsScenesInTheTiersThatAreRecorded) {
+TEST(Golden, MatchesScenesInTheRecordedTiers) {
   support::Diagnostics diagnostics;
   const auto goldens = compare::read_goldens(ISOSHADE_GOLDENS, diagnostics);
   ASSERT_TRUE(goldens.has_value()) << diagnostics.text();

@@ -49,7 +49,7 @@ double seconds_of_this_thread() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-TEST(Documents, DamagedOnesEndInADiagnosticOrAProgram) {
+TEST(Documents, MutatedDocumentsYieldADiagnosticOrAProgram) {
   const bool full = std::getenv("ISOSHADE_FULL") != nullptr;
   const int count = full ? 100'000 : 2'000;
   Mutator mutator(documents(), 1);

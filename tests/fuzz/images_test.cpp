@@ -4,10 +4,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <ostream>
 
 #include "tests/fuzz/reader.h"
 
 namespace isoshade {
+
+void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
+
 namespace {
 
 int count() {
@@ -17,7 +21,7 @@ int count() {
 
 class DamagedFiles : public ::testing::TestWithParam<Reader> {};
 
-TEST_P(DamagedFiles, AreReadOrRefused) {
+TEST_P(DamagedFiles, AreReadOrRejected) {
   const Reader& reader = GetParam();
   std::vector<std::string> files = reader.good();
   for (size_t i = 0; i < files.size(); ++i) ASSERT_TRUE(reader.read(files[i])) << "good file " << i;

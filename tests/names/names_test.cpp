@@ -36,7 +36,7 @@ class NameCase {
   size_t words_ = 0;
 };
 
-TEST(Names, OfFunctionsAndTheirFilesInputsNodesAndSingleOutputsAreTaken) {
+TEST(AnyWord, NamesAFunctionAndItsFileInputNodeAndOutput) {
   NameCase place("function");
   for (const Chunk& chunk : chunks(words(), 120)) {
     place.count(chunk.size());
@@ -44,7 +44,7 @@ TEST(Names, OfFunctionsAndTheirFilesInputsNodesAndSingleOutputsAreTaken) {
   }
 }
 
-TEST(Names, OfManyInputsAndOutputsAreTaken) {
+TEST(AnyWord, NamesOneOfManyInputsAndOutputs) {
   NameCase place("inputs and outputs");
   for (const Chunk& chunk : chunks(words(), 100)) {
     place.count(chunk.size());
@@ -52,7 +52,7 @@ TEST(Names, OfManyInputsAndOutputsAreTaken) {
   }
 }
 
-TEST(Names, OfNodesAreTaken) {
+TEST(AnyWord, NamesANode) {
   NameCase place("nodes");
   for (const Chunk& chunk : chunks(words(), 250)) {
     place.count(chunk.size());
@@ -60,7 +60,7 @@ TEST(Names, OfNodesAreTaken) {
   }
 }
 
-TEST(Names, OfEffectsPassesParametersAndValuesAreTaken) {
+TEST(AnyWord, NamesAnEffectPassParameterAndEnumValue) {
   NameCase place("effects");
   for (const Chunk& chunk : chunks(words(), 60)) {
     place.count(chunk.size());
@@ -68,7 +68,7 @@ TEST(Names, OfEffectsPassesParametersAndValuesAreTaken) {
   }
 }
 
-TEST(Names, OfImagesAndFilesOfEffectsAreTaken) {
+TEST(AnyWord, NamesAnImageAndFileOfAnEffect) {
   NameCase place("images of effects");
   for (const Chunk& chunk : chunks(words(), 120)) {
     place.count(chunk.size());
@@ -76,7 +76,7 @@ TEST(Names, OfImagesAndFilesOfEffectsAreTaken) {
   }
 }
 
-TEST(Names, OfPostsTheirParametersAndSumsAreTaken) {
+TEST(AnyWord, NamesAPostAndItsParameterAndSum) {
   NameCase place("posts");
   for (const Chunk& chunk : chunks(words(), 60)) {
     place.count(chunk.size());
@@ -84,7 +84,7 @@ TEST(Names, OfPostsTheirParametersAndSumsAreTaken) {
   }
 }
 
-TEST(Names, OfImagesOfPostsAreTaken) {
+TEST(AnyWord, NamesAnImageOfAPost) {
   NameCase place("images of posts");
   for (const Chunk& chunk : chunks(words(), 8)) {
     place.count(chunk.size());

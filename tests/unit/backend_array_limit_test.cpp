@@ -17,7 +17,7 @@ std::string report(lower::FrameBuffer array, const ArrayLimit& limit, const Fram
   return diagnostics.text();
 }
 
-TEST(ArrayLimit, IsReportedWithBothNumbersAndAWayOutForEveryArray) {
+TEST(ArrayLimit, ErrorStatesBothSizesAndAFixForEveryArray) {
   for (size_t array = 0; array < std::size(lower::frame_buffers); ++array) {
     const std::string text = report(static_cast<lower::FrameBuffer>(array), small_device, nullptr);
     EXPECT_NE(text.find("take 4096 bytes; a device takes at most 1000"), std::string::npos) << text;
@@ -25,7 +25,7 @@ TEST(ArrayLimit, IsReportedWithBothNumbersAndAWayOutForEveryArray) {
   }
 }
 
-TEST(ArrayLimit, NamesWhatIsLargestAndWhereItIsNamed) {
+TEST(ArrayLimit, ErrorNamesTheLargestItemAndItsReference) {
   const auto source = std::make_shared<support::SourceFile>("scene.json", "{\"a\": \"b.png\"}\n");
   Frame frame;
   frame.largest_in_texel_bytes = {"the image \"b.png\"", {source, 6, 13}};
@@ -40,7 +40,7 @@ TEST(ArrayLimit, NamesWhatIsLargestAndWhereItIsNamed) {
   EXPECT_EQ(floats.find("the largest is"), std::string::npos) << floats;
 }
 
-TEST(ArrayLimit, OfTheCpuSendsNobodyToTheCpu) {
+TEST(ArrayLimit, ErrorOnTheCpuDoesNotSuggestTheCpu) {
   const std::string text = report(lower::FrameBuffer::texels, {"the cpu backend", 1000, true}, nullptr);
   EXPECT_EQ(text.find("--backend"), std::string::npos) << text;
 }

@@ -47,7 +47,7 @@ std::string messages_of(const std::string& code,
   return front_end.messages(document(code, ports));
 }
 
-TEST(Expression, OperatorsBindAsInC) {
+TEST(Expression, OperatorPrecedenceFollowsC) {
   EXPECT_EQ(value_of("x + y * 2"), Floats{11});
   EXPECT_EQ(value_of("(x + y) * 2"), Floats{14});
   EXPECT_EQ(value_of("x - y - 1"), Floats{-2});
@@ -61,16 +61,16 @@ TEST(Expression, OperatorsBindAsInC) {
   EXPECT_EQ(value_of("x != y == true ? 1 : 0"), Floats{1});
 }
 
-TEST(Expression, ComparisonsWithNanAreAsInC) {
+TEST(Expression, NanComparisonsFollowC) {
   EXPECT_EQ(value_of("x*0/0 == x ? 1 : 0"), Floats{0});
   EXPECT_EQ(value_of("x*0/0 != x ? 1 : 0"), Floats{1});
   EXPECT_EQ(value_of("x*0/0 <= x ? 1 : 0"), Floats{0});
   EXPECT_EQ(value_of("x < x*0/0 ? 1 : 0"), Floats{0});
 }
 
-TEST(Expression, SignsKeepZeros) { EXPECT_TRUE(std::signbit(value_of("-(x - 3)")[0])); }
+TEST(Expression, NegationFlipsTheSignOfZero) { EXPECT_TRUE(std::signbit(value_of("-(x - 3)")[0])); }
 
-TEST(Expression, VectorsAreMadeTakenApartAndBroadcast) {
+TEST(Expression, VectorsAreConstructedSwizzledAndBroadcast) {
   EXPECT_EQ(value_of("v * x"), (Floats{3, 6, 15}));
   EXPECT_EQ(value_of("v.zyx"), (Floats{5, 2, 1}));
   EXPECT_EQ(value_of("v.zyx.x + 1"), Floats{6});
@@ -82,7 +82,7 @@ TEST(Expression, VectorsAreMadeTakenApartAndBroadcast) {
   EXPECT_EQ(value_of("boolean(v.x - 1) ? 1 : integer(2.5) / 4"), Floats{0.5f});
 }
 
-TEST(Expression, CallsWhatTheLibraryHas) {
+TEST(Expression, CallsBuiltInAndLibraryFunctions) {
   EXPECT_EQ(value_of("max(x, y)"), Floats{4});
   EXPECT_EQ(value_of("sqrt(x + 6) + abs(-1) + floor(0.5)"), Floats{4});
   EXPECT_EQ(value_of("mix(10, 20, 0.25)"), Floats{12.5f});
@@ -91,18 +91,18 @@ TEST(Expression, CallsWhatTheLibraryHas) {
   EXPECT_EQ(value_of("folder::twice(x) + folder::twice(1) / 2"), Floats{7});
 }
 
-TEST(Expression, NumbersAreWrittenAsInC) {
+TEST(Expression, NumberLiteralsFollowC) {
   EXPECT_EQ(value_of(".5 + 2. + 1e1 + 2.5E-1"), Floats{12.75f});
   EXPECT_EQ(value_of("pi"), Floats{3.14159265f});
 }
 
-TEST(Expression, ReadsPortsThatAreValuesLinksAndSwizzles) {
+TEST(Expression, PortsMayBeValuesLinksOrSwizzles) {
   FrontEnd front_end;
   Program program(front_end.lower(document("a * b.x + c", R"("a": 2, "b": [7, 8, 9], "c": "v.z")")));
   EXPECT_EQ(program({3, 4, 1, 2, 5}), Floats{19});
 }
 
-TEST(Expression, LiteralsInPortsTakeTheTypeOfWhatTheyMeet) {
+TEST(Expression, PortLiteralsTakeTheTypeOfTheOtherOperand) {
   FrontEnd front_end;
   const auto graph = front_end.check(document("color3(v) * tint", R"("v": "v", "tint": [1, 0.5, 0.25])"));
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
@@ -134,7 +134,7 @@ std::string fix_of(const std::string& code) {
   return front_end.diagnostics.all().empty() ? "" : front_end.diagnostics.all()[0].fix;
 }
 
-TEST(Expression, WordsOfOtherLanguagesAreTranslated) {
+TEST(Expression, SuggestsEquivalentsForOtherLanguages) {
   EXPECT_EQ(fix_of("lerp(x, 1, v)"), "its name here is \"mix\"");
   EXPECT_EQ(fix_of("power(x, v)"), "its name here is \"pow\"");
   EXPECT_EQ(fix_of("vec3(x) + v"), "its name here is \"vector3\"");
@@ -143,7 +143,7 @@ TEST(Expression, WordsOfOtherLanguagesAreTranslated) {
   EXPECT_EQ(fix_of("x = 1 ? v : 2"), "compare with ==");
 }
 
-TEST(Expression, ErrorsPointIntoTheString) {
+TEST(Expression, SyntaxErrorsPointIntoTheCode) {
   EXPECT_EQ(error_of("x + * y"), "4 bad-expression: expected a value before \"*\"");
   EXPECT_EQ(error_of("x + (y"),
             "6 bad-expression: expected \")\" to close the parenthesis, but found the end of the code");
@@ -173,7 +173,7 @@ TEST(Expression, ErrorsPointIntoTheString) {
             "10 unknown-port: \"max\" takes only 2 arguments");
 }
 
-TEST(Expression, TypesAreCheckedWhereTheyMeet) {
+TEST(Expression, TypeMismatchesPointAtTheOperand) {
   const std::string ports = R"("x": "x", "v": "v")";
   EXPECT_EQ(error_of("x + v * v.xy", ports),
             "8 type-mismatch: the right side of \"*\" is vector2, but the left side is vector3");
@@ -185,17 +185,17 @@ TEST(Expression, TypesAreCheckedWhereTheyMeet) {
             "7 type-mismatch: argument 2 of \"dot\" is vector2, but argument 1 is vector3");
 }
 
-TEST(Expression, PlacesSurviveEscapes) {
+TEST(Expression, ErrorPositionsAccountForEscapes) {
   EXPECT_EQ(error_of("\\u0078 + \\u0078 $"), "16 bad-expression: expected an operator before \"$\"");
 }
 
-TEST(Expression, PortsThatTheCodeDoesNotReadAreWarnedOf) {
+TEST(Expression, WarnsOfUnreadPorts) {
   const std::string text = messages_of("x", R"("x": "x", "y": "y")");
   EXPECT_NE(text.find("warning[unread-key]: the code does not read \"y\""), std::string::npos) << text;
   EXPECT_EQ(text.find("error"), std::string::npos) << text;
 }
 
-TEST(Expression, TuplesAreMadeOfATupleAndANumber) {
+TEST(Expression, VectorsAreConstructedFromAVectorAndANumber) {
   EXPECT_EQ(value_of("vector4(v, 7)"), (Floats{1, 2, 5, 7}));
   EXPECT_EQ(value_of("color4(color3(v), x)"), (Floats{1, 2, 5, 3}));
   EXPECT_EQ(value_of("color4(v, x)"), (Floats{1, 2, 5, 3}));
@@ -203,19 +203,19 @@ TEST(Expression, TuplesAreMadeOfATupleAndANumber) {
   EXPECT_EQ(value_of("vector2(x, y)"), (Floats{3, 4}));
 }
 
-TEST(Expression, MatricesAreMadeOfTheirColumns) {
+TEST(Expression, MatricesAreConstructedFromColumns) {
   EXPECT_EQ(value_of("transform(matrix33(v, v * 2, v.zyx), vector3(1, 10, 100))"),
             (Floats{1 + 20 + 500, 2 + 40 + 200, 5 + 100 + 100}));
   EXPECT_EQ(value_of("transform_point(matrix44(v, v, v, vector3(7, 8, 9)), vector3(0, 0, 0))"), (Floats{7, 8, 9}));
 }
 
-TEST(Expression, LinksAreReportedAtThePort) {
+TEST(Expression, UnknownLinksAreReportedAtThePort) {
   const std::string text = messages_of("a + a + a", R"("a": "nowhere")");
   EXPECT_NE(text.find("there is no node or input \"nowhere\""), std::string::npos) << text;
   EXPECT_EQ(text.find("nowhere", text.find("^")), std::string::npos) << text;
 }
 
-TEST(Expression, HostileCodeEndsInAnError) {
+TEST(Expression, RejectsHostileCode) {
   const std::string deep(100'000, '(');
   EXPECT_NE(error_of(deep).find("nested more than 100 deep"), std::string::npos);
   EXPECT_NE(error_of(std::string(100'000, '-') + "x").find("nested more than 100 deep"), std::string::npos);

@@ -31,7 +31,7 @@ class Generic : public testing::Test {
   FrontEnd front_end;
 };
 
-TEST_F(Generic, TheTypeIsWhatIsLinkedElseWhatIsWritten) {
+TEST_F(Generic, TypeComesFromLinksBeforeLiterals) {
   EXPECT_EQ(type_of(R"("in": "x")"), "float");
   EXPECT_EQ(type_of(R"("in": "v")"), "vector3");
   EXPECT_EQ(type_of(R"("in": "c")"), "color3");
@@ -42,7 +42,7 @@ TEST_F(Generic, TheTypeIsWhatIsLinkedElseWhatIsWritten) {
   EXPECT_EQ(type_of(R"("in": [1, 2])"), "vector2");
 }
 
-TEST_F(Generic, EachTypeIsAFunctionOfItsOwn) {
+TEST_F(Generic, EachTypeIsInstantiatedOnce) {
   const ir::Module module = front_end.lower(document(
       R"("a": {"type": "twice", "in": "x"}, "b1": {"type": "twice", "in": "v"}, "b2": {"type": "twice", "in": "b1"},
          "n": {"type": "twice", "in": "a", "more": "b2"})"));
@@ -51,12 +51,12 @@ TEST_F(Generic, EachTypeIsAFunctionOfItsOwn) {
   EXPECT_EQ(names, (std::vector<std::string>{"twice", "twice_vector3", "f"}));
 }
 
-TEST_F(Generic, ComputesTheSameForEveryType) {
+TEST_F(Generic, ComputesComponentwise) {
   Program program(front_end.lower(document(R"("n": {"type": "twice", "in": "v", "more": "x"})")));
   EXPECT_EQ(program({1, 2, 3, 4, 0, 0, 0, 0, 0}), (Floats{5, 7, 9}));
 }
 
-TEST_F(Generic, AreNested) {
+TEST_F(Generic, MayCallOtherGenerics) {
   front_end.library.add("library/four.json", R"json({"isoshade": 1, "function": "four",
     "inputs": {"in": {"type": "any"}},
     "nodes": {"a": {"type": "twice", "in": "in"},
@@ -66,7 +66,7 @@ TEST_F(Generic, AreNested) {
   EXPECT_EQ(program({0, 1, 2, 3, 0, 0, 0, 0, 0}), (Floats{5, 9, 13}));
 }
 
-TEST_F(Generic, OtherTypesAreErrors) {
+TEST_F(Generic, RejectsUnsupportedTypes) {
   EXPECT_EQ(type_of(R"("in": "b")"), "");
   EXPECT_NE(front_end.diagnostics.text().find(
                 "\"in\" of \"twice\" takes float, vector2, vector3, vector4, color3 or color4, not boolean"),
@@ -74,14 +74,14 @@ TEST_F(Generic, OtherTypesAreErrors) {
       << front_end.diagnostics.text();
 }
 
-TEST_F(Generic, TypesThatDoNotMeetAreErrors) {
+TEST_F(Generic, RejectsMismatchedTypes) {
   EXPECT_EQ(type_of(R"("in": "v", "more": "c")"), "");
   EXPECT_NE(front_end.diagnostics.text().find("\"more\" of \"twice\" is color3, but \"in\" is vector3"),
             std::string::npos)
       << front_end.diagnostics.text();
 }
 
-TEST_F(Generic, ErrorsOfAnInstanceNameTheCall) {
+TEST_F(Generic, ErrorsInAnInstanceNameTheCall) {
   front_end.library.add("library/high.json", R"({"isoshade": 1, "function": "high",
     "inputs": {"in": {"type": "any"}},
     "nodes": {"n": {"type": "ifgreater", "value1": "in", "value2": 0, "in1": 1, "in2": 0}},
@@ -92,13 +92,13 @@ TEST_F(Generic, ErrorsOfAnInstanceNameTheCall) {
   EXPECT_NE(text.find("used here, with type vector3"), std::string::npos) << text;
 }
 
-TEST_F(Generic, ParametersOfEffectsHaveOneType) {
+TEST_F(Generic, RejectsGenericEffectParameters) {
   const std::string text = front_end.messages(R"({"isoshade": 1, "effect": "e",
     "parameters": {"p": {"type": "any", "value": 1}}, "passes": [{"name": "a", "color": "p"}]})");
   EXPECT_NE(text.find("unknown-type"), std::string::npos) << text;
 }
 
-TEST_F(Generic, UnusedNodesAreNamedOnce) {
+TEST_F(Generic, UnusedNodesAreReportedOnce) {
   front_end.library.add("library/idle.json", R"({"isoshade": 1, "function": "idle",
     "inputs": {"in": {"type": "any"}}, "nodes": {"lost": {"type": "add", "in1": "in", "in2": 1}},
     "outputs": {"out": "in"}})");

@@ -20,7 +20,7 @@ std::string image(const std::string& ports) {
   return effect("\"color\": {\"type\": \"image\", " + ports + "}");
 }
 
-TEST(CheckImage, FilesAreWrittenOrLinked) {
+TEST(CheckImage, FileIsALiteralOrALink) {
   FrontEnd front_end;
   EXPECT_NE(front_end.check(image(R"("file": "b.png")")), nullptr) << front_end.diagnostics.text();
   EXPECT_NE(front_end.check(image(R"("file": {"link": "map"})")), nullptr) << front_end.diagnostics.text();
@@ -31,14 +31,14 @@ TEST(CheckImage, FilesAreWrittenOrLinked) {
   EXPECT_NE(messages_of(image(R"("filtertype": "linear")")).find("error[missing-port]"), std::string::npos);
 }
 
-TEST(CheckImage, NamesOfParametersAreNoPaths) {
+TEST(CheckImage, RejectsParameterNamesAsPaths) {
   const std::string text = messages_of(image(R"("file": "map")"));
   EXPECT_NE(text.find("write {\"link\": \"map\"}"), std::string::npos) << text;
   EXPECT_EQ(messages_of(image(R"("file": "./map")")), "");
   EXPECT_EQ(messages_of(image(R"("file": "tint")")), "");
 }
 
-TEST(CheckImage, FileNamesAreNothingToComputeWith) {
+TEST(CheckImage, RejectsArithmeticOnFileNames) {
   EXPECT_NE(messages_of(effect(R"("color": {"type": "multiply", "in1": "tint", "in2": "map"})"))
                 .find("error[type-mismatch]"),
             std::string::npos);
@@ -46,20 +46,20 @@ TEST(CheckImage, FileNamesAreNothingToComputeWith) {
             std::string::npos);
 }
 
-TEST(CheckImage, SplinesAreRefusedByWhatThereIs) {
+TEST(CheckImage, RejectsCubicFilterAndListsTheFilters) {
   const std::string text = messages_of(image(R"("file": "b.png", "filtertype": "cubic")"));
   EXPECT_NE(text.find("\"filtertype\" of \"image\" cannot be \"cubic\""), std::string::npos) << text;
   EXPECT_NE(text.find("\"trilinear\""), std::string::npos) << text;
 }
 
-TEST(CheckImage, FunctionsHaveNone) {
+TEST(CheckImage, RejectsImagesInFunctions) {
   EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "inputs": {"uv": {"type": "vector2"}},
     "nodes": {"i": {"type": "image", "file": "a.png", "texcoord": "uv"}}, "outputs": {"out": "i"}})")
                 .find("error[misplaced-node]"),
             std::string::npos);
 }
 
-TEST(CheckImage, MipLevelsAreNoSecondDerivatives) {
+TEST(CheckImage, RejectsDerivativesAsTexcoordsWithMips) {
   FrontEnd front_end;
   const std::string of_image = R"("i": {"type": "image", "file": "a.png", "filtertype": "trilinear"},
 "color": {"type": "ddx", "in": "i"})";
@@ -71,7 +71,7 @@ TEST(CheckImage, MipLevelsAreNoSecondDerivatives) {
   EXPECT_NE(front_end.check(effect(of_derivative + "linear\"}")), nullptr) << front_end.diagnostics.text();
 }
 
-TEST(ImageSlots, AreOneForEachFileAndDecoding) {
+TEST(ImageSlots, AreOnePerFileAndDecoding) {
   FrontEnd front_end;
   const auto typed = front_end.check(effect(R"json("a": {"type": "image", "file": {"link": "map"}},
 "b": {"type": "image", "file": {"link": "map"}, "filtertype": "trilinear"},

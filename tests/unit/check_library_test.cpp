@@ -14,7 +14,7 @@ std::string function(const std::string& name, const std::string& node) {
 const std::string squared = R"({"type": "multiply", "in1": "x", "in2": "x"})";
 std::string calls(const std::string& reference) { return R"({"type": ")" + reference + R"(", "x": "x"})"; }
 
-TEST(CheckLibrary, NamesAndRelativePathsLeadToDocuments) {
+TEST(CheckLibrary, ResolvesNamesAndRelativePaths) {
   FrontEnd front_end;
   front_end.library.add("library/math/square.json", function("square", squared));
   front_end.library.add("library/math/fourth.json", function("fourth", calls("square.json")));
@@ -28,7 +28,7 @@ TEST(CheckLibrary, NamesAndRelativePathsLeadToDocuments) {
   EXPECT_EQ(own->nodes[0].callee->nodes[0].callee->document, "library/math/square.json");
 }
 
-TEST(CheckLibrary, InputsCalledAsFreeKeysCanBeGiven) {
+TEST(CheckLibrary, AcceptsInputsNamedLikeFreeKeys) {
   FrontEnd front_end;
   front_end.library.add("library/odd.json", R"({"isoshade": 1, "function": "odd",
     "inputs": {"extras": {"type": "float"}, "doc": {"type": "float", "value": 2}},
@@ -51,7 +51,7 @@ TEST(CheckLibrary, InputsCalledAsFreeKeysCanBeGiven) {
   EXPECT_TRUE(front_end.diagnostics.all().empty()) << front_end.diagnostics.text();
 }
 
-TEST(CheckLibrary, AnInputCalledTypeHasAWayOut) {
+TEST(CheckLibrary, ExplainsThatAnInputNamedTypeCannotBeSet) {
   FrontEnd front_end;
   front_end.library.add("library/odd.json", R"({"isoshade": 1, "function": "odd",
     "inputs": {"type": {"type": "float"}}, "outputs": {"out": "type"}})");
@@ -69,7 +69,7 @@ TEST(CheckLibrary, EveryDocumentIsCheckedOnce) {
   EXPECT_EQ(graph->nodes[0].callee, graph->nodes[1].callee);
 }
 
-TEST(CheckLibrary, RecursionIsNamedByItsPath) {
+TEST(CheckLibrary, RecursionErrorShowsThePath) {
   FrontEnd front_end;
   front_end.library.add("a.json", function("a", calls("b.json")));
   front_end.library.add("b.json", function("b", calls("c.json")));
@@ -81,13 +81,13 @@ TEST(CheckLibrary, RecursionIsNamedByItsPath) {
 )");
 }
 
-TEST(CheckLibrary, ADocumentMayNotUseItself) {
+TEST(CheckLibrary, RejectsDocumentsThatUseThemselves) {
   FrontEnd front_end;
   EXPECT_NE(front_end.messages(function("a", calls("a.json")), "a.json").find("a.json -> a.json"),
             std::string::npos);
 }
 
-TEST(CheckLibrary, ReferencesStayInTheFolderTree) {
+TEST(CheckLibrary, RejectsReferencesOutsideTheFolderTree) {
   for (const char* reference : {"../secret.json", "/etc/secret.json", "part/../../secret.json"}) {
     FrontEnd front_end;
     front_end.library.add("secret.json", function("secret", squared));
@@ -98,7 +98,7 @@ TEST(CheckLibrary, ReferencesStayInTheFolderTree) {
   }
 }
 
-TEST(CheckLibrary, LibraryNamesCannotLeadOutOfTheLibrary) {
+TEST(CheckLibrary, RejectsLibraryNamesThatLeaveTheLibrary) {
   for (const char* reference : {"../secret", "brdf//x", "/secret", "brdf/", ".", ""}) {
     FrontEnd front_end;
     front_end.library.add("secret.json", function("secret", squared));
@@ -108,7 +108,7 @@ TEST(CheckLibrary, LibraryNamesCannotLeadOutOfTheLibrary) {
   }
 }
 
-TEST(CheckLibrary, LibraryDocumentsReferToTheLibraryOnly) {
+TEST(CheckLibrary, RejectsReferencesFromTheLibraryToUserDocuments) {
   FrontEnd front_end;
   front_end.library.add("mine/own.json", function("own", squared));
   front_end.library.add("library/bad.json", function("bad", calls("../mine/own.json")));
@@ -123,7 +123,7 @@ TEST(CheckLibrary, MissingDocumentsAreReportedAtTheReference) {
       std::string::npos);
 }
 
-TEST(CheckLibrary, OnlyFunctionsAreNodes) {
+TEST(CheckLibrary, RejectsEffectsAsNodes) {
   FrontEnd front_end;
   front_end.library.add("library/material.json", R"({"isoshade": 1, "effect": "material",
     "parameters": {"c": {"type": "color3", "value": [1, 1, 1]}}, "passes": [{"name": "p", "color": "c"}]})");
@@ -131,7 +131,7 @@ TEST(CheckLibrary, OnlyFunctionsAreNodes) {
             std::string::npos);
 }
 
-TEST(CheckLibrary, ErrorsOfAFunctionAreReportedWhereTheyStandAndOnce) {
+TEST(CheckLibrary, FunctionErrorsAreReportedOnceAtTheirSource) {
   FrontEnd front_end;
   front_end.library.add("library/bad.json", function("bad", R"({"type": "floor", "in": "y"})"));
   EXPECT_EQ(front_end.messages(R"({"isoshade": 1, "function": "f", "nodes": {
@@ -148,7 +148,7 @@ TEST(CheckLibrary, ErrorsOfAFunctionAreReportedWhereTheyStandAndOnce) {
   EXPECT_NE(later.text().find("error[broken-function]"), std::string::npos);
 }
 
-TEST(CheckLibrary, LiteralsStayInTheRangeOfTheInput) {
+TEST(CheckLibrary, RejectsLiteralsOutsideTheInputRange) {
   FrontEnd front_end;
   front_end.library.add("library/square.json", function("square", squared));
   EXPECT_EQ(front_end.messages(function("f", R"({"type": "square", "x": 1.5})")),
@@ -161,7 +161,7 @@ library/square.json:1:55: note: declared here
 )");
 }
 
-TEST(CheckLibrary, NamesOfValuesAreNumbersInPorts) {
+TEST(CheckLibrary, EnumNamesInPortsSuggestTheirNumber) {
   const auto messages = [](const std::string& mode) {
     FrontEnd front_end;
     front_end.library.add("library/pick.json", R"({"isoshade": 1, "function": "pick",
@@ -177,7 +177,7 @@ TEST(CheckLibrary, NamesOfValuesAreNumbersInPorts) {
   EXPECT_NE(messages("-1").find("note: it is 0 (first) or 1 (second)"), std::string::npos);
 }
 
-TEST(CheckLibrary, DeepNestingIsRefused) {
+TEST(CheckLibrary, RejectsDeepNesting) {
   FrontEnd front_end;
   for (int i = 0; i < 100; ++i) {
     front_end.library.add("f" + std::to_string(i) + ".json",
@@ -186,7 +186,7 @@ TEST(CheckLibrary, DeepNestingIsRefused) {
   EXPECT_NE(front_end.messages(function("f", calls("f0.json"))).find("error[too-deep]"), std::string::npos);
 }
 
-TEST(CheckLibrary, CallsThatMultiplyWithoutMeasureAreRefused) {
+TEST(CheckLibrary, RejectsExponentialCallTrees) {
   FrontEnd front_end;
   const std::string twice = R"(, "m": )";
   front_end.library.add("f0.json", function("f", squared));

@@ -14,7 +14,7 @@ std::string messages_of(const std::string& document) {
   return front_end.messages(document);
 }
 
-TEST(CheckLights, LightNodesOutsideOfASumAreErrorsWithTheWayOut) {
+TEST(CheckLights, RejectsLightNodesOutsideASumWithAFix) {
   EXPECT_EQ(
       messages_of(effect(R"("l": {"type": "lightcolor"}, "half": {"type": "multiply", "in1": "l", "in2": 0.5},
 "sum": {"type": "sum_lights", "in": "half"}, "color": {"type": "add", "in1": "sum", "in2": "half"})")),
@@ -25,13 +25,13 @@ TEST(CheckLights, LightNodesOutsideOfASumAreErrorsWithTheWayOut) {
 )");
 }
 
-TEST(CheckLights, SumsOfSumsAndSeveralSumsAreFine) {
+TEST(CheckLights, AcceptsNestedAndSeveralSums) {
   EXPECT_EQ(messages_of(effect(R"("l": {"type": "lightcolor"}, "s": {"type": "sum_lights", "in": "l"},
     "ls": {"type": "multiply", "in1": "l", "in2": "s"}, "color": {"type": "sum_lights", "in": "ls"})")),
             "");
 }
 
-TEST(CheckLights, FunctionsTakeSurfaceAndLightAsInputs) {
+TEST(CheckLights, RejectsSurfaceAndLightNodesInFunctions) {
   for (const char* type : {"normal", "texcoord", "lightdirection"}) {
     EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "nodes": {"n": {"type": ")" +
                           std::string(type) + R"("}}, "outputs": {"out": "n"}})")
@@ -41,13 +41,13 @@ TEST(CheckLights, FunctionsTakeSurfaceAndLightAsInputs) {
   }
 }
 
-TEST(CheckLights, SpacesAreChosenFromThoseThatThereAre) {
+TEST(CheckLights, RejectsUnknownSpaces) {
   EXPECT_NE(messages_of(effect(R"("color": {"type": "position", "space": "wrld"})"))
                 .find("error[unknown-choice]: \"space\" of \"position\" cannot be \"wrld\""),
             std::string::npos);
 }
 
-TEST(CheckLights, WhatCannotBeCompiledYetIsSaid) {
+TEST(CheckLights, RejectsMatrixParametersAsUnsupported) {
   EXPECT_NE(
       messages_of(R"({"isoshade": 1, "effect": "e", "parameters": {"f": {"type": "matrix33", "value": [1, 0, 0, 0, 1, 0, 0, 0, 1]},
                            "c": {"type": "color3", "value": [1, 1, 1]}}, "passes": [{"name": "p", "color": "c"}]})")

@@ -15,7 +15,7 @@ std::string messages_of(const std::string& nodes, const std::string& outputs = R
       nodes + "\n},\n\"outputs\": {" + outputs + "}}");
 }
 
-TEST(CheckLinks, UnknownNamesSuggestTheNearestAndSayWhatItIs) {
+TEST(CheckLinks, UnknownNamesSuggestTheNearestAndItsKind) {
   EXPECT_EQ(messages_of(R"("a": {"type": "add", "in1": "alhpa", "in2": 1})"),
             R"(test.json:4:29: error[unknown-node]: there is no node or input "alhpa"
   4 | "a": {"type": "add", "in1": "alhpa", "in2": 1}
@@ -36,7 +36,7 @@ TEST(CheckLinks, UnknownNodeTypesSuggestNodesAndFunctions) {
 )");
 }
 
-TEST(CheckLinks, UnknownPortsListThoseThatThereAre) {
+TEST(CheckLinks, UnknownPortsListTheExistingPorts) {
   EXPECT_EQ(messages_of(R"("a": {"type": "clamp", "in": "alpha", "hihg": 1})"),
             R"(test.json:4:39: error[unknown-port]: "clamp" has no port "hihg"
   4 | "a": {"type": "clamp", "in": "alpha", "hihg": 1}
@@ -45,7 +45,7 @@ TEST(CheckLinks, UnknownPortsListThoseThatThereAre) {
 )");
 }
 
-TEST(CheckLinks, MissingPortsSayWhatBelongsThere) {
+TEST(CheckLinks, MissingPortsShowTheirDocumentation) {
   EXPECT_EQ(messages_of(R"("a": {"type": "mix", "bg": "alpha", "mix": 0.5})"),
             R"(test.json:4:1: error[missing-port]: node "a" ("mix") needs "fg"
   4 | "a": {"type": "mix", "bg": "alpha", "mix": 0.5}
@@ -54,7 +54,7 @@ TEST(CheckLinks, MissingPortsSayWhatBelongsThere) {
 )");
 }
 
-TEST(CheckLinks, SwizzlesAreOfWhatTheValueHas) {
+TEST(CheckLinks, RejectsSwizzlesOfMissingComponents) {
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "normal.xyw"})"),
             R"(test.json:4:30: error[bad-swizzle]: "xyw" is not a valid swizzle of vector3
   4 | "a": {"type": "floor", "in": "normal.xyw"}
@@ -73,7 +73,7 @@ TEST(CheckLinks, SwizzlesAreOfWhatTheValueHas) {
             std::string::npos);
 }
 
-TEST(CheckLinks, OutputsAreNamedOrTheOnlyOne) {
+TEST(CheckLinks, RejectsUnknownOutputs) {
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "alpha"})", R"("out": "a.out")"), "");
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "alpha"})", R"("out": "a.result")"),
             R"(test.json:6:20: error[unknown-output]: "a" has no output "result"
@@ -83,7 +83,7 @@ TEST(CheckLinks, OutputsAreNamedOrTheOnlyOne) {
 )");
 }
 
-TEST(CheckLinks, SeveralOutputsMustBeTold) {
+TEST(CheckLinks, RejectsAmbiguousOutputs) {
   FrontEnd front_end;
   front_end.library.add("library/both.json",
                         R"({"isoshade": 1, "function": "both", "inputs": {"x": {"type": "vector3"}},
@@ -97,7 +97,7 @@ TEST(CheckLinks, SeveralOutputsMustBeTold) {
 )");
 }
 
-TEST(CheckLinks, CirclesAreNamedByTheirPath) {
+TEST(CheckLinks, CycleErrorsShowThePath) {
   EXPECT_EQ(messages_of("\"a\": {\"type\": \"add\", \"in1\": \"b\", \"in2\": 1},\n"
                         "\"b\": {\"type\": \"floor\", \"in\": \"c\"},\n"
                         "\"c\": {\"type\": \"floor\", \"in\": \"b\"},\n"
@@ -115,7 +115,7 @@ test.json:8:51: error[cycle]: the nodes form a cycle: e -> e
 )");
 }
 
-TEST(CheckLinks, OneMistakeIsOneError) {
+TEST(CheckLinks, OneMistakeCausesOneError) {
   FrontEnd front_end;
   front_end.check(R"({"isoshade": 1, "function": "f", "nodes": {
     "a": {"type": "add", "in1": "nowhere", "in2": 1}, "b": {"type": "floor", "in": "a.xyzw"},
@@ -123,7 +123,7 @@ TEST(CheckLinks, OneMistakeIsOneError) {
   EXPECT_EQ(front_end.diagnostics.all().size(), 1u) << front_end.diagnostics.text();
 }
 
-TEST(CheckLinks, NodesThatNoOutputDependsOnAreWarnedOf) {
+TEST(CheckLinks, WarnsOfUnusedNodes) {
   EXPECT_EQ(messages_of(R"("a": {"type": "floor", "in": "alpha"}, "b": {"type": "floor", "in": "a"})"),
             R"(test.json:4:40: warning[unused-node]: no output depends on node "b"
   4 | "a": {"type": "floor", "in": "alpha"}, "b": {"type": "floor", "in": "a"}

@@ -13,7 +13,7 @@ std::string messages_of(const std::string& nodes, const std::string& position) {
       nodes + R"(}, "passes": [{"name": "hull", "color": "tint", "position": ")" + position + R"("}]})");
 }
 
-TEST(CheckPositions, AreVectorsAndKeepTheNodesThatTheyNeed) {
+TEST(CheckPositions, MustBeVector3AndMarkTheirNodesUsed) {
   EXPECT_EQ(messages_of("", "p"), "");
   EXPECT_EQ(messages_of(R"(, "t": {"type": "time"}, "up": {"type": "add", "in1": "p", "in2": "t"})", "up"),
             "");
@@ -24,7 +24,7 @@ TEST(CheckPositions, AreVectorsAndKeepTheNodesThatTheyNeed) {
   EXPECT_NE(messages_of("", "q").find("error[unknown-node]: there is no node or parameter \"q\""), std::string::npos);
 }
 
-TEST(CheckPositions, DependOnNothingThatOnlyPixelsHave) {
+TEST(CheckPositions, RejectNodesThatOnlyPixelsHave) {
   const std::string slope = messages_of(
       R"(, "d": {"type": "fwidth", "in": "p"}, "up": {"type": "add", "in1": "p", "in2": "d"})", "up");
   EXPECT_NE(slope.find("error[misplaced-node]: the \"position\" of a pass cannot depend on \"fwidth\""),
@@ -38,7 +38,7 @@ TEST(CheckPositions, DependOnNothingThatOnlyPixelsHave) {
   EXPECT_EQ(lit.find("light-outside-sum"), std::string::npos) << lit;
 }
 
-TEST(CheckPositions, HaveCornerNormalsThatColorsHaveNot) {
+TEST(CheckPositions, AcceptCornerNormalsUnlikeColors) {
   const std::string nodes = R"(, "c": {"type": "cornernormal2"}, "up": {"type": "add", "in1": "p", "in2": "c"})";
   EXPECT_EQ(messages_of(nodes, "up"), "");
   FrontEnd front_end;

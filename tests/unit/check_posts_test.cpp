@@ -20,7 +20,7 @@ bool says(const std::string& document, const std::string& part) {
   return messages_of(document).find(part) != std::string::npos;
 }
 
-TEST(CheckPosts, SurfacesAndLightsAreNotTheirs) {
+TEST(CheckPosts, RejectsSurfaceAndLightNodes) {
   for (const char* type : {"normal", "lightcolor", "position", "texcoord"})
     EXPECT_TRUE(
         says(post("\"color\": {\"type\": \"" + std::string(type) + "\"}"),
@@ -34,7 +34,7 @@ TEST(CheckPosts, SurfacesAndLightsAreNotTheirs) {
             "");
 }
 
-TEST(CheckPosts, TheScreenIsNobodyElses) {
+TEST(CheckPosts, RejectsScreenNodesOutsidePosts) {
   for (const char* type :
        {"scenecolor", "scenedepth", "worldposition", "viewray", "pixelcoord", "cameraposition"}) {
     const std::string nodes = "\"n\": {\"type\": \"" + std::string(type) + "\"}";
@@ -49,13 +49,13 @@ TEST(CheckPosts, TheScreenIsNobodyElses) {
   }
 }
 
-TEST(CheckPosts, PortsThatDefaultToTheSurfaceMustBeGiven) {
+TEST(CheckPosts, RequiresPortsThatDefaultToTheSurface) {
   EXPECT_TRUE(
       says(post(R"("c": {"type": "cellnoise2d"}, "color": {"type": "combine3", "in1": "c", "to": "color3"})"),
            "error[missing-port]"));
 }
 
-TEST(CheckPosts, TapsAreCountedOnlyUnderTheirSum) {
+TEST(CheckPosts, TapIndexRequiresASumWithAValidRange) {
   EXPECT_TRUE(says(post(R"("i": {"type": "tapindex"}, "color": {"type": "scenecolor", "offsetx": "i"})"),
                    "error[tap-outside-sum]: \"tapindex\" is used outside of sum_taps"));
   const auto sum = [](const std::string& range) {
@@ -76,7 +76,7 @@ TEST(CheckPosts, TapsAreCountedOnlyUnderTheirSum) {
   EXPECT_TRUE(says(sum(R"("last": {"link": "i"})"), "error[not-literal]"));
 }
 
-TEST(CheckPosts, ImagesAreThoseThatTheDocumentLists) {
+TEST(CheckPosts, RejectsUnlistedAndInvalidImages) {
   const std::string glow = R"("color": {"type": "scenecolor", "image": "glow"})";
   EXPECT_EQ(messages_of(post(glow, R"("images": ["glow"], )")), "");
   EXPECT_TRUE(says(post(glow), "error[unknown-image]: the document has no image \"glow\""));
@@ -86,7 +86,7 @@ TEST(CheckPosts, ImagesAreThoseThatTheDocumentLists) {
   EXPECT_TRUE(says(post(glow, R"("images": ["glow", 1], )"), "error[wrong-type]"));
 }
 
-TEST(CheckPosts, GiveAColorAndNothingElse) {
+TEST(CheckPosts, RejectsOutputsOtherThanColor) {
   const std::string color = R"("color": {"type": "scenecolor"}, "d": {"type": "scenedepth"})";
   EXPECT_TRUE(
       says(post(color, "", R"("out": "color")"), "error[unknown-output]: a post has no output \"out\""));
@@ -94,7 +94,7 @@ TEST(CheckPosts, GiveAColorAndNothingElse) {
   EXPECT_EQ(messages_of(post(R"("d": {"type": "scenedepth"})", "", R"("color": "d.linear")")), "");
 }
 
-TEST(CheckPosts, AreSwitchedByOneOfTheirParameters) {
+TEST(CheckPosts, EnabledMustNameAScalarParameter) {
   const auto switched = [](const std::string& name) {
     return post(
         R"("color": {"type": "multiply", "in1": "tint", "in2": "gain"})",

@@ -20,14 +20,14 @@ std::string chain(int length, const std::string& first) {
   return text + R"(}, "outputs": {"out": "n)" + std::to_string(length - 1) + "\"}}";
 }
 
-TEST(CheckScale, AChainOf100000NodesIsCheckedAndLowered) {
+TEST(CheckScale, ChainOf100000NodesIsCheckedAndLowered) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(chain(100'000, "x"));
   EXPECT_EQ(ir::validate(module), "");
   EXPECT_GE(module.functions[0].instructions.size(), 100'000u);
 }
 
-TEST(CheckScale, ACircleOf100000NodesIsNamedInOneLine) {
+TEST(CheckScale, CycleOf100000NodesIsReportedInOneLine) {
   FrontEnd front_end;
   const std::string messages = front_end.messages(chain(100'000, "n99999"));
   EXPECT_NE(messages.find(
@@ -37,7 +37,7 @@ TEST(CheckScale, ACircleOf100000NodesIsNamedInOneLine) {
       << messages.substr(0, 1000);
 }
 
-TEST(CheckScale, ManySumsOverTheSameNodesAreRefused) {
+TEST(CheckScale, RejectsManySumsOverTheSameNodes) {
   std::string text =
       R"({"isoshade": 1, "effect": "e", "nodes": {"l": {"type": "lightcolor"}, "n0": {"type": "floor", "in": "l"},
     "t0": {"type": "floor", "in": "l"}, "s0": {"type": "sum_lights", "in": "l"})";
@@ -56,7 +56,7 @@ TEST(CheckScale, ManySumsOverTheSameNodesAreRefused) {
   EXPECT_LT(seconds() - start, 5);
 }
 
-TEST(CheckScale, ManyErrorsCostLittle) {
+TEST(CheckScale, ManyErrorsAreReportedQuickly) {
   std::string text = R"({"isoshade": 1, "function": "f", "nodes": {"n": {"type": "floor", "in": 1})";
   for (int i = 0; i < 50'000; ++i)
     text += ", \"n" + std::to_string(i) + R"(": {"type": "flor)" + std::to_string(i) + R"(", "inn": "m"})";
@@ -68,7 +68,7 @@ TEST(CheckScale, ManyErrorsCostLittle) {
   EXPECT_EQ(front_end.diagnostics.all().size(), 50u);
 }
 
-TEST(CheckScale, FunctionsWithThousandsOfInputsCannotBeCalledThousandsOfTimes) {
+TEST(CheckScale, RejectsThousandsOfCallsWithThousandsOfInputs) {
   FrontEnd front_end;
   std::string wide = R"({"isoshade": 1, "function": "wide", "inputs": {"x": {"type": "float"})";
   for (int i = 0; i < 5'000; ++i) wide += ", \"i" + std::to_string(i) + R"(": {"type": "float", "value": 1})";
@@ -79,7 +79,7 @@ TEST(CheckScale, FunctionsWithThousandsOfInputsCannotBeCalledThousandsOfTimes) {
             std::string::npos);
 }
 
-TEST(CheckScale, ReferencesOfAnyLengthAreAnswered) {
+TEST(CheckScale, LongReferencesFailQuickly) {
   for (const char* part : {"a/", "./", "../", "a"}) {
     std::string reference;
     while (reference.size() < 1'000'000) reference += part;

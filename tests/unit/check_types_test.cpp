@@ -27,7 +27,7 @@ std::string messages_of(const std::string& node) {
   return front_end.messages(document(node));
 }
 
-TEST(CheckTypes, FloatsFillVectorsAndColours) {
+TEST(CheckTypes, FloatsBroadcastToVectorsAndColours) {
   EXPECT_EQ(type_of(R"("type": "add", "in1": "x", "in2": "x")"), "float");
   EXPECT_EQ(type_of(R"("type": "add", "in1": "x", "in2": "v3")"), "vector3");
   EXPECT_EQ(type_of(R"("type": "add", "in1": "c3", "in2": "x")"), "color3");
@@ -35,14 +35,14 @@ TEST(CheckTypes, FloatsFillVectorsAndColours) {
   EXPECT_EQ(type_of(R"("type": "ifgreater", "value1": "x", "value2": 0, "in1": "v2", "in2": 1)"), "vector2");
 }
 
-TEST(CheckTypes, IntegersAreFloatsWhereTheseAreNeeded) {
+TEST(CheckTypes, IntegersConvertToFloatsWhereNeeded) {
   EXPECT_EQ(type_of(R"("type": "add", "in1": "i", "in2": "i")"), "float");
   EXPECT_EQ(type_of(R"("type": "add", "in1": "i", "in2": "x")"), "float");
   EXPECT_EQ(type_of(R"("type": "ifequal", "value1": "i", "value2": 3, "in1": "b", "in2": true)"), "boolean");
   EXPECT_EQ(type_of(R"("type": "ifequal", "value1": "i", "value2": 0.5, "in1": "i", "in2": 1)"), "");
 }
 
-TEST(CheckTypes, LiteralsTakeTheTypeOfWhatIsLinked) {
+TEST(CheckTypes, LiteralsTakeTheTypeOfLinkedOperands) {
   EXPECT_EQ(type_of(R"("type": "add", "in1": [1, 2, 3], "in2": "c3")"), "color3");
   EXPECT_EQ(type_of(R"("type": "add", "in1": [1, 2, 3], "in2": "x")"), "vector3");
   EXPECT_EQ(type_of(R"("type": "add", "in1": [1, 2], "in2": 3)"), "vector2");
@@ -53,7 +53,7 @@ TEST(CheckTypes, LiteralsTakeTheTypeOfWhatIsLinked) {
   EXPECT_EQ(type_of(R"("type": "constant", "value": true)"), "boolean");
 }
 
-TEST(CheckTypes, ColoursKeepBeingColoursThroughSwizzles) {
+TEST(CheckTypes, RgbSwizzlesOfColoursAreColours) {
   EXPECT_EQ(type_of(R"("type": "floor", "in": "c4.rgb")"), "color3");
   EXPECT_EQ(type_of(R"("type": "floor", "in": "c3.xyz")"), "color3");
   EXPECT_EQ(type_of(R"("type": "floor", "in": "c4.rg")"), "vector2");
@@ -69,7 +69,7 @@ TEST(CheckTypes, VectorsAndColoursDoNotMix) {
 )");
 }
 
-TEST(CheckTypes, PortsSayWhatTheyTake) {
+TEST(CheckTypes, TypeErrorsListTheAcceptedTypes) {
   EXPECT_EQ(
       messages_of(R"("type": "normalize", "in": "x")"),
       R"(test.json:5:34: error[type-mismatch]: "in" of "normalize" takes vector2, vector3 or vector4, not float
@@ -89,7 +89,7 @@ TEST(CheckTypes, PortsSayWhatTheyTake) {
 )");
 }
 
-TEST(CheckTypes, ArraysHaveAsManyNumbersAsTheTypeHasComponents) {
+TEST(CheckTypes, RejectsArraysOfTheWrongLength) {
   EXPECT_EQ(messages_of(R"("type": "add", "in1": "v3", "in2": [1, 2])"),
             R"(test.json:5:42: error[type-mismatch]: "in2" of "add" is vector2, but "in1" is vector3
   5 | "n": {"type": "add", "in1": "v3", "in2": [1, 2]}
@@ -109,7 +109,7 @@ TEST(CheckTypes, ArraysHaveAsManyNumbersAsTheTypeHasComponents) {
 )");
 }
 
-TEST(CheckTypes, NamedTypesMustExistAndFit) {
+TEST(CheckTypes, RejectsUnknownAndUnsuitableTargetTypes) {
   EXPECT_EQ(messages_of(R"("type": "convert", "in": "v3", "to": "colour3")"),
             R"(test.json:5:44: error[unknown-type]: there is no type "colour3"
   5 | "n": {"type": "convert", "in": "v3", "to": "colour3"}
@@ -126,7 +126,7 @@ TEST(CheckTypes, NamedTypesMustExistAndFit) {
             std::string::npos);
 }
 
-TEST(CheckTypes, ComponentsAreCountedFrom0) {
+TEST(CheckTypes, ExtractIndexStartsAtZeroAndIsBounded) {
   EXPECT_EQ(type_of(R"("type": "extract", "in": "v3", "index": 2)"), "float");
   EXPECT_NE(messages_of(R"("type": "extract", "in": "v3", "index": 3)")
                 .find("error[out-of-range]: a vector3 has the components 0 to 2"),
@@ -137,14 +137,14 @@ TEST(CheckTypes, ComponentsAreCountedFrom0) {
             std::string::npos);
 }
 
-TEST(CheckTypes, MatricesTakeVectorsOfTheirSize) {
+TEST(CheckTypes, RejectsVectorsOfAnotherSizeThanTheMatrix) {
   EXPECT_EQ(type_of(R"("type": "transformmatrix", "in": "v3", "mat": "m3")"), "vector3");
   EXPECT_NE(messages_of(R"("type": "transformmatrix", "in": [1, 2, 3, 4], "mat": "m3")")
                 .find("a vector4 needs a matrix44, not a matrix33"),
             std::string::npos);
 }
 
-TEST(CheckTypes, ColorOfAPassIsAColour) {
+TEST(CheckTypes, RejectsVectorsAsPassColor) {
   const auto messages = [](const std::string& color) {
     FrontEnd front_end;
     return front_end.messages(R"({"isoshade": 1, "effect": "e", "nodes": {"n": {"type": "normal"}},
@@ -163,14 +163,14 @@ std::string colored(const std::string& color, const std::string& nodes = "") {
          R"(}, "passes": [{"name": "p", "color": )" + color + "}]}";
 }
 
-TEST(CheckTypes, ColoursAreWrittenInPlace) {
+TEST(CheckTypes, PassColorMayBeALiteral) {
   for (const char* color : {"[1, 0.5, 0]", "[1, 0.5, 0, 1]", "0.5"})
     EXPECT_EQ(FrontEnd().messages(colored(color)), "") << color;
   EXPECT_NE(FrontEnd().messages(colored("[1, 0.5]")).find("3 or 4 numbers, not 2"), std::string::npos);
   EXPECT_NE(FrontEnd().messages(colored("true")).find("error[wrong-type]"), std::string::npos);
 }
 
-TEST(CheckTypes, ArraysAreColoursWhereColoursAreWanted) {
+TEST(CheckTypes, ArraysBecomeColoursWhereColoursAreExpected) {
   const char* made[] = {
       R"("c": {"type": "constant", "value": [1, 0, 0]})",
       R"("c": {"type": "mix", "fg": [1, 0, 0], "bg": [0, 0, 1], "mix": "t"})",

@@ -203,7 +203,7 @@ TEST_F(CliProcess, FilesThatAreNotRegularAreRejectedWithoutBlocking) {
   }
 }
 
-TEST_F(CliProcess, NoInputIsOverwritten) {
+TEST_F(CliProcess, InputsAreNeverOverwritten) {
   file("textured.json",
        R"({"isoshade": 1, "effect": "textured", "parameters": {"t": {"type": "filename", "value": "t.png"}},
     "nodes": {"uv": {"type": "texcoord"}, "c": {"type": "image", "file": {"link": "t"}, "texcoord": "uv"}},

@@ -48,7 +48,7 @@ TEST(Compare, DetectsEveryBitOfEveryChannelAndDepth) {
   }
 }
 
-TEST(Compare, NegativeZeroIsNotZero) {
+TEST(Compare, DistinguishesNegativeZero) {
   Image a = grey_image(1, 1, 0.0f);
   Image b = grey_image(1, 1, -0.0f);
   const auto comparison = compare::compare(a, b);

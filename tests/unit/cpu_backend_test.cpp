@@ -80,7 +80,7 @@ TEST_P(CpuLanes, TransformsEveryVertex) {
   }
 }
 
-TEST_P(CpuLanes, TellsWhatItTookToBuildPrograms) {
+TEST_P(CpuLanes, ReportsProgramBuildTime) {
   const Scene test(64, 64, 5);
   const auto cpu = backend(GetParam(), 2);
   EXPECT_EQ(cpu->build_seconds(), 0);
@@ -162,7 +162,7 @@ TEST(CpuBackend, DrawsTheSameImageWithAnyNumberOfThreads) {
   }
 }
 
-TEST(CpuBackend, DrawsTheBackgroundWhereThereIsNothing) {
+TEST(CpuBackend, DrawsTheBackgroundWithoutTriangles) {
   Scene test(130, 70, 0);
   const Image image = render(*backend("4", 0), test);
   ASSERT_EQ(image.depth.size(), 130u * 70);
@@ -172,13 +172,13 @@ TEST(CpuBackend, DrawsTheBackgroundWhereThereIsNothing) {
   }
 }
 
-TEST(CpuBackend, LeavesTheCallersFloatModeAlone) {
+TEST(CpuBackend, PreservesTheCallersFloatMode) {
   const unsigned before = __builtin_ia32_stmxcsr();
   render(*backend("4", 1), Scene(64, 64, 20));
   EXPECT_EQ((__builtin_ia32_stmxcsr() ^ before) & 0xffc0u, 0u);
 }
 
-TEST(CpuBackend, ReportsLanesThatDoNotExist) {
+TEST(CpuBackend, ReportsUnsupportedLaneCounts) {
   for (const char* lanes : {"3", "32", "lots", "16x2"}) {
     if (lane_count(lanes) && lane_count(lanes)->available()) continue;
     Diagnostics diagnostics;
@@ -190,12 +190,12 @@ TEST(CpuBackend, ReportsLanesThatDoNotExist) {
   }
 }
 
-TEST(CpuBackend, SaysWhatItRunsOn) {
+TEST(CpuBackend, DescriptionNamesLanesAndThreads) {
   const std::string text = backend("4", 1)->description();
   EXPECT_NE(text.find("lanes 4, 1 thread"), std::string::npos) << text;
 }
 
-TEST(Workers, RunEachTaskOnceWithFlushingFloats) {
+TEST(Workers, RunEachTaskOnceWithDenormalsFlushed) {
   tbb::parallel_for(0, 1000, [](int) {});
   for (const int threads : {1, 2, 5}) {
     Workers workers(threads);

@@ -27,7 +27,7 @@ bool holds(const Cache& cache, const std::string& name, const std::string& conte
   return found && read_text(*found).starts_with(contents);
 }
 
-TEST(Cache, FindsWhatWasStored) {
+TEST(Cache, FindsStoredEntries) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -38,7 +38,7 @@ TEST(Cache, FindsWhatWasStored) {
   EXPECT_EQ(count_files(folder.path()), 1);  // no workshop is left
 }
 
-TEST(Cache, DoesNotFindAnEntryThatWasCutShortOrChanged) {
+TEST(Cache, IgnoresTruncatedAndModifiedEntries) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -58,7 +58,7 @@ TEST(Cache, DoesNotFindAnEntryThatWasCutShortOrChanged) {
   EXPECT_TRUE(holds(*cache, "entry", "some contents"));
 }
 
-TEST(Cache, DoesNotFindAnEntryUnderTheNameOfAnother) {
+TEST(Cache, IgnoresEntriesUnderAnotherName) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -69,7 +69,7 @@ TEST(Cache, DoesNotFindAnEntryUnderTheNameOfAnother) {
   EXPECT_FALSE(cache->find("second"));
 }
 
-TEST(Cache, IsNeverSeenHalfWrittenByAnotherProcess) {
+TEST(Cache, StoresEntriesAtomicallyAcrossProcesses) {
   const TestFolder folder;
   const std::string contents(200000, 'x');
   const auto race = [&] {
@@ -85,7 +85,7 @@ TEST(Cache, IsNeverSeenHalfWrittenByAnotherProcess) {
   EXPECT_EQ(count_files(folder.path()), 1);
 }
 
-TEST(Cache, MakesAFolderThatOnlyTheUserCanEnter) {
+TEST(Cache, CreatesAFolderPrivateToTheUser) {
   const TestFolder folder;
   const TestVariable caches("XDG_CACHE_HOME", (folder / "deep/er").c_str());
   Diagnostics diagnostics;
@@ -110,7 +110,7 @@ void expect_unsafe(const std::string& folder) {
   EXPECT_FALSE(diagnostics.has_errors());
 }
 
-TEST(Cache, LeavesAFolderAloneThatOthersCanWriteTo) {
+TEST(Cache, RejectsFoldersWritableByOthers) {
   const TestFolder folder;
   for (const mode_t mode : {0777, 0770, 0702, 01777}) {
     ASSERT_EQ(chmod(folder.path().c_str(), mode), 0);
@@ -122,7 +122,7 @@ TEST(Cache, LeavesAFolderAloneThatOthersCanWriteTo) {
   EXPECT_EQ(Cache::open(folder.path(), diagnostics)->folder(), folder.path());
 }
 
-TEST(Cache, LeavesAFolderAloneThatCanBeReplaced) {
+TEST(Cache, RejectsFoldersThatOthersCanReplace) {
   const TestFolder folder;
   const std::string inner = folder / "open/to/all/cache";
   std::filesystem::create_directories(inner);
@@ -134,14 +134,14 @@ TEST(Cache, LeavesAFolderAloneThatCanBeReplaced) {
   EXPECT_EQ(Cache::open(inner, diagnostics)->folder(), inner);
 }
 
-TEST(Cache, LeavesAFolderOfSomeoneElseAlone) {
+TEST(Cache, RejectsFoldersOwnedByOthers) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
   const TestFolder folder;
   ASSERT_EQ(chown(folder.path().c_str(), 65534, 65534), 0);
   expect_unsafe(folder.path());
 }
 
-TEST(Cache, FollowsNoLink) {
+TEST(Cache, DoesNotFollowSymlinks) {
   const TestFolder folder;
   ASSERT_EQ(mkdir((folder / "precious").c_str(), 0700), 0);
   const std::string key(64, 'a');
@@ -168,7 +168,7 @@ TEST(Cache, FollowsNoLink) {
   EXPECT_TRUE(holds(*cache, name, "contents"));
 }
 
-TEST(Cache, DeletesOnlyItsOwn) {
+TEST(Cache, DeletesOnlyItsOwnFiles) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -188,7 +188,7 @@ TEST(Cache, DeletesOnlyItsOwn) {
   EXPECT_EQ(count_files(folder.path()), 8);
 }
 
-TEST(Cache, IsNoLargerThanItMayBe) {
+TEST(Cache, StaysWithinItsSizeLimit) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -200,7 +200,7 @@ TEST(Cache, IsNoLargerThanItMayBe) {
   EXPECT_EQ(cache->contents().entries, 1u);
 }
 
-TEST(Cache, IsNotHeldUpByWhatStandsInPlaceOfAnEntry) {
+TEST(Cache, ReplacesPipesAndFoldersInPlaceOfEntries) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -219,7 +219,7 @@ TEST(Cache, IsNotHeldUpByWhatStandsInPlaceOfAnEntry) {
   EXPECT_EQ(count_files(folder.path()), 1);
 }
 
-TEST(Cache, WithoutAHomeIsATemporaryFolder) {
+TEST(Cache, UsesATemporaryFolderWithoutAHome) {
   const TestFolder folder;
   const TestVariable caches("XDG_CACHE_HOME", "relative/is/to/be/ignored"),
       temporary("TMPDIR", folder.path().c_str());
@@ -237,13 +237,13 @@ TEST(Cache, WithoutAHomeIsATemporaryFolder) {
   }
 }
 
-TEST(Cache, ReportsAFolderThatCannotBeMade) {
+TEST(Cache, ReportsFoldersThatCannotBeCreated) {
   Diagnostics diagnostics;
   EXPECT_FALSE(Cache::open("/dev/null/nowhere", diagnostics));
   EXPECT_EQ(diagnostics.all().at(0).id, Id::unwritable_cache);
 }
 
-TEST(Cache, ReportsAFullDiskAndKeepsNothing) {
+TEST(Cache, ReportsAFullDiskAndKeepsNoPartialEntry) {
   const TestFolder folder;
   const auto run_out_of_space = [&] {
     Diagnostics diagnostics;
@@ -261,7 +261,7 @@ TEST(Cache, ReportsAFullDiskAndKeepsNothing) {
   EXPECT_EQ(count_files(folder.path()), 0);
 }
 
-TEST(Cache, ClearsAwayWhatACrashLeft) {
+TEST(Cache, RemovesLeftoversOfACrash) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);
@@ -279,7 +279,7 @@ std::string entry_number(int i) {
   return Cache::entry_name(std::string(64 - digits.size(), '0') + digits);
 }
 
-TEST(Cache, ForgetsWhatWasUsedLongestAgo) {
+TEST(Cache, EvictsLeastRecentlyUsedEntries) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto cache = Cache::open(folder.path(), diagnostics);

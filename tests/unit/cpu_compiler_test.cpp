@@ -17,14 +17,14 @@ void write_script(const std::string& path, const std::string& commands) {
   ASSERT_EQ(chmod(path.c_str(), 0755), 0);
 }
 
-TEST(Process, PassesArgumentsAsTheyAre) {
+TEST(Process, PassesArgumentsVerbatim) {
   const auto end = support::run_process({"/bin/echo", "a b", "$(exit)", ";", "*", "'\"", ""});
   ASSERT_TRUE(end);
   EXPECT_EQ(end->status, 0);
   EXPECT_EQ(end->output, "a b $(exit) ; * '\" \n");
 }
 
-TEST(Process, TellsHowItEnded) {
+TEST(Process, ReportsExitStatusAndOutput) {
   EXPECT_EQ(support::run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->status, 3);
   EXPECT_EQ(support::run_process({"/bin/sh", "-c", "echo words >&2; exit 3"})->output, "words\n");
   EXPECT_EQ(support::run_process({"/bin/sh", "-c", "kill -9 $$"})->status, 128 + 9);
@@ -32,14 +32,14 @@ TEST(Process, TellsHowItEnded) {
   EXPECT_FALSE(support::run_process({"/no/such/program"}));
 }
 
-TEST(Process, IsNotHeldUpByWhatItWritesOrReads) {
+TEST(Process, DoesNotBlockOnInputOrLargeOutput) {
   const auto end = support::run_process({"/bin/sh", "-c", "cat; head -c 1000000 /dev/zero; echo end >&2"});
   ASSERT_TRUE(end);
   EXPECT_EQ(end->status, 0);
   EXPECT_EQ(end->output.size(), 64u * 1024);
 }
 
-TEST(Compiler, IsTheOneThatIsNamed) {
+TEST(Compiler, IsTheNamedOne) {
   const TestFolder folder;
   write_script(folder / "named", "echo named compiler 1.0");
   write_script(folder / "c++", "echo first compiler 1.0");
@@ -57,7 +57,7 @@ TEST(Compiler, IsTheOneThatIsNamed) {
   EXPECT_EQ(Compiler::find("c++", diagnostics)->version(), "first compiler 1.0");
 }
 
-TEST(Compiler, IsReportedWhereThereIsNone) {
+TEST(Compiler, ReportsAMissingCompiler) {
   const TestFolder folder;
   const TestVariable variable("ISOSHADE_CXX", nullptr), path("PATH", folder.path().c_str());
   write_text(folder / "c++", "not a program");
@@ -71,7 +71,7 @@ TEST(Compiler, IsReportedWhereThereIsNone) {
   }
 }
 
-TEST(Compiler, IsNotLookedForInTheWorkingFolder) {
+TEST(Compiler, IsNotSearchedInTheWorkingDirectory) {
   const TestFolder folder;
   write_script(folder / "c++", "echo compiler 1.0");
   const std::string here = std::filesystem::current_path();
@@ -82,7 +82,7 @@ TEST(Compiler, IsNotLookedForInTheWorkingFolder) {
   std::filesystem::current_path(here);
 }
 
-TEST(Compiler, HasAnotherIdentityWhenItIsReplaced) {
+TEST(Compiler, IdentityChangesWhenReplaced) {
   const TestFolder folder;
   Diagnostics diagnostics;
   write_script(folder / "c++", "echo compiler 1.0");
@@ -92,7 +92,7 @@ TEST(Compiler, HasAnotherIdentityWhenItIsReplaced) {
   EXPECT_NE(Compiler::find(folder / "c++", diagnostics)->identity(), first);
 }
 
-TEST(Compiler, TellsWhatItCouldNotCompile) {
+TEST(Compiler, ReportsCompileErrors) {
   const TestFolder folder;
   Diagnostics diagnostics;
   const auto compiler = Compiler::find("", diagnostics);
@@ -104,7 +104,7 @@ TEST(Compiler, TellsWhatItCouldNotCompile) {
   EXPECT_NE(diagnostics.text().find("program.cpp:1:1"), std::string::npos) << diagnostics.text();
 }
 
-TEST(Compiler, ThatFailsIsReportedWithItsWordsAndTheWayOut) {
+TEST(Compiler, FailureIsReportedWithItsOutputAndAFix) {
   const TestFolder folder;
   const std::pair<const char*, const char*> endings[] = {{"echo first; echo second; exit 1", "second"},
                                                          {"kill -9 $$", "signal 9"},
@@ -123,7 +123,7 @@ TEST(Compiler, ThatFailsIsReportedWithItsWordsAndTheWayOut) {
   }
 }
 
-TEST(Compiler, ThatDoesNotEndIsEnded) {
+TEST(Compiler, IsEndedAfterTheTimeout) {
   const TestFolder folder;
   write_script(folder / "c++", "[ \"$1\" = --version ] && echo compiler 1.0 && exit\nsleep 100 & sleep 100");
   Diagnostics diagnostics;
@@ -141,7 +141,7 @@ TEST(Compiler, ThatDoesNotEndIsEnded) {
   EXPECT_EQ(diagnostics.all().back().id, Id::no_compiler);
 }
 
-TEST(Compiler, ThatCannotWriteIsToldSo) {
+TEST(Compiler, ReportsAFullDisk) {
   const TestFolder folder;
   write_script(
       folder / "c++",
@@ -152,7 +152,7 @@ TEST(Compiler, ThatCannotWriteIsToldSo) {
   EXPECT_NE(diagnostics.text().find("make room on the disk"), std::string::npos) << diagnostics.text();
 }
 
-TEST(LaneCount, HasTheWidestOfTheMachine) {
+TEST(LaneCount, WidestIsAvailableAndUnknownNamesAreRejected) {
   EXPECT_TRUE(widest_lane_count().available());
   for (const LaneCount& lanes : lane_counts()) {
     EXPECT_EQ(lane_count(lanes.name)->name, lanes.name);

@@ -58,7 +58,7 @@ bool works(KernelStore& store, Diagnostics& diagnostics) {
   return results[0] == 0x41700000 && results[1] == 0 && results[2] == 0x429a0000 && results[3] == 1;
 }
 
-TEST(KernelStore, CompilesOnceAndThenFindsInTheCache) {
+TEST(KernelStore, CompilesOnceAndThenUsesTheCache) {
   const CountedCompiler compiler;
   const TestFolder cache;
   Diagnostics diagnostics;
@@ -71,7 +71,7 @@ TEST(KernelStore, CompilesOnceAndThenFindsInTheCache) {
   EXPECT_EQ(count_files(cache.path()), 1);
 }
 
-TEST(KernelStore, CompilesAgainForOtherLanes) {
+TEST(KernelStore, RecompilesForOtherLaneCounts) {
   const CountedCompiler compiler;
   const TestFolder cache;
   Diagnostics diagnostics;
@@ -82,7 +82,7 @@ TEST(KernelStore, CompilesAgainForOtherLanes) {
   EXPECT_EQ(compiler.runs(), 2);
 }
 
-TEST(KernelStore, CompilesAgainWhatIsDamaged) {
+TEST(KernelStore, RecompilesDamagedEntries) {
   const CountedCompiler compiler;
   const TestFolder cache;
   Diagnostics diagnostics;
@@ -117,7 +117,7 @@ TEST(KernelStore, ServesTwoProcessesAtOnce) {
   EXPECT_EQ(count_files(cache.path()), 1);
 }
 
-TEST(KernelStore, ReportsWhatDoesNotCompileAndServesTheNext) {
+TEST(KernelStore, ReportsCompileErrorsAndContinues) {
   const TestFolder cache;
   Diagnostics diagnostics;
   KernelStore store = make_store("", cache.path());
@@ -157,7 +157,7 @@ TEST(KernelStore, CompilesEqualTextsOnce) {
   EXPECT_EQ(compiler.runs(), 2);
 }
 
-TEST(KernelStore, KeepsTextsUnderHarmlessNames) {
+TEST(KernelStore, SanitizesNamesOfKeptTexts) {
   const TestFolder cache, keep;
   Diagnostics diagnostics;
   KernelStore store = make_store("", cache.path(), "4", keep.path());
@@ -167,7 +167,7 @@ TEST(KernelStore, KeepsTextsUnderHarmlessNames) {
   EXPECT_EQ(read_text(keep / "___up_and_away.vertex.cpp"), vertex_text);
 }
 
-TEST(LanesHeaders, AreTheOnesOfTheSourceTree) {
+TEST(LanesHeaders, MatchTheSourceTree) {
   ASSERT_FALSE(lanes_headers().empty());
   bool main_header = false;
   for (const Header& header : lanes_headers()) {

@@ -48,7 +48,7 @@ TEST_F(Diagram, CalledDocumentsAreClustersUpToADepth) {
   EXPECT_NE(closed.find("<b>a</b>  square"), std::string::npos);
 }
 
-TEST_F(Diagram, AnExpressionIsOneBoxWithItsCode) {
+TEST_F(Diagram, ExpressionIsOneBoxWithItsCode) {
   const std::string text = draw(R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
     "nodes": {"e": {"type": "expression", "code": "a < 2 && b > a ? a : b", "a": "x", "b": 3}},
     "outputs": {"out": "e"}})");
@@ -58,7 +58,7 @@ TEST_F(Diagram, AnExpressionIsOneBoxWithItsCode) {
   EXPECT_NE(text.find("b = 3.0"), std::string::npos);
 }
 
-TEST_F(Diagram, VeryLargeGraphsAreCutAndSaySo) {
+TEST_F(Diagram, VeryLargeGraphsAreTruncatedWithANote) {
   std::string nodes = R"("n0": {"type": "add", "in1": "x", "in2": 1})";
   for (int i = 1; i < 3000; ++i)
     nodes += ", \"n" + std::to_string(i) + R"(": {"type": "add", "in1": "n)" + std::to_string(i - 1) +
@@ -81,7 +81,7 @@ std::string chain(int count) {
 }
 
 // Graphviz takes minutes to find places for some hundred boxes, so it is told them.
-TEST_F(Diagram, EveryBoxOfALargeGraphHasAPlaceRightOfWhatItReads) {
+TEST_F(Diagram, LargeGraphsPlaceEachBoxRightOfItsInputs) {
   const std::string text = draw(chain(500));
   EXPECT_NE(text.find("layout=nop"), std::string::npos);
   const size_t boxes = count(text, "[label=<");
@@ -102,11 +102,11 @@ TEST_F(Diagram, EveryBoxOfALargeGraphHasAPlaceRightOfWhatItReads) {
   EXPECT_EQ(links, 1000u);
 }
 
-TEST_F(Diagram, GraphvizLaysOutSmallGraphs) {
+TEST_F(Diagram, SmallGraphsAreLaidOutByGraphviz) {
   EXPECT_EQ(draw(chain(100)).find("layout="), std::string::npos);
 }
 
-TEST_F(Diagram, VeryManyInputsAreCut) {
+TEST_F(Diagram, ManyInputsAreTruncated) {
   std::string inputs = R"("x": {"type": "float"})";
   for (int i = 0; i < 5000; ++i) inputs += ", \"x" + std::to_string(i) + R"(": {"type": "float"})";
   const std::string text = draw(R"({"isoshade": 1, "function": "f", "inputs": {)" + inputs +
@@ -115,7 +115,7 @@ TEST_F(Diagram, VeryManyInputsAreCut) {
   EXPECT_LT(count(text, "[label=<"), 2100u);
 }
 
-TEST_F(Diagram, WordsOfADocumentAreNoMarkup) {
+TEST_F(Diagram, DocumentTextIsEscaped) {
   const std::string evil = R"(</b><img src=\"/etc/passwd\"/>\" ] } \\n &amp; -> \u202e)";
   const std::string text = draw(R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
     "nodes": {"c": {"type": "combine3", "in1": "x", "to": "color3", "doc": ")" +

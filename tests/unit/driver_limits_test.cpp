@@ -68,7 +68,7 @@ std::string sum(int terms) {
          R"(}, "outputs": {"out": "a)" + std::to_string(terms - 1) + "\"}}";
 }
 
-TEST_F(Limits, ProgramsThatDriversWouldExpandWithoutMeasureAreRefusedAtTheNode) {
+TEST_F(Limits, RejectsProgramsThatExpandTooFarAtTheNode) {
   const Program program = compile(twice(16));
   EXPECT_FALSE(bears(program, Target::vulkan));
   ASSERT_EQ(diagnostics.all().size(), 1u);
@@ -83,7 +83,7 @@ TEST_F(Limits, ProgramsThatDriversWouldExpandWithoutMeasureAreRefusedAtTheNode) 
   EXPECT_NE(report.notes[0].message.find("node \"p\""), std::string::npos);
 }
 
-TEST_F(Limits, EachTargetHasItsOwn) {
+TEST_F(Limits, EachTargetHasItsOwnLimit) {
   EXPECT_TRUE(bears(compile(twice(12)), Target::vulkan)) << diagnostics.text();
   const Program program = compile(twice(15));
   EXPECT_FALSE(bears(program, Target::vulkan));
@@ -93,7 +93,7 @@ TEST_F(Limits, EachTargetHasItsOwn) {
   EXPECT_TRUE(bears(larger, Target::cpu));
 }
 
-TEST_F(Limits, CppHasALimitOfItsText) {
+TEST_F(Limits, CppTextSizeIsLimited) {
   EXPECT_TRUE(bears(compile(sum(12'000)), Target::cpu)) << diagnostics.text();
   const Program program = compile(sum(20'000));
   EXPECT_FALSE(bears(program, Target::cpu));
@@ -102,7 +102,7 @@ TEST_F(Limits, CppHasALimitOfItsText) {
   EXPECT_TRUE(bears(program, Target::interpreter)) << diagnostics.text();
 }
 
-TEST_F(Limits, ExactDivisionsCountAsWhatTheyBecome) {
+TEST_F(Limits, ExactDivisionsCountTheirExpansion) {
   std::string text = sum(1000);
   for (size_t at = 0; (at = text.find("multiply", at)) != std::string::npos;) text.replace(at, 8, "divide");
   const Program program = compile(text);
@@ -110,7 +110,7 @@ TEST_F(Limits, ExactDivisionsCountAsWhatTheyBecome) {
   EXPECT_FALSE(bears(program, Target::vulkan, Division::exact));
 }
 
-TEST_F(Limits, CppOfLargeProgramsKeepsFunctionsAsCallsAndHasNoLongOne) {
+TEST_F(Limits, LargeProgramsBecomeShortNoinlineCppFunctions) {
   const std::string deep = cpp(compile(twice(16)));
   EXPECT_GE(count(deep, "[[gnu::noinline]] static"), 3u);
   const std::string text = cpp(compile(sum(5000)));
@@ -123,13 +123,13 @@ TEST_F(Limits, CppOfLargeProgramsKeepsFunctionsAsCallsAndHasNoLongOne) {
   EXPECT_LT(longest, 80u);
 }
 
-TEST_F(Limits, CppOfOtherProgramsIsInlined) {
+TEST_F(Limits, SmallProgramsBecomeInlinedCpp) {
   EXPECT_EQ(count(cpp(compile(twice(8))), "noinline"), 0u);
   EXPECT_EQ(count(cpp(compile(sum(500))), "noinline"), 0u);
 }
 
 // SPIR-V takes 255 parameters of a function.
-TEST_F(Limits, FunctionsOfManyInputsTakeThemInStructs) {
+TEST_F(Limits, ManyInputsArePassedInStructs) {
   std::string inputs = R"("x0": {"type": "float"})",
               nodes = R"("a0": {"type": "add", "in1": "x0", "in2": 1})";
   constexpr int many = 1000;

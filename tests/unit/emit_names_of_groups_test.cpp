@@ -34,7 +34,7 @@ func @eval(%row: int) -> (out: float) {
 })"));
 }
 
-TEST(Groups, OfOneNameShareAStructIfTheirFieldsAreAlike) {
+TEST(Groups, ShareAStructIfNameAndFieldsMatch) {
   const std::string text = shader(ir::valid(R"(
 func @first(%group.x: float) -> (out: float) {
   return %group.x
@@ -58,7 +58,7 @@ func @eval(%row: int) -> (out: float) {
   EXPECT_NE(text.find("float third(Group_1 group)"), std::string::npos) << text;
 }
 
-TEST(Names, AFunctionCalledMainIsNotTheShadersMain) {
+TEST(Names, FunctionNamedMainDoesNotClashWithTheShaderMain) {
   const ir::Module module = ir::valid(R"(
 func @main(%x: float) -> (out: float) {
   %out = fadd %x, %x
@@ -73,7 +73,7 @@ func @eval(%row: int) -> (out: float) {
   EXPECT_NE(cpp_functions(module, module.find("eval")).find("F main_(F x)"), std::string::npos);
 }
 
-TEST(HiddenZero, IsDefinedWhereItIsUsedOnly) {
+TEST(HiddenZero, IsDefinedOnlyWhereUsed) {
   const ir::Module with =
       ir::valid("func @eval(%row: int) -> (out: float) {\n  %out = hidden_zero\n  return %out\n}");
   const ir::Module without =

@@ -44,7 +44,7 @@ void expect_good(const std::string& name, Scope scope) {
   EXPECT_FALSE(name.starts_with("gl_")) << name;
 }
 
-TEST(Names, AreNeverAlikeInAnyOrder) {
+TEST(Names, AreUniqueInAnyOrder) {
   std::vector<std::string> wanted = adversaries();
   std::mt19937 random(1);
   for (const Scope scope : scopes) {
@@ -68,7 +68,7 @@ TEST(Names, AreNeverAlikeInAnyOrder) {
   }
 }
 
-TEST(Names, KeepTheirOwnWhereItIsFreeAndNoWord) {
+TEST(Names, AreUnchangedIfFreeAndNotReserved) {
   for (const char* name :
        {"a", "a_1", "base_color", "roughness", "x0", "Length", "lambda", "sigma", "EdgeWidth"}) {
     for (const Scope scope : scopes) {
@@ -78,7 +78,7 @@ TEST(Names, KeepTheirOwnWhereItIsFreeAndNoWord) {
   }
 }
 
-TEST(Names, AvoidEachWordInTheScopesThatItTakes) {
+TEST(Names, AvoidReservedWordsInTheirScopes) {
   struct Case {
     const char* word;
     bool global, local, field;  ///< whether it is a word there
@@ -97,7 +97,7 @@ TEST(Names, AvoidEachWordInTheScopesThatItTakes) {
   }
 }
 
-TEST(Names, EveryWordOfTheTablesIsAvoidedSomewhere) {
+TEST(Names, EveryTableWordIsReservedInSomeScope) {
   EXPECT_GT(all_words().size(), 500u);
   for (const std::string_view word : all_words()) {
     EXPECT_TRUE(std::ranges::any_of(scopes, [&](Scope scope) { return is_word(word, scope); })) << word;
@@ -118,7 +118,7 @@ std::pair<std::string, std::string> texts(const char* text) {
   return {glsl, cpp_stage(module, entry, lower::Stage::eval, {"", "test"})};
 }
 
-TEST(Names, OfTheWordsOfAProductAreTakenToo) {
+TEST(Names, HighProductsReserveTheNamesOfBothWords) {
   // The text of a high product declares a second variable.
   const auto [glsl, cpp] = texts(R"(
 func @eval(%row: int) -> (out: int) {
@@ -134,7 +134,7 @@ func @eval(%row: int) -> (out: int) {
   EXPECT_NE(cpp.find(" x_low_1 = "), std::string::npos) << cpp;
 }
 
-TEST(Names, AFunctionCalledAsTheRecordOfAStageIsNotThatRecord) {
+TEST(Names, FunctionNamedLikeAStageRecordDoesNotClash) {
   const auto [glsl, cpp] = texts(R"(
 func @EvalResult(%x: float) -> (length: float, out: float) {
   %y = fadd %x, %x

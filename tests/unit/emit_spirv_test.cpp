@@ -49,7 +49,7 @@ TEST(CompileSpirv, TargetsVersion13) {
   EXPECT_EQ(spirv[1], 0x00010300u);
 }
 
-TEST(CompileSpirv, KeepsEveryOperationOfPreciseStatementsUncontracted) {
+TEST(CompileSpirv, MarksPreciseOperationsNoContraction) {
   constexpr uint32_t op_fadd = 129, op_fmul = 133;
   const std::string body =
       "  precise float product = a * b;\n  precise float unused = a + a;\n"
@@ -61,7 +61,7 @@ TEST(CompileSpirv, KeepsEveryOperationOfPreciseStatementsUncontracted) {
   EXPECT_TRUE(Operations(spirv, op_fadd).all_exact());
 }
 
-TEST(CompileSpirv, KeepsEveryOperationUncontractedWhereNothingIsPrecise) {
+TEST(CompileSpirv, MarksAllOperationsNoContractionWithoutPrecise) {
   constexpr uint32_t op_fadd = 129, op_fsub = 131, op_fmul = 133, op_fdiv = 136;
   const std::vector<uint32_t> spirv = compile(fragment(
       "  vec2 v = vec2(a, b) * b;\n  color = vec4(a * b + a, a - b, a / b, v.x * v.y);\n  color += color;\n"));
@@ -72,7 +72,7 @@ TEST(CompileSpirv, KeepsEveryOperationUncontractedWhereNothingIsPrecise) {
 }
 
 // 2^200 paths lead from the last result back to the first: what follows each of them never ends.
-TEST(CompileSpirv, TakesLongChainsOfFunctionsWithSeveralResults) {
+TEST(CompileSpirv, CompilesLongChainsOfMultiResultFunctions) {
   std::string text =
       "func @two(%a: float, %b: float) -> (sum: float, difference: float) {\n"
       "  %s = fadd %a, %b\n  %d = fsub %a, %b\n  return %s, %d\n}\n"
@@ -93,7 +93,7 @@ TEST(CompileSpirv, TakesLongChainsOfFunctionsWithSeveralResults) {
   EXPECT_TRUE(Operations(spirv, op_fadd).all_exact());
 }
 
-TEST(CompileSpirv, ReportsTheFirstErrorOfATextThatDoesNotCompile) {
+TEST(CompileSpirv, ReportsTheFirstCompileError) {
   support::Diagnostics diagnostics;
   const std::string text = fragment("  color = vec4(roughnes);\n  color = 1;\n");
   EXPECT_FALSE(compile_spirv(text, ShaderKind::fragment, diagnostics));
@@ -102,7 +102,7 @@ TEST(CompileSpirv, ReportsTheFirstErrorOfATextThatDoesNotCompile) {
   EXPECT_NE(diagnostics.text().find("roughnes"), std::string::npos) << diagnostics.text();
 }
 
-TEST(CompileSpirv, SaysWhatDoesNotCompile) {
+TEST(CompileSpirv, ErrorsNameTheProgram) {
   support::Diagnostics diagnostics;
   EXPECT_FALSE(compile_spirv(fragment("  color = length;\n"), ShaderKind::fragment, diagnostics,
                              "the pixel stage of \"fur\" (fur.json)"));
@@ -111,19 +111,19 @@ TEST(CompileSpirv, SaysWhatDoesNotCompile) {
       << diagnostics.text();
 }
 
-TEST(CompileSpirv, ReportsATextOfTheWrongKind) {
+TEST(CompileSpirv, ReportsShadersOfTheWrongKind) {
   support::Diagnostics diagnostics;
   EXPECT_FALSE(compile_spirv(fragment("  gl_FragDepth = a;\n"), ShaderKind::vertex, diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());
 }
 
-TEST(CompileSpirvDeathTest, AbortsOnATextThatWouldLetASelectSwallowNan) {
+TEST(CompileSpirvDeathTest, AbortsWithoutSignedZeroInfNanPreserve) {
   support::Diagnostics diagnostics;
   EXPECT_DEATH(compile_spirv("#version 450\nvoid main() {}\n", ShaderKind::vertex, diagnostics),
                "SignedZeroInfNanPreserve");
 }
 
-TEST(CompileSpirv, GivesTheSameWordsInEveryThread) {
+TEST(CompileSpirv, IsDeterministicAcrossThreads) {
   const std::string text =
       fragment("  precise float s = a < b ? a : b;\n  color = vec4(s, sqrt(a), a / b, floor(b));\n");
   const std::vector<uint32_t> expected = compile(text);

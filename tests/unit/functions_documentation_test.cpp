@@ -43,7 +43,7 @@ void expect_told(const Docstrings& docs, const std::string& name, double ulp) {
   EXPECT_NE(docs.at(name).find("\n/// Domain: "), std::string::npos) << name << ":" << docs.at(name);
 }
 
-TEST(Docstrings, SayDomainAndTheErrorThatTheTableHas) {
+TEST(Docstrings, StateTheDomainAndTheErrorOfTheTable) {
   const Docstrings docs = docstrings();
 #define FUNCTION(row, signature, ulp, domain, reference, unit) expect_told(docs, #row, ulp);
 #include "compiler/functions/functions.def"

@@ -31,18 +31,18 @@ float measure(const Vec3& v) {
   return functions::hidden(length(hidden(v)));
 }
 
-TEST(Normalize, GivesZeroForZero) {
+TEST(Normalize, ReturnsZeroForZero) {
   EXPECT_EQ(words(unit({0, 0, 0})), words(Vec3{0, 0, 0}));
   EXPECT_EQ(words(unit({-0.0f, 0, -0.0f})), words(Vec3{-0.0f, 0, -0.0f}));
 }
 
-TEST(Normalize, GivesNanForWhatHasNoDirection) {
+TEST(Normalize, ReturnsNanForNonFiniteVectors) {
   EXPECT_TRUE(std::isnan(unit({inf, 1, 0})[0]));
   EXPECT_TRUE(std::isnan(unit({1, nan, 0})[1]));
   EXPECT_TRUE(std::isnan(unit({nan, nan, nan})[2]));
 }
 
-TEST(Normalize, GivesTheSameAtEveryScale) {
+TEST(Normalize, IsIndependentOfScale) {
   std::mt19937 random(1);
   for (int i = 0; i < 1000; ++i) {
     const auto part = [&] { return 1.0f + static_cast<float>(random() >> 9) * 0x1p-23f; };
@@ -57,7 +57,7 @@ TEST(Normalize, GivesTheSameAtEveryScale) {
   }
 }
 
-TEST(Length, NeitherOverflowsNorUnderflowsOnTheWay) {
+TEST(Length, AvoidsIntermediateOverflowAndUnderflow) {
   EXPECT_EQ(measure({3e30f, 4e30f, 0}), 5e30f);
   EXPECT_EQ(measure({3e-30f, 0, 4e-30f}), 5e-30f);
   EXPECT_EQ(measure({tiny, 0, 0}), tiny);
@@ -69,7 +69,7 @@ TEST(Length, NeitherOverflowsNorUnderflowsOnTheWay) {
   EXPECT_TRUE(std::isnan(measure({1, 0, nan})));
 }
 
-TEST(Refract, GivesZeroUnderTotalReflection) {
+TEST(Refract, ReturnsZeroUnderTotalInternalReflection) {
   const lanes::FpGuard guard;
   const Vec3 grazing = hidden(Vec3{0.99f, -0.14106736f, 0});
   EXPECT_EQ(words(refract(grazing, hidden(Vec3{0, 1, 0}), functions::hidden(1.5f))), words(Vec3{0, 0, 0}));
@@ -77,14 +77,14 @@ TEST(Refract, GivesZeroUnderTotalReflection) {
             words(Vec3{0, 0, 0}));
 }
 
-TEST(Refract, GoesStraightOnBetweenEqualMedia) {
+TEST(Refract, KeepsTheDirectionBetweenEqualMedia) {
   const lanes::FpGuard guard;
   const Vec3 in = hidden(Vec3{0.6f, -0.8f, 0});
   const Vec3 out = refract(in, hidden(Vec3{0, 1, 0}), functions::hidden(1.0f));
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(out[i], in[i], 1e-6);
 }
 
-TEST(Reflect, TurnsTheNormalPart) {
+TEST(Reflect, NegatesTheNormalComponent) {
   const lanes::FpGuard guard;
   EXPECT_EQ(words(reflect(hidden(Vec3{1, -2, 3}), hidden(Vec3{0, 1, 0}))), words(Vec3{1, 2, 3}));
 }
@@ -94,7 +94,7 @@ TEST(Cross, IsRightHanded) {
   EXPECT_EQ(words(cross(hidden(Vec3{1, 0, 0}), hidden(Vec3{0, 1, 0}))), words(Vec3{0, 0, 1}));
 }
 
-TEST(NormalMatrix, KeepsNormalsOutsideUnderMirroring) {
+TEST(NormalMatrix, KeepsNormalsOutwardUnderMirroring) {
   const lanes::FpGuard guard;
   const mat<float, 3> mirror{{hidden(Vec3{-2, 0, 0}), hidden(Vec3{0, 1, 0}), hidden(Vec3{0, 0, 1})}};
   const mat<float, 3> normals = normal_matrix(mirror);
@@ -103,7 +103,7 @@ TEST(NormalMatrix, KeepsNormalsOutsideUnderMirroring) {
   EXPECT_GT(normals[2][2], 0);
 }
 
-TEST(Luminance, OfWhiteIsOne) {
+TEST(Luminance, IsOneForWhiteAndZeroForBlack) {
   const lanes::FpGuard guard;
   EXPECT_EQ(luminance(hidden(Vec3{1, 1, 1})), 1.0f);
   EXPECT_EQ(luminance(hidden(Vec3{0, 0, 0})), 0.0f);
@@ -119,7 +119,7 @@ std::vector<uint32_t> hsv(const Vec3& rgb) {
   return words(rgb_to_hsv(hidden(rgb)));
 }
 
-TEST(HsvToRgb, GivesPureColoursExactly) {
+TEST(HsvToRgb, IsExactForPureColours) {
   const float third = 0.333333343f;
   for (float turns : {0.0f, 1.0f, -2.0f}) {
     EXPECT_EQ(rgb({turns, 1, 1}), words(Vec3{1, 0, 0})) << turns;
@@ -131,13 +131,13 @@ TEST(HsvToRgb, GivesPureColoursExactly) {
   EXPECT_EQ(rgb({nan, 0.5f, 0.5f}), words(Vec3{0.25f, 0.25f, 0.25f}));
 }
 
-TEST(RgbToHsv, HasNoHueForGreysAndNegatives) {
+TEST(RgbToHsv, HueIsZeroForGreysAndNegatives) {
   EXPECT_EQ(hsv({0.3f, 0.3f, 0.3f}), words(Vec3{0, 0, 0.3f}));
   EXPECT_EQ(hsv({0, 0, 0}), words(Vec3{0, 0, 0}));
   EXPECT_EQ(hsv({-1, -2, -3}), words(Vec3{0, 0, -1}));
 }
 
-TEST(RgbToHsv, IsUndoneByHsvToRgb) {
+TEST(RgbToHsv, IsInvertedByHsvToRgb) {
   const lanes::FpGuard guard;
   std::mt19937 random(1);
   const auto part = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
@@ -148,7 +148,7 @@ TEST(RgbToHsv, IsUndoneByHsvToRgb) {
   }
 }
 
-TEST(Rotate2d, TurnsByQuartersExactly) {
+TEST(Rotate2d, IsExactForQuarterTurns) {
   const lanes::FpGuard guard;
   const auto turned = [](float degrees) {
     const float x = functions::hidden(0.1f), y = functions::hidden(0.7f);
@@ -162,7 +162,7 @@ TEST(Rotate2d, TurnsByQuartersExactly) {
   EXPECT_EQ(turned(180), words(Vec2{-0.1f, -0.7f}));
 }
 
-TEST(Place2d, KeepsThePivotButForTheOffset) {
+TEST(Place2d, MovesThePivotOnlyByTheOffset) {
   const lanes::FpGuard guard;
   using Vec2 = vec<float, 2>;
   const Vec2 pivot{functions::hidden(0.5f), functions::hidden(0.25f)};
@@ -171,7 +171,7 @@ TEST(Place2d, KeepsThePivotButForTheOffset) {
   EXPECT_EQ(words(place2d(pivot, pivot, scale, functions::hidden(33), offset)), words(Vec2{0.375f, 1.25f}));
 }
 
-TEST(Inverse, UndoesItsMatrix) {
+TEST(Inverse, TimesTheMatrixIsTheIdentity) {
   const lanes::FpGuard guard;
   std::mt19937 random(1);
   const auto part = [&] { return functions::hidden(static_cast<float>(random() >> 8) * 0x1p-23f - 1); };
@@ -186,21 +186,21 @@ TEST(Inverse, UndoesItsMatrix) {
   }
 }
 
-TEST(Determinant, OfATriangularMatrixIsTheProductOfItsDiagonal) {
+TEST(Determinant, IsTheDiagonalProductOfTriangularMatrices) {
   const lanes::FpGuard guard;
   const mat<float, 3> m{{hidden(Vec3{2, 7, 11}), hidden(Vec3{0, -3, 13}), hidden(Vec3{0, 0, 5})}};
   EXPECT_EQ(determinant(m), -30.0f);
   EXPECT_EQ(determinant(transpose(m)), -30.0f);
 }
 
-TEST(Inverse, OfASingularMatrixIsNotFinite) {
+TEST(Inverse, IsNotFiniteForSingularMatrices) {
   const lanes::FpGuard guard;
   const Vec3 x = hidden(Vec3{1, 2, 3});
   const mat<float, 3> flat = inverse(mat<float, 3>{{x, x, hidden(Vec3{0, 0, 1})}});
   EXPECT_FALSE(std::isfinite(flat[0][0]));
 }
 
-TEST(TransformPoint, AddsTheTranslationThatVectorsLack) {
+TEST(TransformPoint, AddsTheTranslationUnlikeTransformVector) {
   const lanes::FpGuard guard;
   const auto column = [](float x, float y, float z, float w) {
     const Vec3 upper = hidden(Vec3{x, y, z});
@@ -213,7 +213,7 @@ TEST(TransformPoint, AddsTheTranslationThatVectorsLack) {
   EXPECT_EQ(words(transform_normal(m, v)), words(Vec3{-8, 4, 12}));
 }
 
-TEST(Matmul, ActsAsItsFactorsInTurn) {
+TEST(Matmul, AppliesItsFactorsInSequence) {
   const lanes::FpGuard guard;
   const mat<float, 3> turn{{hidden(Vec3{0, 1, 0}), hidden(Vec3{-1, 0, 0}), hidden(Vec3{0, 0, 1})}};
   const mat<float, 3> scale{{hidden(Vec3{2, 0, 0}), hidden(Vec3{0, 3, 0}), hidden(Vec3{0, 0, 5})}};

@@ -28,7 +28,7 @@ const ir::Module& library() {
 
 TEST(Library, IsValidIr) { EXPECT_EQ(ir::validate(library()), ""); }
 
-TEST(Library, HasOneFunctionAVariant) {
+TEST(Library, HasOneFunctionPerVariant) {
   std::set<std::string> names;
   for (const ir::Function& function : library().functions) {
     EXPECT_FALSE(function.is_declaration()) << function.name;
@@ -38,7 +38,7 @@ TEST(Library, HasOneFunctionAVariant) {
 }
 
 // Drivers fold such shapes in ways of their own.
-TEST(Library, LeavesDriversNothingToFold) {
+TEST(Library, ContainsNothingForDriversToFold) {
   using ir::Opcode;
   for (const ir::Function& f : library().functions) {
     std::vector<const ir::Instruction*> origin(f.values.size());
@@ -163,7 +163,7 @@ void expect_variants(std::string_view row, Types<Variants...>) {
       return functions::row(arguments...);                     \
     }                                                          \
   };                                                           \
-  TEST(InterpretedIrHasTheBitsOf, row) { expect_variants<row##_row>(#row, Signatures<float>::signature{}); }
+  TEST(InterpretedIrMatchesCpp, row) { expect_variants<row##_row>(#row, Signatures<float>::signature{}); }
 #include "compiler/functions/functions.def"
 
 }  // namespace

@@ -27,7 +27,7 @@ class Places {
   std::mt19937 random_{1};
 };
 
-TEST(Noise, IsZeroAtWholeCoordinates) {
+TEST(Noise, IsZeroAtIntegerCoordinates) {
   const lanes::FpGuard guard;
   for (float x : {-3.0f, 0.0f, 1.0f, 1e6f, -0x1p30f})
     for (float y : {-2.0f, 5.0f, 0x1p23f}) {
@@ -36,7 +36,7 @@ TEST(Noise, IsZeroAtWholeCoordinates) {
     }
 }
 
-TEST(Noise, StaysInItsRangeAroundZero) {
+TEST(Noise, StaysInRangeWithMeanZero) {
   const lanes::FpGuard guard;
   Places places;
   double sum_2d = 0, sum_3d = 0;
@@ -69,7 +69,7 @@ TEST(Noise, IsContinuousAcrossCells) {
   }
 }
 
-TEST(Noise, TakesWhatHasNoCellForZero) {
+TEST(Noise, TreatsNonFiniteAndHugeCoordinatesAsZero) {
   const lanes::FpGuard guard;
   const float y = 0.3f, z = 0.7f;
   for (float x : {nan, inf, -inf, huge, 0x1p31f, -0x1p31f}) {
@@ -83,7 +83,7 @@ TEST(Noise, TakesWhatHasNoCellForZero) {
   EXPECT_EQ(noise2d(point(last, -last)), 0.0f);
 }
 
-TEST(Noise, HasChannelsOfWhichTheFirstIsTheScalar) {
+TEST(Noise, FirstChannelEqualsTheScalarNoise) {
   const lanes::FpGuard guard;
   Places places;
   int different = 0;  // by chance channels can be the same somewhere
@@ -98,14 +98,14 @@ TEST(Noise, HasChannelsOfWhichTheFirstIsTheScalar) {
   EXPECT_GT(different, 150);
 }
 
-TEST(Fractal, OfOneOctaveIsNoise) {
+TEST(Fractal, EqualsNoiseForOneOctave) {
   const lanes::FpGuard guard;
   const Vec3 p = point(0.3f, -1.7f, 20.1f);
   EXPECT_EQ(fractal3d(p, hidden(1), hidden(2), hidden(0.5f)), noise3d(p));
   EXPECT_EQ(fractal3d_vector3(p, hidden(1), hidden(2), hidden(0.5f))[1], noise3d_vector3(p)[1]);
 }
 
-TEST(Fractal, OfNoOctavesIsZero) {
+TEST(Fractal, IsZeroWithoutOctaves) {
   const lanes::FpGuard guard;
   const Vec3 p = point(0.3f, -1.7f, 20.1f);
   for (float octaves : {0.0f, -5.0f, nan}) {
@@ -114,7 +114,7 @@ TEST(Fractal, OfNoOctavesIsZero) {
   }
 }
 
-TEST(Fractal, AddsOctavesAndStopsAtSixteen) {
+TEST(Fractal, SumsAtMostSixteenOctaves) {
   const lanes::FpGuard guard;
   const Vec3 p = point(0.3f, -1.7f, 20.1f);
   const auto fractal = [&](float octaves) { return fractal3d(p, hidden(octaves), hidden(2), hidden(0.5f)); };
@@ -126,7 +126,7 @@ TEST(Fractal, AddsOctavesAndStopsAtSixteen) {
   EXPECT_EQ(fractal(inf), fractal(16));
 }
 
-TEST(CellNoise, IsOneNumberACell) {
+TEST(CellNoise, IsConstantWithinACell) {
   const lanes::FpGuard guard;
   const float cell = cellnoise2d(point(-1, 3));
   EXPECT_EQ(cellnoise2d(point(-tiny, 3.99f)), cell);
@@ -136,7 +136,7 @@ TEST(CellNoise, IsOneNumberACell) {
   EXPECT_NE(cellnoise3d(point(-1, 3, 0)), cellnoise3d(point(-1, 3, 1)));
 }
 
-TEST(CellNoise, FillsTheUnitIntervalEvenly) {
+TEST(CellNoise, IsUniformOverTheUnitInterval) {
   const lanes::FpGuard guard;
   std::vector<int> tenths(10);
   for (int x = -100; x < 100; ++x)
@@ -149,7 +149,7 @@ TEST(CellNoise, FillsTheUnitIntervalEvenly) {
   for (int count : tenths) EXPECT_NEAR(count, 2000, 200);
 }
 
-TEST(WorleyNoise, WithoutJitterIsTheDistanceToTheMiddleOfTheCell) {
+TEST(WorleyNoise, IsTheDistanceToTheCellCentreWithoutJitter) {
   const lanes::FpGuard guard;
   EXPECT_EQ(worleynoise2d(point(3.5f, -0.5f), hidden(0)), 0.0f);
   EXPECT_EQ(worleynoise2d(point(3, 7), hidden(0)), std::sqrt(0.5f));
@@ -159,7 +159,7 @@ TEST(WorleyNoise, WithoutJitterIsTheDistanceToTheMiddleOfTheCell) {
   EXPECT_EQ(three[2], 1.0f);
 }
 
-TEST(WorleyNoise, HasItsDistancesInOrder) {
+TEST(WorleyNoise, ReturnsDistancesInAscendingOrder) {
   const lanes::FpGuard guard;
   Places places;
   for (int i = 0; i < 1000; ++i) {
@@ -172,7 +172,7 @@ TEST(WorleyNoise, HasItsDistancesInOrder) {
   }
 }
 
-TEST(WorleyNoise, OfNanJitterIsInfinite) {
+TEST(WorleyNoise, IsInfiniteForNanJitter) {
   const lanes::FpGuard guard;
   EXPECT_EQ(worleynoise2d(point(0.5f, 0.5f), hidden(nan)), inf);
 }

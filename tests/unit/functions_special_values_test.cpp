@@ -29,7 +29,7 @@ float call(float (*function)(T...), std::type_identity_t<T>... arguments) {
 }
 #define CALL(name, ...) #name "(" #__VA_ARGS__ ")", call(name <float>, __VA_ARGS__)
 
-TEST(SpecialValues, OfFunctionsThatChoose) {
+TEST(SpecialValues, AreCorrectForMinMaxClampAndStep) {
   expect_rows({
       {CALL(min, 1, nan), 1},          {CALL(min, nan, 1), nan},       {CALL(min, 0.0f, -0.0f), 0.0f},
       {CALL(min, -0.0f, 0.0f), -0.0f}, {CALL(min, -inf, 1), -inf},     {CALL(max, 1, nan), 1},
@@ -44,7 +44,7 @@ TEST(SpecialValues, OfFunctionsThatChoose) {
   });
 }
 
-TEST(SpecialValues, OfRounding) {
+TEST(SpecialValues, AreCorrectForRounding) {
   expect_rows({
       {CALL(ceil, 0.25f), 1},
       {CALL(ceil, -0.75f), -0.0f},
@@ -68,7 +68,7 @@ TEST(SpecialValues, OfRounding) {
   });
 }
 
-TEST(SpecialValues, OfRemainders) {
+TEST(SpecialValues, AreCorrectForRemainders) {
   expect_rows({
       {CALL(fract, 2.75f), 0.75f},
       {CALL(fract, -0.25f), 0.75f},
@@ -97,7 +97,7 @@ TEST(SpecialValues, OfRemainders) {
   });
 }
 
-TEST(SpecialValues, ModuloIsExactForLargeQuotientsAndNeverLeavesItsDivisor) {
+TEST(SpecialValues, ModIsExactForLargeQuotientsAndBoundedByItsDivisor) {
   std::mt19937 random(3);
   int large = 0;
   for (int i = 0; i < 200000; ++i) {
@@ -118,7 +118,7 @@ TEST(SpecialValues, ModuloIsExactForLargeQuotientsAndNeverLeavesItsDivisor) {
   EXPECT_GT(large, 10000);
 }
 
-TEST(SpecialValues, WholeTurnsInDegreesChangeNothing) {
+TEST(SpecialValues, Rotate2dIgnoresWholeTurns) {
   std::mt19937 random(4);
   for (int i = 0; i < 20000; ++i) {
     const float degrees = std::ldexp(1 + static_cast<float>(random() >> 9) * 0x1p-23f, 22 + i % 106);
@@ -138,7 +138,7 @@ TEST(SpecialValues, WholeTurnsInDegreesChangeNothing) {
   }
 }
 
-TEST(SpecialValues, OfVectorsAndColours) {
+TEST(SpecialValues, AreCorrectForVectorsAndColours) {
   const lanes::FpGuard guard;
   const auto three = [](float x, float y, float z) { return vec<float, 3>{hidden(x), hidden(y), hidden(z)}; };
   const auto is_nan = [](float x) { return x != x; };
@@ -166,7 +166,7 @@ TEST(SpecialValues, OfVectorsAndColours) {
   EXPECT_EQ(mirror(nan), 0);
 }
 
-TEST(SpecialValues, OfOctaves) {
+TEST(SpecialValues, AreCorrectForOctaves) {
   const lanes::FpGuard guard;
   const vec<float, 3> p{hidden(0.25f), hidden(0.5f), hidden(0.75f)};
   const auto sum = [&](float octaves) { return fractal3d(p, hidden(octaves), 1.9f, 0.9f); };
@@ -181,7 +181,7 @@ TEST(SpecialValues, OfOctaves) {
   EXPECT_NE(sum(15), sum(16));
 }
 
-TEST(SpecialValues, OfBlends) {
+TEST(SpecialValues, AreCorrectForBlends) {
   expect_rows({
       {CALL(mix, 0.1f, 0.7f, 0), 0.1f},
       {CALL(mix, 0.1f, 0.7f, 1), 0.7f},
@@ -212,7 +212,7 @@ TEST(SpecialValues, OfBlends) {
   });
 }
 
-TEST(SpecialValues, OfPowersAndLogarithms) {
+TEST(SpecialValues, AreCorrectForPowersAndLogarithms) {
   expect_rows({
       {CALL(rsqrt, 0.0f), inf},      {CALL(rsqrt, -0.0f), inf},
       {CALL(rsqrt, inf), 0.0f},      {CALL(rsqrt, -1), nan},
@@ -239,7 +239,7 @@ TEST(SpecialValues, OfPowersAndLogarithms) {
   }
 }
 
-TEST(SpecialValues, OfPow) {
+TEST(SpecialValues, AreCorrectForPow) {
   expect_rows({
       {CALL(pow, 2, 10), 1024},
       {CALL(pow, 0.0f, 0.0f), 1},
@@ -276,7 +276,7 @@ TEST(SpecialValues, OfPow) {
   });
 }
 
-TEST(SpecialValues, OfSafepower) {
+TEST(SpecialValues, AreCorrectForSafepower) {
   expect_rows({
       {CALL(safepower, 2, 3), 8},
       {CALL(safepower, -2, 3), -8},
@@ -292,7 +292,7 @@ TEST(SpecialValues, OfSafepower) {
   });
 }
 
-TEST(SpecialValues, OfAngles) {
+TEST(SpecialValues, AreCorrectForTrigonometry) {
   expect_rows({
       {CALL(sin, 0.0f), 0.0f},
       {CALL(sin, inf), nan},
@@ -341,7 +341,7 @@ TEST(SpecialValues, OfAngles) {
   });
 }
 
-TEST(SpecialValues, OfTheTransferFunction) {
+TEST(SpecialValues, AreCorrectForSrgbTransfer) {
   expect_rows({
       {CALL(srgb_encode, 0x1.9a5c38p-9f), 0x1.4b5da4p-5f},  // the threshold is of the linear piece
       {CALL(srgb_encode, 0.0f), 0.0f},
@@ -360,7 +360,7 @@ TEST(SpecialValues, OfTheTransferFunction) {
   });
 }
 
-TEST(ExactForms, AreHardwareDivisionAndSquareRoot) {
+TEST(ExactForms, MatchHardwareDivisionAndSquareRoot) {
   std::mt19937 random(1);
   std::vector<std::pair<float, float>> pairs;
   for (float a : special_floats())

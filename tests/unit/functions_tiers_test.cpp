@@ -25,13 +25,13 @@ std::string expanded(std::string_view row, Tier tier) {
   return ir::print(module);
 }
 
-TEST(Tiers, AreKnownByTheirNames) {
+TEST(Tiers, AreFoundByName) {
   for (const Tier tier : tiers) EXPECT_EQ(find_tier(tier_name(tier)), tier);
   EXPECT_EQ(tier_name(Tier::standard), "default");
   EXPECT_EQ(find_tier("best"), std::nullopt);
 }
 
-TEST(Tiers, HaveBodiesOfTheirOwnWhereTheTableSaysSo) {
+TEST(Tiers, HaveTheirOwnBodiesWhereTheTableSaysSo) {
 #define TIER(tier, row, ulp, domain, unit) \
   EXPECT_NE(expanded(#row, Tier::tier), expanded(#row, Tier::standard)) << #row " " #tier;
 #define FOLLOWS TIER
@@ -39,7 +39,7 @@ TEST(Tiers, HaveBodiesOfTheirOwnWhereTheTableSaysSo) {
   EXPECT_EQ(expanded("mix", Tier::fast), expanded("mix", Tier::standard));
 }
 
-TEST(Tiers, ReachWhatBodiesCall) {
+TEST(Tiers, ApplyToCalledFunctions) {
   // A vector's power is that of each component, and safepower's magnitude a power.
   for (const Variant& variant : variants()) {
     if (variant.row != "safepower" && variant.name != "pow_v3") continue;
@@ -54,14 +54,14 @@ TEST(Tiers, ReachWhatBodiesCall) {
   }
 }
 
-TEST(Tiers, PreciseIsNeverLessExact) {
+TEST(Tiers, PreciseBoundNeverExceedsTheDefault) {
   for (const Variant& variant : variants())
     EXPECT_LE(variant.accuracy[static_cast<size_t>(Tier::precise)].ulp,
               variant.accuracy[static_cast<size_t>(Tier::standard)].ulp)
         << variant.name;
 }
 
-TEST(SpecialValues, OfThePreciseTierAreThoseOfTheDefault) {
+TEST(SpecialValues, InThePreciseTierMatchTheDefault) {
   const float spicy[] = {0.0f, -0.0f, 1,     -1,     2,   0.5f, tiny, -tiny, inf,
                          -inf, nan,   3e38f, -3e38f, 128, -126, 1e6f, -150};
   for (const float x : spicy) {
@@ -94,7 +94,7 @@ TEST(SpecialValues, OfThePreciseTierAreThoseOfTheDefault) {
   }
 }
 
-TEST(SpecialValues, OfTheFastTierAreThoseOfClampedArguments) {
+TEST(SpecialValues, InTheFastTierMatchClampedArguments) {
   for (const float x : {-inf, nan, -1e6f, -126.0f}) {
     EXPECT_EQ(call(fast::exp2<float>, x), 0x1p-126f) << x;
     EXPECT_EQ(call(fast::exp<float>, x), 0x1p-126f) << x;

@@ -52,7 +52,7 @@ std::string with_pass(std::string_view pass) {
   return R"({"isoshade": 1, "effect": "e", "passes": [)" + std::string(pass) + "]}";
 }
 
-TEST(Build, FunctionHasAllItsParts) {
+TEST(Build, ReadsEveryPartOfAFunction) {
   const Graph graph = graph_of(R"({
   "$schema": "../schema/isoshade.schema.json", "isoshade": 1,
   "function": "ggx_d", "doc": "GGX.",
@@ -91,7 +91,7 @@ TEST(Build, FunctionHasAllItsParts) {
   EXPECT_EQ(graph.names.at("b").index, 1u);
 }
 
-TEST(Build, EffectHasParametersAndPasses) {
+TEST(Build, ReadsParametersAndPassesOfAnEffect) {
   const Graph graph = graph_of(R"({"isoshade": 1, "effect": "toon",
   "parameters": {"outline": {"type": "float", "value": 1e-2, "min": 0, "max": 1},
                  "tint": {"type": "color3", "value": [1, 0, 0.5], "min": 0},
@@ -121,7 +121,7 @@ TEST(Build, EffectHasParametersAndPasses) {
   EXPECT_EQ(graph.passes[1].enabled, 0u);
 }
 
-TEST(Build, PostHasOutputs) {
+TEST(Build, ReadsOutputsOfAPost) {
   const Graph graph =
       graph_of(R"({"isoshade": 1, "post": "fog", "parameters": {"d": {"type": "float", "value": 0}},
                                    "nodes": {}, "outputs": {"color": "d"}})");
@@ -129,7 +129,7 @@ TEST(Build, PostHasOutputs) {
   EXPECT_EQ(graph.outputs[0].name, "color");
 }
 
-TEST(Build, PlacesAreThoseOfTheText) {
+TEST(Build, TextRangesMatchTheSource) {
   const std::string text = with_nodes(R"("a": {"type": "add", "in1": 1, "in2": "x"})");
   const Graph graph = graph_of(text);
   const auto at = [&](TextRange place) { return text.substr(place.begin, place.end - place.begin); };
@@ -158,7 +158,7 @@ TEST(Build, LiteralsAreRoundedOnceAndNeverDenormal) {
   EXPECT_FALSE(std::get<Literal>(integers.nodes[0].ports[1].value).integral);
 }
 
-TEST(Build, SeveralErrorsAreReportedInOneRun) {
+TEST(Build, ReportsSeveralErrorsInOneRun) {
   EXPECT_EQ(said(R"({
   "isoshade": 1,
   "function": "ggx",
@@ -188,7 +188,7 @@ a.json:7:3: error[unknown-key]: a function document has no key "noeds"
 )");
 }
 
-TEST(Build, VersionIsRequired) {
+TEST(Build, RequiresTheVersion) {
   EXPECT_EQ(first(R"({"function": "f", "outputs": {"out": "x"}})"),
             "missing-key: the document has no version | { | add \"isoshade\": 1");
   for (const std::string version : {"2", "1.5", "\"1\"", "null"}) {
@@ -198,7 +198,7 @@ TEST(Build, VersionIsRequired) {
   EXPECT_EQ(first(R"({"isoshade": 1.0})"), first(R"({"isoshade": 1})"));
 }
 
-TEST(Build, KindIsExactlyOne) {
+TEST(Build, RequiresExactlyOneKind) {
   EXPECT_EQ(first(R"({"isoshade": 1})"),
             "wrong-kind: a document must be a function, effect, post or scene | { | add \"effect\": \"its_name\", "
             "or another of these keys");
@@ -211,7 +211,7 @@ TEST(Build, KindIsExactlyOne) {
             "wrong-type: \"function\" of a function document must be a string, not a number | 3");
 }
 
-TEST(Build, KindOfADocumentIsToldWithoutBuildingIt) {
+TEST(Build, FindsTheKindWithoutBuilding) {
   Diagnostics diagnostics;
   const auto kind = [&](std::string text) {
     return document_kind(*parse_document(std::make_shared<support::SourceFile>("a.json", text), diagnostics),
@@ -223,7 +223,7 @@ TEST(Build, KindOfADocumentIsToldWithoutBuildingIt) {
   EXPECT_EQ(kind(R"({"post": "p"})"), std::nullopt);
 }
 
-TEST(Build, InputsMustMakeSense) {
+TEST(Build, RejectsInvalidInputs) {
   EXPECT_EQ(first(with_inputs(R"("x": 1)")), "wrong-type: input \"x\" must be an object, not a number | 1");
   EXPECT_EQ(first(with_inputs(R"("x": {})")), "missing-key: input \"x\" needs the key \"type\" | {");
   EXPECT_EQ(first(with_inputs(R"("x y": {"type": "float"})")),
@@ -246,7 +246,7 @@ TEST(Build, InputsMustMakeSense) {
       "missing-key: parameter \"x\" needs the key \"value\" | {");
 }
 
-TEST(Build, ValuesOfIntegersMayHaveNames) {
+TEST(Build, IntegerValuesMayBeEnumNames) {
   const Graph graph = graph_of(R"({"isoshade": 1, "effect": "e", "parameters": {
     "mode": {"type": "integer", "enum": ["one", "two", "three"], "value": "two"},
     "other": {"type": "integer", "enum": ["one", "two"], "value": 0}},
@@ -275,7 +275,7 @@ TEST(Build, ValuesOfIntegersMayHaveNames) {
             "duplicate-name: two values of \"x\" have the name \"a\" | \"a\"");
 }
 
-TEST(Build, NodesMustMakeSense) {
+TEST(Build, RejectsInvalidNodes) {
   EXPECT_EQ(first(with_nodes(R"("a": "add")")),
             "wrong-type: node \"a\" must be an object, not a string | \"add\"");
   EXPECT_EQ(first(with_nodes(R"("a": {"in1": 1})")), "missing-key: node \"a\" needs the key \"type\" | {");
@@ -297,7 +297,7 @@ TEST(Build, NodesMustMakeSense) {
             "duplicate-name: a node has the name \"x\" of an input or parameter | \"x\"");
 }
 
-TEST(Build, PassesMustMakeSense) {
+TEST(Build, RejectsInvalidPasses) {
   EXPECT_EQ(first(with_pass("")), "missing-key: an effect needs at least one pass | []");
   EXPECT_EQ(first(with_pass(R"({"name": "base"})")), "missing-key: a pass needs the key \"color\" | {");
   EXPECT_EQ(first(with_pass(R"({"name": "b c", "color": "x"})")),
@@ -328,12 +328,12 @@ TEST(Build, PassesMustMakeSense) {
             "missing-key: an effect document needs the key \"passes\" | {");
 }
 
-TEST(Build, AFunctionNeedsAnOutput) {
+TEST(Build, RejectsFunctionsWithoutOutputs) {
   EXPECT_EQ(first(R"({"isoshade": 1, "function": "f", "outputs": {}})"),
             "missing-key: a document needs at least one output | {}");
 }
 
-TEST(Links, AreTakenApartAtTheDots) {
+TEST(Links, AreSplitAtDots) {
   Diagnostics diagnostics;
   const auto link = [&](std::string_view text) { return parse_link(nullptr, text, {}, diagnostics); };
   EXPECT_EQ(link("a")->name, "a");
@@ -346,7 +346,7 @@ TEST(Links, AreTakenApartAtTheDots) {
   }
 }
 
-TEST(Ids, AreWordsOfBoundedLength) {
+TEST(Ids, AreIdentifiersOfBoundedLength) {
   for (const std::string_view id : {"a", "_", "A9_z"}) EXPECT_TRUE(is_id(id)) << id;
   for (const std::string_view id : {"", "9", "a-b", "a.b", " a", "\xc3\xa9"}) EXPECT_FALSE(is_id(id)) << id;
   EXPECT_TRUE(is_id(std::string(128, 'a')));
@@ -354,7 +354,7 @@ TEST(Ids, AreWordsOfBoundedLength) {
   EXPECT_FALSE(is_id(std::string_view("a\0", 2)));
 }
 
-TEST(Types, AreFoundByTheirNames) {
+TEST(Types, AreFoundByName) {
   for (const std::string_view name : all_type_names()) EXPECT_EQ(type_name(*find_type(name)), name);
   EXPECT_EQ(find_type("float"), Type::floating);
   EXPECT_EQ(find_type("matrix44"), Type::matrix44);

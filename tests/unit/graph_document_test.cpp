@@ -33,7 +33,7 @@ std::string complaint(std::string text) {
   return diagnostics.text();
 }
 
-TEST(Document, ValuesAreThoseOfTheText) {
+TEST(Document, ParsesEveryKindOfValue) {
   const Document document =
       parse(R"({"n": null, "t": true, "s": "a\n\u00e9\ud83c\udfb1", "l": [1, -2.5], "o": {}})");
   const Json& root = document.root;
@@ -70,7 +70,7 @@ void expect_places(const Document& document, const Json& json) {
   }
 }
 
-TEST(Document, PlacesAreExact) {
+TEST(Document, TextRangesAreExact) {
   for (const char* text :
        {"1", "-12", "1.5e3", "\"a\"", "null", "[]", "{}", "[1]", "[1,2]", "[ 1 , 2\n]\n", "[12\t,-0.5e+7]",
         "[true,false,null]", "[[],[[]],{}]", "{\"a\":1}", "{\"a\" : 1 ,\"b\":[2]}",
@@ -87,7 +87,7 @@ TEST(Document, ByteOrderMarkIsSkipped) {
   EXPECT_EQ(document.span(document.root).line(), 1u);
 }
 
-TEST(Document, IntegersAreToldFromFloats) {
+TEST(Document, DistinguishesIntegersFromFloats) {
   const Document document =
       parse("[1, -9223372036854775808, 9223372036854775807, 9223372036854775808, 1.0, 1e2, -0]");
   const std::vector<Json>& items = document.root.items;
@@ -119,7 +119,7 @@ struct Broken {
   const char* said;
 };
 
-TEST(Document, SaysWhatIsWrongWithTheSyntax) {
+TEST(Document, ReportsSyntaxErrors) {
   const Broken cases[] = {
       {"", "a.json:1:1: error[syntax]: the document is empty\n  1 |\n    | ^\n"},
       {" \n", "a.json:1:1: error[syntax]: the document is empty\n  1 |  \n    | ^\n"},
@@ -226,7 +226,7 @@ a.json:1:7: note: this '[' is not closed
   for (const Broken& broken : cases) EXPECT_EQ(complaint(broken.text), broken.said) << broken.text;
 }
 
-TEST(Document, SaysWhatIsNotUtf8) {
+TEST(Document, ReportsInvalidUtf8) {
   EXPECT_EQ(complaint("[\"a\xff\"]"),
             "a.json:1:4: error[bad-utf8]: the text is not UTF-8 here\n  1 | [\"a\\xff\"]\n    |    ^^^^\n");
   EXPECT_EQ(complaint("[\xff]"), "a.json:1:2: error[syntax]: not a JSON value\n  1 | [\\xff]\n    |  ^^^^\n");
@@ -238,7 +238,7 @@ TEST(Document, SaysWhatIsNotUtf8) {
 )");
 }
 
-TEST(Document, NulBytesAreErrors) {
+TEST(Document, ReportsNulBytes) {
   using namespace std::string_literals;
   EXPECT_EQ(complaint("{\"a\":\0 1}"s),
             "a.json:1:6: error[syntax]: NUL byte in the document\n  1 | {\"a\":\\x00 1}\n    |      ^^^^\n");
@@ -247,7 +247,7 @@ TEST(Document, NulBytesAreErrors) {
   EXPECT_NE(complaint("[\"\0\"]"s).find("control character in a string"), std::string::npos);
 }
 
-TEST(Document, DuplicateKeysAreAllReported) {
+TEST(Document, ReportsEveryDuplicateKey) {
   EXPECT_EQ(complaint("{\"a\": 1, \"b\": 2,\n \"a\": 3, \"\\u0061\": 4}"),
             R"(a.json:2:2: error[duplicate-key]: duplicate key "a"
   2 |  "a": 3, "\u0061": 4}
@@ -264,7 +264,7 @@ a.json:1:2: note: the first one is here
 )");
 }
 
-TEST(Document, PointersNameValues) {
+TEST(Document, JsonPointersNameValues) {
   const Document document = parse(R"({"a/b": [1, {"~": 2}], "c": 3})");
   const auto pointer = [&](std::string_view what) {
     return pointer_at(document, static_cast<uint32_t>(document.source->text().find(what)));
@@ -293,7 +293,7 @@ class ReadSource : public testing::Test {
   Diagnostics diagnostics_;
 };
 
-TEST_F(ReadSource, GivesTheBytesOfTheFile) {
+TEST_F(ReadSource, ReturnsTheBytesOfTheFile) {
   const std::string path = folder_ + "/a.json", text("a\0\r\n\xff", 5);
   std::ofstream(path, std::ios::binary) << text;
   const support::Source file = read_source(path, diagnostics_);
@@ -302,19 +302,19 @@ TEST_F(ReadSource, GivesTheBytesOfTheFile) {
   EXPECT_EQ(file->path(), path);
 }
 
-TEST_F(ReadSource, ReportsFilesThatAreMissing) {
+TEST_F(ReadSource, ReportsMissingFiles) {
   EXPECT_EQ(read_source("no/such", diagnostics_), nullptr);
   EXPECT_EQ(diagnostics_.text(), "error[missing-file]: cannot read \"no/such\": No such file or directory\n");
 }
 
-TEST_F(ReadSource, PointsAtTheDocumentThatNamesTheFile) {
+TEST_F(ReadSource, PointsAtTheReference) {
   read_source("no/such", diagnostics_, {source("\"no/such\""), 0, 9});
   EXPECT_EQ(diagnostics_.text(),
             "a.json:1:1: error[missing-file]: cannot read \"no/such\": No such file or directory\n"
             "  1 | \"no/such\"\n    | ^^^^^^^^^\n");
 }
 
-TEST_F(ReadSource, WaitsForNothingThatADocumentNames) {
+TEST_F(ReadSource, RejectsPipesAndDevicesNamedByDocuments) {
   const std::string pipe = folder_ + "/pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const support::Source document = source("{}");
@@ -325,7 +325,7 @@ TEST_F(ReadSource, WaitsForNothingThatADocumentNames) {
   }
 }
 
-TEST_F(ReadSource, DoesNotCutNamesAtNulBytes) {
+TEST_F(ReadSource, DoesNotTruncateNamesAtNulBytes) {
   std::ofstream(folder_ + "/a") << "x";
   EXPECT_EQ(read_source(folder_ + "/a" + std::string("\0.json", 6), diagnostics_), nullptr);
   EXPECT_EQ(diagnostics_.all().at(0).id, support::Id::missing_file);

@@ -16,7 +16,7 @@ std::string formatted(std::string text) {
   return document ? format(*document) : "";
 }
 
-TEST(Format, PutsOneMemberOnALineWhereItDoesNotFit) {
+TEST(Format, BreaksObjectsThatDoNotFitOnALine) {
   EXPECT_EQ(formatted(R"({"a":1,"b":[1,2.50 , 3e0],"c":{"x":{"y":[]}, "z" : {}}})"),
             R"({
   "a": 1,
@@ -29,7 +29,7 @@ TEST(Format, PutsOneMemberOnALineWhereItDoesNotFit) {
 )");
 }
 
-TEST(Format, FillsTheLineUpToTheLastColumn) {
+TEST(Format, FillsLinesUpToTheLastColumn) {
   const std::string word(99, 'x');
   const std::string fits = "{\n  \"a\": [\"" + word + "\", \"123456\"]\n}\n";
   EXPECT_EQ(fits.find('\n', 2) - 2, 120u);
@@ -38,13 +38,13 @@ TEST(Format, FillsTheLineUpToTheLastColumn) {
   EXPECT_EQ(formatted(longer), "{\n  \"a\": [\n    \"" + word + "x\",\n    \"123456\"\n  ]\n}\n");
 }
 
-TEST(Format, KeepsParagraphsOrderAndSpelling) {
+TEST(Format, KeepsBlankLinesOrderAndSpelling) {
   EXPECT_EQ(
       formatted("{\"nodes\":{\"b\":{\"in\":1.0e+2},\n\n\n\"a\":{\"in\":\"\\u0041\\/\"}\n\n}}"),
       "{\n  \"nodes\": {\n    \"b\": {\"in\": 1.0e+2},\n\n    \"a\": {\"in\": \"\\u0041\\/\"}\n  }\n}\n");
 }
 
-TEST(Format, TakesWhatIsNoObject) {
+TEST(Format, FormatsArraysAndScalars) {
   EXPECT_EQ(formatted(" [ ] "), "[]\n");
   EXPECT_EQ(formatted("3"), "3\n");
 }

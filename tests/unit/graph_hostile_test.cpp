@@ -64,7 +64,7 @@ TEST(Hostile, HugeTextsAreReported) {
   EXPECT_EQ(first_error(std::string(10'000'000, '9')), Id::bad_number);
 }
 
-TEST(Hostile, ManyErrorsAreQuick) {
+TEST(Hostile, ManyErrorsAreReportedQuickly) {
   const std::clock_t begin = std::clock();
   std::string inputs, nodes;
   for (int i = 0; i < 50'000; ++i) {
@@ -79,7 +79,7 @@ TEST(Hostile, ManyErrorsAreQuick) {
   EXPECT_LT((std::clock() - begin) / CLOCKS_PER_SEC, 10);
 }
 
-TEST(Hostile, LongNamesMakeShortMessages) {
+TEST(Hostile, LongNamesAreReported) {
   const std::string name(1'000'000, 'x');
   EXPECT_EQ(first_error(R"({"isoshade":1,"function":")" + name + R"(","outputs":{"out":"a"}})"), Id::bad_id);
   EXPECT_EQ(first_error(R"({"isoshade":1,"function":"f","outputs":{"out":")" + name + R"("}})"),
@@ -88,7 +88,7 @@ TEST(Hostile, LongNamesMakeShortMessages) {
             Id::unknown_key);
 }
 
-TEST(Hostile, MutatedDocumentsEndInAGraphOrADiagnostic) {
+TEST(Hostile, MutatedDocumentsYieldAGraphOrADiagnostic) {
   const std::string good = R"({"$schema": "x", "isoshade": 1, "effect": "toon", "doc": "\u00e9",
   "parameters": {"scale": {"type": "float", "value": 0.5, "min": 0, "max": 1e0}, "map": {"type": "filename", "value": "a.png"}},
   "nodes": {"n": {"type": "multiply", "in1": "scale", "in2": [1, 2.5, -3]}, "m": {"type": "image", "file": {"link": "map"}}},

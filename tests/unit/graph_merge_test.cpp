@@ -37,24 +37,24 @@ std::string merged(const std::string& base, const std::string& changes,
   return text(result, result.root);
 }
 
-TEST(Merge, TakesMembersOfObjectsTogether) {
+TEST(Merge, CombinesMembersRecursively) {
   EXPECT_EQ(merged(R"({"a": 1, "b": {"x": 1, "y": [1, 2]}})", R"({"b": {"y": [3], "z": 4}, "c": true})"),
             R"({"a": 1, "b": {"x": 1, "y": [3], "z": 4}, "c": true})");
   EXPECT_EQ(merged(R"({"a": {"x": 1}})", R"({"a": 2})"), R"({"a": 2})");
   EXPECT_EQ(merged(R"({"a": 2})", R"({"a": {"x": 1}})"), R"({"a": {"x": 1}})");
 }
 
-TEST(Merge, RemovesByNull) {
+TEST(Merge, NullRemovesAMember) {
   EXPECT_EQ(merged(R"({"a": 1, "b": {"x": 1, "y": 2}, "c": 3})", R"({"b": {"x": null}, "c": null})"),
             R"({"a": 1, "b": {"y": 2}})");
 }
 
-TEST(Merge, KeepsTheNullsOfTheBase) {
+TEST(Merge, KeepsNullsOfTheBase) {
   EXPECT_EQ(merged(R"({"a": {"x": null, "y": null, "z": null}})", R"({"a": {"y": null, "z": 1}})"),
             R"({"a": {"x": null, "z": 1}})");
 }
 
-TEST(Merge, LeavesExtrasFree) {
+TEST(Merge, AllowsAnyNullInExtras) {
   support::Diagnostics diagnostics;
   merged(R"({"b": {"extras": {"x": 1}}})", R"({"b": {"extras": {"y": {"z": null}}}, "extras": {"x": null}})",
          &diagnostics);
@@ -63,7 +63,7 @@ TEST(Merge, LeavesExtrasFree) {
   EXPECT_EQ(diagnostics.error_count(), 1u);
 }
 
-TEST(Merge, ReportsANullThatRemovesNothing) {
+TEST(Merge, ReportsNullsThatRemoveNothing) {
   for (const char* changes : {R"({"b": {"xx": null}})", R"({"new": {"xx": null}})"}) {
     support::Diagnostics diagnostics;
     merged(R"({"b": {"x": 1}})", changes, &diagnostics);
@@ -73,7 +73,7 @@ TEST(Merge, ReportsANullThatRemovesNothing) {
   }
 }
 
-TEST(Merge, ReplacesAnObjectThatTellsItsType) {
+TEST(Merge, ReplacesObjectsThatStateTheirType) {
   EXPECT_EQ(merged(R"({"mesh": {"type": "box", "size": 1}})", R"({"mesh": {"type": "sphere"}})"),
             R"({"mesh": {"type": "sphere"}})");
   // Here it is a name.
@@ -81,7 +81,7 @@ TEST(Merge, ReplacesAnObjectThatTellsItsType) {
             R"({"objects": {"a": 1, "type": {}}})");
 }
 
-TEST(Merge, KeepsTheTextOfEveryValue) {
+TEST(Merge, KeepsTheSourceOfEveryValue) {
   support::Diagnostics diagnostics;
   Document first =
       merge(parse("1", R"({"a": 0.1, "b": {"x": 0.1}})"), parse("2", R"({"b": {"y": 0.2}})"), diagnostics);
@@ -98,7 +98,7 @@ TEST(Merge, KeepsTheTextOfEveryValue) {
   EXPECT_EQ(both.to_float(*both.root.find("a")), 0.1f);
 }
 
-TEST(Merge, TakesLittleTimeForManyMembers) {
+TEST(Merge, IsFastForManyMembers) {
   std::string base = "{", changes = "{";
   for (int i = 0; i < 100'000; ++i) {
     base += (i == 0 ? "\"k" : ",\"k") + std::to_string(i) + "\":1";

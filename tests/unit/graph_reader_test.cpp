@@ -22,7 +22,7 @@ class Reader : public testing::Test {
   Diagnostics diagnostics_;
 };
 
-TEST_F(Reader, GivesValuesAndFallbacks) {
+TEST_F(Reader, ReturnsValuesAndDefaults) {
   ObjectReader reader = read(
       R"({"b": true, "s": "x", "n": 0.5, "i": 7, "v": [1, 2], "c": "two", "o": {}, "a": [], "extras": 1})");
   EXPECT_TRUE(reader.boolean("b"));
@@ -47,14 +47,14 @@ TEST_F(Reader, GivesValuesAndFallbacks) {
   EXPECT_EQ(said(), "");
 }
 
-TEST_F(Reader, ReportsWhatIsMissing) {
+TEST_F(Reader, ReportsMissingKeys) {
   ObjectReader reader = read("{}");
   EXPECT_EQ(reader.number("fov"), 0.0f);
   EXPECT_FALSE(reader.finish());
   EXPECT_EQ(said(), "a.json:1:1: error[missing-key]: a camera needs the key \"fov\"\n  1 | {}\n    | ^\n");
 }
 
-TEST_F(Reader, ReportsUnknownKeysWithTheNearestOrAll) {
+TEST_F(Reader, ReportsUnknownKeysWithSuggestions) {
   ObjectReader reader = read(R"({"fov": 1, "fvo": 2, "elephant": 3})");
   reader.number("fov");
   reader.numbers<3>("eye", {}, std::array{0.0f, 0.0f, 0.0f});
@@ -116,7 +116,7 @@ TEST_F(Reader, ReportsNumbersOutOfRange) {
 )");
 }
 
-TEST_F(Reader, ReportsWordsThatAreNoChoice) {
+TEST_F(Reader, ReportsUnknownChoices) {
   ObjectReader reader = read(R"({"cull": "bakc"})");
   reader.choice("cull", {"none", "back", "front"});
   EXPECT_FALSE(reader.finish());
@@ -127,7 +127,7 @@ TEST_F(Reader, ReportsWordsThatAreNoChoice) {
 )");
 }
 
-TEST_F(Reader, SaysOnceThatAValueIsNoObject) {
+TEST_F(Reader, ReportsANonObjectOnce) {
   ObjectReader reader = read("[1]");
   EXPECT_EQ(reader.string("name"), "");
   EXPECT_FALSE(reader.finish());
@@ -135,7 +135,7 @@ TEST_F(Reader, SaysOnceThatAValueIsNoObject) {
             "a.json:1:1: error[wrong-type]: a camera must be an object, not an array\n  1 | [1]\n    | ^^^\n");
 }
 
-TEST_F(Reader, FreeKeysStand) {
+TEST_F(Reader, AcceptsExtrasAndIgnoredKeys) {
   ObjectReader reader = read(R"({"extras": {"any": "thing"}, "$schema": "x"})");
   reader.ignore("$schema");
   EXPECT_TRUE(reader.finish());

@@ -86,7 +86,7 @@ Program eval_program() {
   return program;
 }
 
-class Agreement : public testing::TestWithParam<const char*> {
+class InterpreterAndCpu : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (!cpu::lane_count(GetParam())->available()) GTEST_SKIP() << "this machine has no such registers";
@@ -103,7 +103,7 @@ class Agreement : public testing::TestWithParam<const char*> {
   std::unique_ptr<Backend> interpreted = create();
 };
 
-TEST_P(Agreement, OfImages) {
+TEST_P(InterpreterAndCpu, DrawIdenticalImages) {
   const Program vertex = vertex_program(), pixel = pixel_program();
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{130, 70}}) {
     TestFrame test(width, height, 50);
@@ -114,7 +114,7 @@ TEST_P(Agreement, OfImages) {
   }
 }
 
-TEST_P(Agreement, OfPositions) {
+TEST_P(InterpreterAndCpu, TransformToIdenticalPositions) {
   const Program vertex = vertex_program();
   TestFrame test(64, 64, 20);
   test.frame.programs = {&vertex};
@@ -126,7 +126,7 @@ TEST_P(Agreement, OfPositions) {
   for (size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(same_bits(a[i], b[i]));
 }
 
-TEST_P(Agreement, OfTables) {
+TEST_P(InterpreterAndCpu, EvaluateIdenticalTables) {
   std::vector<int32_t> inputs;
   const float special[] = {0.0f, -0.0f, 1.0f, -3.5f, 1e-20f, 1e30f, __builtin_inff(), __builtin_nanf("")};
   for (const float x : special)
@@ -142,10 +142,10 @@ TEST_P(Agreement, OfTables) {
   EXPECT_EQ(a.size(), inputs.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Interpreter, Agreement, testing::Values("1", "4", "8", "16", "8x2", "16x2"),
+INSTANTIATE_TEST_SUITE_P(LaneCounts, InterpreterAndCpu, testing::Values("1", "4", "8", "16", "8x2", "16x2"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(InterpreterBackend, DrawsTheDepthThatTheProgramComputes) {
+TEST(InterpreterBackend, PixelProgramReadsTheStoredDepth) {
   const Program vertex = vertex_program(), pixel = pixel_program();
   TestFrame test(130, 70, 50);
   test.frame.programs = {&vertex, &pixel};

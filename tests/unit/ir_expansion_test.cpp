@@ -24,16 +24,16 @@ constexpr const char* twice = R"(
     return %b
   })";
 
-TEST(Expansion, CountsNumbersAndWhatIsCalledOnceForEachCall) {
+TEST(Expansion, CountsComponentsAndEveryCall) {
   EXPECT_EQ(operations(valid(twice), "leaf"), 6u);
   EXPECT_EQ(operations(valid(twice), "twice"), 12u);
 }
 
-TEST(Expansion, CountsDivisionsAsItIsTold) {
+TEST(Expansion, AppliesTheGivenCostOfDivisions) {
   EXPECT_EQ(operations(valid(twice), "twice", 40), 2u * (3 + 120));
 }
 
-TEST(Expansion, CountsBothWaysThroughABranchAndOneTurnOfALoop) {
+TEST(Expansion, CountsBothBranchSidesAndOneLoopIteration) {
   EXPECT_EQ(operations(valid(R"(
     func @f(%x: float, %c: bool, %n: int uniform) -> (out: float) {
       %a = branch %c {
@@ -55,7 +55,7 @@ TEST(Expansion, CountsBothWaysThroughABranchAndOneTurnOfALoop) {
 }
 
 // 2^200 operations: the count stops, and takes no longer than the text is long.
-TEST(Expansion, OfDeepCallsEnds) {
+TEST(Expansion, TerminatesForDeepCalls) {
   std::string text = "func @f0(%x: float) -> (out: float) {\n  %s = fadd %x, %x\n  return %s\n}\n";
   for (int i = 1; i <= 200; ++i) {
     const std::string below = std::to_string(i - 1);

@@ -173,7 +173,7 @@ std::string one_op(Opcode op) {
          std::string(row.name) + " " + operands + " return %r }";
 }
 
-TEST(Interpreter, EveryOpIsWhatOpsDefSaysOnSpecialValues) {
+TEST(Interpreter, EveryOpMatchesOpsDefOnSpecialValues) {
   std::set<Opcode> seen;
   for (const Case& c : cases) {
     seen.insert(c.op);
@@ -197,7 +197,7 @@ TEST(Interpreter, ArithmeticOnVectorsIsComponentwise) {
             (Words{f(11), f(22), f(33), f(10), f(20), f(30), f(33), f(33), f(33)}));
 }
 
-TEST(Interpreter, OnlyTheTakenSideOfABranchRuns) {
+TEST(Interpreter, RunsOnlyTheTakenSideOfABranch) {
   const Module module = valid(R"(
     func @f(%x: float, %in_range: bool) -> (out: int) {
       %r: int = branch %in_range {
@@ -213,7 +213,7 @@ TEST(Interpreter, OnlyTheTakenSideOfABranchRuns) {
   EXPECT_EQ(run(module, {inf, 0}), Words{i(-1)});
 }
 
-TEST(Interpreter, LoopsCarryAllValuesAtOnceAndCountFromZero) {
+TEST(Interpreter, LoopsUpdateCarriedValuesAtOnceAndCountFromZero) {
   const Module module = valid(R"(
     func @f(%n: int uniform, %a: float, %b: vec2) -> (a: float, b: vec2, c: vec2, indices: int) {
       %zero: int = constant int 0
@@ -231,7 +231,7 @@ TEST(Interpreter, LoopsCarryAllValuesAtOnceAndCountFromZero) {
   EXPECT_EQ(run(module, {3, f(1), f(2), f(3)}), (Words{f(2), f(2), f(1), f(1), f(2), 3}));
 }
 
-TEST(Interpreter, LoopsInsideLoopsStartAnew) {
+TEST(Interpreter, NestedLoopsRestart) {
   const Module module = valid(R"(
     func @f(%n: int uniform) -> (out: int) {
       %zero: int = constant int 0
@@ -249,7 +249,7 @@ TEST(Interpreter, LoopsInsideLoopsStartAnew) {
   EXPECT_EQ(run(module, {5}), Words{1 + 2 + 4 + 8 + 16});
 }
 
-TEST(Interpreter, ACalleeKeepsNothingBetweenCalls) {
+TEST(Interpreter, CalleesKeepNoStateBetweenCalls) {
   const Module module = valid(R"(
     func @f(%x: int) -> (out: int) {
       %a: int, %b: int = call @g(%x)
@@ -290,7 +290,7 @@ TEST(Interpreter, LoadsClampTheIndexAndFlushDenormals) {
   EXPECT_EQ(at(-1), (Words{nan, denormal}));
 }
 
-TEST(Interpreter, ReportsBreachesWhereAsked) {
+TEST(Interpreter, CountsPreconditionBreachesOnRequest) {
   const auto breaches = [](Opcode op, const Words& operands) {
     const Module module = valid(one_op(op));
     Interpreter interpreter(module, Preconditions::report);
@@ -315,14 +315,14 @@ TEST(Interpreter, ReportsBreachesWhereAsked) {
   EXPECT_EQ(interpreter.breaches(), 1u);
 }
 
-TEST(InterpreterDeathTest, ABreachPrintsTheFunctionItIsIn) {
+TEST(InterpreterDeathTest, BreachPrintsItsFunction) {
   const Module module = valid(R"(
     func @outer(%x: float) -> (out: int) { %r: int = call @inner(%x) return %r }
     func @inner(%x: float) -> (out: int) { %whole: int = ftoi %x return %whole })");
   EXPECT_DEATH(run(module, {nan}), "precondition of %whole: int = ftoi %x\nin\nfunc @inner");
 }
 
-TEST(Interpreter, StopsWhenItsStepsAreUsedUp) {
+TEST(Interpreter, StopsAtItsStepLimit) {
   const Module module = valid(R"(
     func @f(%n: int uniform) -> (out: int) {
       %zero: int = constant int 0
@@ -338,7 +338,7 @@ TEST(Interpreter, StopsWhenItsStepsAreUsedUp) {
   EXPECT_EQ(results[0], 9u);
 }
 
-TEST(Interpreter, ComputesTheSameInAnyFloatModeAndRestoresIt) {
+TEST(Interpreter, IgnoresAndRestoresTheFloatModeOfTheCaller) {
   const Module module = valid(one_op(Opcode::fdiv));
   std::fesetround(FE_UPWARD);
   const Words result = run(module, {f(1), f(3)});
@@ -347,7 +347,7 @@ TEST(Interpreter, ComputesTheSameInAnyFloatModeAndRestoresIt) {
   EXPECT_EQ(result, Words{0x3eaaaaab});
 }
 
-TEST(Interpreter, LongCallChainsNeedNoStack) {
+TEST(Interpreter, LongCallChainsDoNotOverflowTheStack) {
   constexpr int length = 20000;
   std::string text = "func @f0(%x: int) -> (out: int) { %y: int = call @f1(%x) return %y }\n";
   for (int k = 1; k < length; ++k)

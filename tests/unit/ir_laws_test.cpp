@@ -84,7 +84,7 @@ TEST(Laws, HoldForEveryValue) {
   EXPECT_GT(laws, 50u);
 }
 
-TEST(Laws, SayOfEveryOpWhetherItCommutes) {
+TEST(Laws, MarkExactlyTheCommutativeOps) {
   const lanes::FpGuard guard;
   for (int i = 0; i < primitive_count; ++i) {
     const auto op = static_cast<Opcode>(i);
@@ -97,7 +97,7 @@ TEST(Laws, SayOfEveryOpWhetherItCommutes) {
   }
 }
 
-TEST(Laws, SwappedAndOppositeComparisonsSayTheSame) {
+TEST(Laws, SwappedAndOppositeComparisonsAgree) {
   const lanes::FpGuard guard;
   for (int i = 0; i < primitive_count; ++i) {
     const auto op = static_cast<Opcode>(i);

@@ -45,7 +45,7 @@ func @nothing() -> () {
 
 TEST(TextIr, PrintsWhatItParsed) { EXPECT_EQ(print(valid(everything)), everything); }
 
-TEST(TextIr, RandomModulesSurviveTheRoundTrip) {
+TEST(TextIr, RandomModulesRoundTrip) {
   for (uint64_t seed = 0; seed < 500; ++seed) {
     const std::string text = print(RandomModule(seed).make({.library_calls = true}));
     ASSERT_EQ(print(valid(text)), text);
@@ -63,7 +63,7 @@ TEST(TextIr, KeepsTheBitsOfEveryConstant) {
   }
 }
 
-TEST(TextIr, ErrorsSayTheLineAndWhatIsWrong) {
+TEST(TextIr, ErrorsStateTheLineAndTheReason) {
   const auto error_of = [](const std::string& body) {
     std::string error;
     EXPECT_FALSE(
@@ -112,7 +112,7 @@ std::string mutated(std::string text, std::mt19937& random) {
   return text;
 }
 
-TEST(TextIr, GarbledTextGivesAnErrorOrAModuleThatValidationUnderstands) {
+TEST(TextIr, GarbledTextYieldsAnErrorOrAModule) {
   std::mt19937 random(20240229);
   const std::vector<std::string> texts{std::string(everything), print(RandomModule(5).make()),
                                        print(RandomModule(11).make())};

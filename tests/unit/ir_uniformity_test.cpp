@@ -20,7 +20,7 @@ std::vector<std::string> uniform_names(const Module& module) {
 
 using Names = std::vector<std::string>;
 
-TEST(Uniformity, ResultsAreUniformWhereAllOperandsAre) {
+TEST(Uniformity, ResultIsUniformIfAllOperandsAre) {
   EXPECT_EQ(uniform_names(valid(R"(
     buffer b: float
     func @f(%u: float uniform, %v: float, %i: int uniform, %j: int) -> (out: float) {
@@ -37,7 +37,7 @@ TEST(Uniformity, ResultsAreUniformWhereAllOperandsAre) {
             (Names{"one", "uu", "read", "called"}));
 }
 
-TEST(Uniformity, ABranchIsUniformWhereConditionAndYieldsAre) {
+TEST(Uniformity, BranchIsUniformIfConditionAndYieldsAre) {
   EXPECT_EQ(uniform_names(valid(R"(
     func @f(%cu: bool uniform, %cv: bool, %u: float uniform, %v: float) -> (out: float) {
       %both, %one_side = branch %cu { yield %u, %v } else { yield %u, %u }
@@ -50,7 +50,7 @@ TEST(Uniformity, ABranchIsUniformWhereConditionAndYieldsAre) {
             (Names{"both", "inside"}));
 }
 
-TEST(Uniformity, ACarriedValueVariesIfItEverDoes) {
+TEST(Uniformity, LoopCarriedValueVariesIfItEverDoes) {
   EXPECT_EQ(uniform_names(valid(R"(
     func @f(%n: int uniform, %u: float uniform, %v: float) -> (out: float) {
       %steady_out, %first_out, %second_out, %from_v = loop %i < %n, %steady = %u, %first = %u, %second = %u, %w = %v {

@@ -42,9 +42,9 @@ struct Breach {
 
 Function& f(Module& m) { return m.functions[0]; }
 
-TEST(Validator, AcceptsASoundModule) { EXPECT_EQ(validate(parsed(sound)), ""); }
+TEST(Validator, AcceptsAValidModule) { EXPECT_EQ(validate(parsed(sound)), ""); }
 
-TEST(Validator, NamesTheFirstBreachOfEveryRule) {
+TEST(Validator, ReportsTheFirstBreachOfEveryRule) {
   const std::vector<Breach> breaches{
       {"buffer 1: its name", [](Module& m) { m.buffers[0].name = "1"; }},
       {"two buffers", [](Module& m) { m.buffers[0].name = "c"; }},
@@ -137,14 +137,14 @@ TEST(Validator, NamesTheFirstBreachOfEveryRule) {
   }
 }
 
-TEST(Validator, RejectsFunctionsThatReachThemselves) {
+TEST(Validator, RejectsRecursion) {
   EXPECT_EQ(validate(parsed(R"(
     func @f(%x: float) -> (out: float) { %y = call @g(%x) return %y }
     func @g(%x: float) -> (out: float) { %y = call @f(%x) return %y })")),
             "a function calls itself");
 }
 
-TEST(Validator, RejectsBlocksThatNestTooDeep) {
+TEST(Validator, RejectsDeeplyNestedBlocks) {
   const auto nested = [](int depth) {
     Module module;
     module.functions.push_back({});
@@ -172,7 +172,7 @@ TEST(Validator, RejectsBlocksThatNestTooDeep) {
   EXPECT_NE(nested(100000).find("blocks nest too deep"), std::string::npos);
 }
 
-TEST(BuilderDeathTest, NestsNoDeeperThanIsValid) {
+TEST(BuilderDeathTest, AbortsOnNestingDeeperThanValid) {
   const auto nest = [](int branches) {
     Module module;
     module.functions.emplace_back();

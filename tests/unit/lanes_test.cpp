@@ -156,7 +156,7 @@ class Lanes : public testing::TestWithParam<Configuration> {
   const KernelTable& table() const { return GetParam().table(); }
 };
 
-TEST_P(Lanes, ComputeTheBitsOfOneLane) {
+TEST_P(Lanes, MatchOneLaneBitForBit) {
   const KernelTable& reference = kernels_scalar_sse2();
   ASSERT_EQ(table().count, reference.count);
   for (int k = 0; k < reference.count; ++k) {
@@ -176,7 +176,7 @@ TEST_P(Lanes, ComputeTheBitsOfOneLane) {
   }
 }
 
-TEST_P(Lanes, StoreFloatsUnchangedButForNan) {
+TEST_P(Lanes, StoreFloatsUnchangedExceptNan) {
   std::vector<float> from(block + 1), to(block + 1);
   for (int i = 0; i < block; ++i) {
     const int pattern = operand_rows().columns[0][static_cast<size_t>(i)];
@@ -193,7 +193,7 @@ TEST_P(Lanes, StoreFloatsUnchangedButForNan) {
   }
 }
 
-TEST_P(Lanes, BranchRunsOnlySidesThatSomeLaneWants) {
+TEST_P(Lanes, BranchRunsOnlySidesTakenBySomeLane) {
   const int lanes = table().lanes;
   const auto sides = [&](const std::vector<int>& conditions) {
     int then_count = 0, other_count = 0;
@@ -259,18 +259,18 @@ class OneLane : public testing::Test {
   static uint32_t pattern(float value) { return canonical(std::bit_cast<uint32_t>(value)); }
 };
 
-TEST_F(OneLane, RoundsDownToWholeNumbers) {
+TEST_F(OneLane, FloorRoundsDown) {
   expect("floor", [](uint32_t a, uint32_t) { return pattern(std::floor(number(a))); });
 }
 
-TEST_F(OneLane, TakesTheCorrectlyRoundedRoot) {
+TEST_F(OneLane, SquareRootIsCorrectlyRounded) {
   // The root of a float in double, rounded again, is the correctly rounded root in float.
   expect("fsqrt", [](uint32_t a, uint32_t) {
     return pattern(static_cast<float>(std::sqrt(static_cast<double>(number(a)))));
   });
 }
 
-TEST_F(OneLane, MultipliesAndFlushesWhatIsTiny) {
+TEST_F(OneLane, MultiplicationFlushesDenormals) {
   // The product is exact in double. Tiny is what is below the least normal float after rounding as if the
   // exponent had no end.
   expect("fmul", [](uint32_t a, uint32_t b) {
@@ -284,7 +284,7 @@ TEST_F(OneLane, MultipliesAndFlushesWhatIsTiny) {
   });
 }
 
-TEST_F(OneLane, ComparesAsIeeeSays) {
+TEST_F(OneLane, ComparisonsFollowIeee754) {
   expect("flt", [](uint32_t a, uint32_t b) { return number(a) < number(b); });
   expect("fle", [](uint32_t a, uint32_t b) { return number(a) <= number(b); });
   expect("fgt", [](uint32_t a, uint32_t b) { return number(a) > number(b); });
@@ -309,7 +309,7 @@ TEST_F(OneLane, ConvertsBetweenFloatsBitsAndInts) {
   });
 }
 
-TEST_F(OneLane, WrapsIntegers) {
+TEST_F(OneLane, IntegerArithmeticWraps) {
   const auto wide = [](uint32_t a) { return static_cast<int64_t>(static_cast<int32_t>(a)); };
   expect("iadd", [](uint32_t a, uint32_t b) { return a + b; });
   expect("isub", [](uint32_t a, uint32_t b) { return a - b; });
@@ -327,7 +327,7 @@ TEST_F(OneLane, WrapsIntegers) {
   expect("ult", [](uint32_t a, uint32_t b) { return a < b; });
 }
 
-TEST_F(OneLane, ReadsInsideTheTableWhateverTheIndex) {
+TEST_F(OneLane, LoadsClampTheIndex) {
   const auto at = [](uint32_t index) { return std::min<size_t>(index, int_table.size() - 1); };
   expect("load(ints, i)", [&](uint32_t a, uint32_t) { return static_cast<uint32_t>(int_table[at(a)]); });
   expect("load(floats, i)", [&](uint32_t a, uint32_t) { return pattern(float_table()[at(a)]); });
@@ -335,7 +335,7 @@ TEST_F(OneLane, ReadsInsideTheTableWhateverTheIndex) {
 
 // ---- the processor's mode
 
-TEST(FpGuardTest, FlushesDenormalsWhileAliveAndRestoresTheMode) {
+TEST(FpGuard, FlushesDenormalsWhileAliveAndRestoresTheMode) {
   volatile float least = std::numeric_limits<float>::min();
   volatile float half = 0.5f;
   volatile float third = 3.0f;

@@ -36,7 +36,7 @@ std::vector<float> shade(ir::Module module, std::vector<float> arguments, int li
   return Program(std::move(module))(arguments);
 }
 
-TEST(LowerEffect, TakesWhatItUsesAndNothingElse) {
+TEST(LowerEffect, TakesOnlyTheInputsItUses) {
   FrontEnd front_end;
   EXPECT_EQ(
       ir::print(front_end.lower(effect(R"("n": {"type": "normal"},
@@ -59,7 +59,7 @@ TEST(LowerEffect, TakesWhatItUsesAndNothingElse) {
 )");
 }
 
-TEST(LowerEffect, DerivativesAreOpsThatAPassReplaces) {
+TEST(LowerEffect, EmitsDerivativeOps) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(effect(R"("uv": {"type": "texcoord"},
 "slope": {"type": "ddy", "in": "uv.x"}, "width": {"type": "fwidth", "in": "uv.y"},
@@ -70,7 +70,7 @@ TEST(LowerEffect, DerivativesAreOpsThatAPassReplaces) {
     EXPECT_NE(text.find(made), std::string::npos) << made << "\n" << text;
 }
 
-TEST(LowerEffect, Color4IsTheResultAndAFloatIsGrey) {
+TEST(LowerEffect, ReturnsColor4AsIsAndFloatAsGrey) {
   FrontEnd front_end;
   Program whole(front_end.lower(effect("", "alpha")));
   EXPECT_EQ(whole({1, 2, 3, 4}), (std::vector<float>{1, 2, 3, 4}));
@@ -78,7 +78,7 @@ TEST(LowerEffect, Color4IsTheResultAndAFloatIsGrey) {
   EXPECT_EQ(grey({1, 2, 3, 4}), (std::vector<float>{2, 2, 2, 1}));
 }
 
-TEST(LowerEffect, LightsAreSummedInALoopThatHoldsOnlyWhatDependsOnThem) {
+TEST(LowerEffect, LightLoopHoldsOnlyLightDependentNodes) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(effect(R"("n": {"type": "normal"},
 "l": {"type": "lightdirection"},
@@ -105,7 +105,7 @@ TEST(LowerEffect, LightsAreSummedInALoopThatHoldsOnlyWhatDependsOnThem) {
   EXPECT_EQ(shade(module, {9, 9, 9, 0, 1, 2, 1, 2, 3}, 0), (std::vector<float>{1, 4, 9, 1}));
 }
 
-TEST(LowerEffect, TwoSumsThatShareNodesAndASumUnderASumWork) {
+TEST(LowerEffect, SumsMayShareNodesAndNest) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(effect(R"("light": {"type": "lightcolor"},
     "half": {"type": "multiply", "in1": "light", "in2": 0.5},
@@ -118,7 +118,7 @@ TEST(LowerEffect, TwoSumsThatShareNodesAndASumUnderASumWork) {
   EXPECT_EQ(shade(module, {0, 0, 0}, 3), (std::vector<float>{36.75f + 3, 3675 + 3, 3, 1}));
 }
 
-TEST(LowerEffect, ASumStartsFromPlusZero) {
+TEST(LowerEffect, SumStartsFromPositiveZero) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(effect(R"("light": {"type": "lightcolor"},
     "minus": {"type": "multiply", "in1": "light", "in2": -1}, "sum": {"type": "sum_lights", "in": "minus"},
@@ -127,7 +127,7 @@ TEST(LowerEffect, ASumStartsFromPlusZero) {
   EXPECT_GT(shade(module, {0, 0, 0}, 1)[2], 0.0f);
 }
 
-TEST(LowerEffect, PassesAreLoweredOneByOne) {
+TEST(LowerEffect, LowersTheRequestedPass) {
   FrontEnd front_end;
   const auto graph = front_end.check(R"({"isoshade": 1, "effect": "e", "parameters": {
     "a": {"type": "color3", "value": [1, 1, 1]}, "b": {"type": "color3", "value": [1, 1, 1]}},
@@ -137,7 +137,7 @@ TEST(LowerEffect, PassesAreLoweredOneByOne) {
   EXPECT_EQ(lower::lower(*graph, {.pass = 1}).module.functions[0].parameters[0].name, "b");
 }
 
-TEST(LowerEffect, APositionIsAFunctionOfItsOwnThatAsksForNoMore) {
+TEST(LowerEffect, PositionIsASeparateFunctionWithOnlyItsInputs) {
   FrontEnd front_end;
   const auto graph = front_end.check(R"({"isoshade": 1, "effect": "e", "parameters": {
     "tint": {"type": "color3", "value": [1, 1, 1]}, "width": {"type": "float", "value": 1}},

@@ -6,7 +6,7 @@
 namespace isoshade {
 namespace {
 
-TEST(LowerFunction, IsNamedAfterTheDocumentAndItsNodes) {
+TEST(LowerFunction, NamesFollowTheDocumentAndItsNodes) {
   FrontEnd front_end;
   EXPECT_EQ(
       ir::print(front_end.lower(R"({
@@ -31,7 +31,7 @@ TEST(LowerFunction, IsNamedAfterTheDocumentAndItsNodes) {
 )");
 }
 
-TEST(LowerFunction, EveryDocumentThatIsUsedIsOneFunctionBeforeItsCallers) {
+TEST(LowerFunction, EachUsedDocumentIsOneFunctionBeforeItsCallers) {
   FrontEnd front_end;
   const char* square = R"({"isoshade": 1, "function": "square", "inputs": {"x": {"type": "float"}},
     "nodes": {"n": {"type": "multiply", "in1": "x", "in2": "x"}}, "outputs": {"out": "n"}})";
@@ -52,7 +52,7 @@ TEST(LowerFunction, EveryDocumentThatIsUsedIsOneFunctionBeforeItsCallers) {
   EXPECT_EQ(module.functions[2].document, "test.json");
 }
 
-TEST(LowerFunction, DocumentsThatNoUsedNodeCallsAreLeftOut) {
+TEST(LowerFunction, OmitsDocumentsThatNoUsedNodeCalls) {
   FrontEnd front_end;
   front_end.library.add("library/square.json", R"({"isoshade": 1, "function": "square",
     "inputs": {"x": {"type": "float"}}, "outputs": {"out": "x"}})");
@@ -61,7 +61,7 @@ TEST(LowerFunction, DocumentsThatNoUsedNodeCallsAreLeftOut) {
   EXPECT_EQ(module.functions.size(), 1u);
 }
 
-TEST(LowerFunction, NamesOfStagesAndOfLibraryFunctionsAreNotTaken) {
+TEST(LowerFunction, AvoidsNamesOfStagesAndLibraryFunctions) {
   for (const char* name : {"shade", "light_at", "pixel", "iso_dot_v3", "attribute2"}) {
     FrontEnd front_end;
     const auto graph = front_end.check(R"({"isoshade": 1, "function": ")" + std::string(name) +
@@ -72,7 +72,7 @@ TEST(LowerFunction, NamesOfStagesAndOfLibraryFunctionsAreNotTaken) {
   }
 }
 
-TEST(LowerFunction, MatricesAreTheirColumns) {
+TEST(LowerFunction, MatricesBecomeTheirColumns) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(R"({"isoshade": 1, "function": "f",
     "inputs": {"m_1": {"type": "float"}, "m": {"type": "matrix33"}, "v": {"type": "vector3"}},
@@ -101,7 +101,7 @@ TEST(LowerFunction, SeveralOutputsAreNamedByNodeAndOutput) {
   EXPECT_NE(text.find("= extract %a_rest, 1"), std::string::npos) << text;
 }
 
-TEST(LowerFunction, TheSameTextGivesTheSameModule) {
+TEST(LowerFunction, IsDeterministic) {
   const auto once = [] {
     FrontEnd front_end(ISOSHADE_GRAPHS "/library");
     return front_end.lower_file(ISOSHADE_GRAPHS "/materials/cook_torrance.json");

@@ -47,7 +47,7 @@ double ggx_d(double r, double n) {
 }
 double schlick(double f0, double c) { return f0 + (1 - f0) * std::pow(1 - c, 5); }
 
-TEST(LibraryGraphs, EveryShippedGraphIsCheckedWithoutAWord) {
+TEST(LibraryGraphs, EveryShippedGraphChecksWithoutDiagnostics) {
   int count = 0;
   for (const char* folder : {"library", "source_forms", "materials", "effects"}) {
     for (const auto& file :
@@ -62,7 +62,7 @@ TEST(LibraryGraphs, EveryShippedGraphIsCheckedWithoutAWord) {
   EXPECT_GE(count, 12);
 }
 
-TEST(LibraryGraphs, HullsMoveOutwardsAndAwayFromTheViewerWhereverTheNormalPoints) {
+TEST(LibraryGraphs, HullMovesOutwardsAndAwayFromTheViewer) {
   Program hull = load("library/outline/hull_position");
   const auto moved = [&](std::vector<float> normal, int mode) {
     std::vector<float> arguments{1, 2, -10};
@@ -89,7 +89,7 @@ TEST(LibraryGraphs, HullsMoveOutwardsAndAwayFromTheViewerWhereverTheNormalPoints
   EXPECT_FLOAT_EQ(on_screen[2], -12);
 }
 
-TEST(LibraryGraphs, HullsKeepTheWidthOnBothSidesOfACorner) {
+TEST(LibraryGraphs, HullKeepsItsWidthOnBothSidesOfACorner) {
   Program hull = load("library/outline/hull_position");
   const auto sideways = [&](std::array<std::vector<float>, 3> corners) {
     std::vector<float> arguments{0, 0, -10, 0, 0, 1};
@@ -120,7 +120,7 @@ TEST(LibraryGraphs, HullsKeepTheWidthOnBothSidesOfACorner) {
   EXPECT_LE(std::hypot(spike[0], spike[1]), 8.01f);
 }
 
-TEST(LibraryGraphs, GgxIsWithin9UlpDownToAlpha1e_4) {
+TEST(LibraryGraphs, GgxIsWithin9UlpDownToTheLeastAlpha) {
   Program d = load("library/brdf/ggx_d");
   Random random;
   double worst = 0;
@@ -148,7 +148,7 @@ TEST(LibraryGraphs, SchlickIsWithin4UlpAndExactAtBothEnds) {
 }
 
 // A scalar product of unit vectors may exceed 1 by rounding.
-TEST(LibraryGraphs, CosinesALittleAbove1CountAs1) {
+TEST(LibraryGraphs, CosinesSlightlyAbove1CountAs1) {
   Program d = load("library/brdf/ggx_d"), f = load("library/brdf/schlick_f");
   Program ambient = load("library/brdf/ambient_reflectance"), g = load("library/brdf/cook_torrance_g");
   Program separable = load("library/brdf/smith_g_separable"), correlated = load("library/brdf/smith_g_correlated");
@@ -180,7 +180,7 @@ TEST(LibraryGraphs, CosinesALittleAbove1CountAs1) {
   }
 }
 
-TEST(LibraryGraphs, GroovesAreBetween0And1AndNeverUndefined) {
+TEST(LibraryGraphs, CookTorranceGIsAccurateAndWithin0And1) {
   Program g = load("library/brdf/cook_torrance_g");
   EXPECT_EQ(g({0, 0, 0, 0}), Floats{0});
   EXPECT_EQ(g({1, 1, 1, 1}), Floats{1});
@@ -213,7 +213,7 @@ double cook_torrance(Floats n, Floats l, Floats v, double r, double f0) {
   return r * r / (pi * t * t) * schlick(f0, vh) * g / (4 * nl * nv);
 }
 
-TEST(LibraryGraphs, CookTorranceIsItsFormulaIsReciprocalAndFiniteEverywhere) {
+TEST(LibraryGraphs, CookTorranceMatchesItsFormulaAndIsReciprocalAndFinite) {
   Program brdf = load("library/brdf/cook_torrance");
   Random random;
   double sum = 0;
@@ -237,7 +237,7 @@ TEST(LibraryGraphs, CookTorranceIsItsFormulaIsReciprocalAndFiniteEverywhere) {
   EXPECT_LT(sum / above, 8);
 }
 
-TEST(LibraryGraphs, CookTorranceSurvivesGrazingAndOppositeDirections) {
+TEST(LibraryGraphs, CookTorranceIsFiniteAtGrazingAndOppositeDirections) {
   Program brdf = load("library/brdf/cook_torrance");
   const auto specular = [&](Floats l, Floats v) {
     const Floats out = brdf({0, 0, 1, l[0], l[1], l[2], v[0], v[1], v[2], 1e-3f, 1, 1, 1});
@@ -252,7 +252,7 @@ TEST(LibraryGraphs, CookTorranceSurvivesGrazingAndOppositeDirections) {
   EXPECT_NEAR(specular({0, 0, 1}, {0, 0, 1}) / (1 / (4 * pi * 1e-6)), 1, 1e-5);
 }
 
-TEST(LibraryGraphs, SourceFormsAgreeWhereTheyAreSound) {
+TEST(LibraryGraphs, SourceFormsAgreeWhereTheyAreStable) {
   Program stable = load("library/brdf/cook_torrance"), source = load("source_forms/cook_torrance");
   Random random;
   int compared = 0;
@@ -277,7 +277,7 @@ double sky_at(Program& sky, double y, float roughness, float zenith) {
   return sky({x, static_cast<float>(y), 0, roughness, 1, 1, 1, zenith, 1, 1, 0, 0, 0, 1e-4f})[0];
 }
 
-TEST(LibraryGraphs, BlurringTheSkyKeepsItsMean) {
+TEST(LibraryGraphs, SkyBlurPreservesTheMean) {
   Program sky = load("library/sky");
   for (const float roughness : {0.0f, 0.1f, 0.3f, 0.6f, 1.0f}) {
     double sum = 0;
@@ -287,7 +287,7 @@ TEST(LibraryGraphs, BlurringTheSkyKeepsItsMean) {
   }
 }
 
-TEST(LibraryGraphs, TheSkyIsSharpInAMirrorAndIrradianceOnARoughSurface) {
+TEST(LibraryGraphs, SkyIsSharpForMirrorsAndIrradianceForRoughSurfaces) {
   Program sky = load("library/sky");
   EXPECT_NEAR(sky_at(sky, 0.5, 0, 3), 1 + 2 * 0.5, 1e-3);
   EXPECT_NEAR(sky_at(sky, -0.5, 0, 3), 0, 1e-3);

@@ -19,7 +19,7 @@ std::string parameters_of(const std::string& nodes) {
   return list;
 }
 
-TEST(LowerPost, TakesWhatItUsesAndNothingElse) {
+TEST(LowerPost, TakesOnlyTheInputsItUses) {
   EXPECT_EQ(parameters_of(
                 R"("c": {"type": "scenecolor"}, "color": {"type": "multiply", "in1": "c", "in2": "tint"})"),
             "screen.color_x screen.color_y parameters.tint");
@@ -40,7 +40,7 @@ TEST(LowerPost, TakesWhatItUsesAndNothingElse) {
             "camera.depth_denominator");
 }
 
-TEST(LowerPost, KeepsItsNamesForItself) {
+TEST(LowerPost, ReservesItsOwnNames) {
   // Functions of documents that are called as what surrounds a post.
   FrontEnd front_end;
   std::string nodes, last = "s.r";

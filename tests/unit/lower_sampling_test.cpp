@@ -113,7 +113,7 @@ std::vector<float> coordinates() {
   return all;
 }
 
-TEST(Sampling, ClosestIsTheTexelWhereTheCoordinateLies) {
+TEST(Sampling, ClosestReturnsTheTexelAtTheCoordinate) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
     for (const auto& [mode, table] : each_with(tables)) {
       const Picture picture(width, height, table);
@@ -132,7 +132,7 @@ TEST(Sampling, ClosestIsTheTexelWhereTheCoordinateLies) {
   }
 }
 
-TEST(Sampling, LinearIsInProportionBetweenTheNearestFour) {
+TEST(Sampling, LinearInterpolatesTheNearestFourTexels) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 3}, {8, 4}, {33, 17}}) {
     for (const auto& way : each_with({Picture::floats, lower::byte_table::srgb})) {
       const AddressMode mode = way.first;
@@ -159,7 +159,7 @@ TEST(Sampling, LinearIsInProportionBetweenTheNearestFour) {
   }
 }
 
-TEST(Sampling, LinearGivesTexelsExactlyInTheirMiddle) {
+TEST(Sampling, LinearIsExactAtTexelCentres) {
   for (const auto& [mode, table] : each_with(tables)) {
     const Picture picture(8, 4, table);
     for (int y = 0; y < 4; ++y)
@@ -169,7 +169,7 @@ TEST(Sampling, LinearGivesTexelsExactlyInTheirMiddle) {
   }
 }
 
-TEST(Sampling, AxesHaveModesOfTheirOwn) {
+TEST(Sampling, AxesHaveIndependentAddressModes) {
   const Picture picture(4, 4);
   const auto color = picture.sample({Filter::closest, AddressMode::clamp, AddressMode::periodic}, 1.3f, 1.3f);
   EXPECT_EQ(color[0], picture.texel(3, 1, 0));

@@ -12,7 +12,7 @@ namespace {
 
 using nodes::Row;
 
-TEST(NodeTable, EveryRowAndPortIsDocumentedAndHasItsOwnName) {
+TEST(NodeTable, EveryRowAndPortIsDocumentedAndUniquelyNamed) {
   std::set<std::string_view> names;
   for (const Row& row : nodes::table()) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
@@ -28,7 +28,7 @@ TEST(NodeTable, EveryRowAndPortIsDocumentedAndHasItsOwnName) {
   EXPECT_EQ(nodes::find("no such node"), nullptr);
 }
 
-TEST(NodeTable, EveryNodeThatTakesValuesSaysWhatItGivesBeyondItsDomain) {
+TEST(NodeTable, EveryNodeWithValuePortsStatesItsDomain) {
   for (const Row& row : nodes::table()) {
     const bool takes_values = std::ranges::any_of(
         row.ports, [](const nodes::Port& port) { return port.type.kind == nodes::PortType::Kind::value; });
@@ -45,13 +45,13 @@ TEST(NodeTable, EveryNodeThatTakesValuesSaysWhatItGivesBeyondItsDomain) {
   }
 }
 
-TEST(NodeTable, TellsTheDomainsOfTiersThatHaveTheirOwn) {
+TEST(NodeTable, StatesTheDomainsOfTiersThatDiffer) {
   const std::string text = nodes::row_text(*nodes::find("exp2"));
   EXPECT_NE(text.find("with --precision fast: [-126, 127.9999]"), std::string::npos) << text;
   EXPECT_EQ(nodes::row_text(*nodes::find("sqrt")).find("--precision"), std::string::npos);
 }
 
-TEST(NodeTable, EveryNodeLowersForEveryTypeThatItAccepts) {
+TEST(NodeTable, EveryNodeLowersForEveryAcceptedType) {
   size_t lowered = 0;
   for (const Row& row : nodes::table()) {
     if (row.availability() != nodes::Availability::anywhere) continue;
@@ -72,7 +72,7 @@ TEST(NodeTable, EveryNodeLowersForEveryTypeThatItAccepts) {
   EXPECT_GT(lowered, 300u);
 }
 
-TEST(NodeTable, NodesOfEffectsLowerInAnEffect) {
+TEST(NodeTable, EffectNodesLowerInAnEffect) {
   FrontEnd front_end;
   const ir::Module module = front_end.lower(R"({"isoshade": 1, "effect": "e", "nodes": {
     "p": {"type": "position"}, "n": {"type": "normal", "space": "world"}, "v": {"type": "viewdirection"},
@@ -105,7 +105,7 @@ std::string asked_by(const std::string& node, const std::string& color = "n.x") 
   return parameters_of(FrontEnd().lower(effect_of(node, color)));
 }
 
-TEST(NodeTable, EachSpaceOfAnAttributeIsAFieldOfItsOwn) {
+TEST(NodeTable, EachSpaceOfAnAttributeIsASeparateField) {
   for (const std::string name : {"position", "normal", "tangent", "bitangent", "viewdirection"}) {
     const std::string field = "surface." + (name == "viewdirection" ? "view_direction" : name);
     EXPECT_EQ(asked_by(R"("type": ")" + name + R"(")"), field);
@@ -119,7 +119,7 @@ TEST(NodeTable, EachSpaceOfAnAttributeIsAFieldOfItsOwn) {
   EXPECT_EQ(asked_by(R"("type": "time")", "n"), "frame.time");
 }
 
-TEST(NodeTable, TransformsAskForTheColumnsTheyNeed) {
+TEST(NodeTable, TransformsRequestOnlyTheColumnsTheyNeed) {
   const auto node = [](const std::string& type, const std::string& from, const std::string& to) {
     return R"("type": "transform)" + type + R"(", "in": [1, 2, 3], "fromspace": ")" + from +
            R"(", "tospace": ")" + to + "\"";

@@ -19,7 +19,7 @@ Floats value_of(const std::string& node) {
   return program({});
 }
 
-TEST(NodeValues, MatricesAreMadeOfColumns) {
+TEST(NodeValues, MatricesAreBuiltFromColumns) {
   EXPECT_EQ(value_of(R"("type": "creatematrix", "in1": [1, 2, 3], "in2": [4, 5, 6], "in3": [7, 8, 9])"),
             (Floats{1, 2, 3, 4, 5, 6, 7, 8, 9}));
   EXPECT_EQ(value_of(R"("type": "creatematrix", "to": "matrix44", "in1": [1, 2, 3], "in2": [4, 5, 6],
@@ -33,13 +33,13 @@ TEST(NodeValues, MatricesAreMadeOfColumns) {
             (Floats{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}));
 }
 
-TEST(NodeValues, TuplesGrowByANumber) {
+TEST(NodeValues, Combine2AppendsANumber) {
   EXPECT_EQ(value_of(R"("type": "combine2", "in1": 1, "in2": 2)"), (Floats{1, 2}));
   EXPECT_EQ(value_of(R"("type": "combine2", "in1": [1, 2], "in2": 3, "to": "vector3")"), (Floats{1, 2, 3}));
   EXPECT_EQ(value_of(R"("type": "combine2", "in1": [1, 2, 3], "in2": 4, "to": "color4")"), (Floats{1, 2, 3, 4}));
 }
 
-TEST(NodeValues, ArithmeticTakesItsPortsInOrder) {
+TEST(NodeValues, ArithmeticUsesItsPortsInOrder) {
   EXPECT_EQ(value_of(R"("type": "add", "in1": 5, "in2": 3)"), Floats{8});
   EXPECT_EQ(value_of(R"("type": "subtract", "in1": 5, "in2": 3)"), Floats{2});
   EXPECT_EQ(value_of(R"("type": "multiply", "in1": [1, 2, 3], "in2": 2)"), (Floats{2, 4, 6}));
@@ -72,7 +72,7 @@ TEST(NodeValues, ArithmeticTakesItsPortsInOrder) {
   EXPECT_EQ(value_of(R"("type": "invert", "in": 1, "amount": 3)"), Floats{2});
 }
 
-TEST(NodeValues, FunctionsAreTheOnesTheyAreNamedAfter) {
+TEST(NodeValues, FunctionNodesComputeTheirFunctions) {
   EXPECT_EQ(value_of(R"("type": "sqrt", "in": 9)"), Floats{3});
   EXPECT_NEAR(value_of(R"("type": "exp", "in": 1)")[0], 2.7182818, 1e-6);
   EXPECT_EQ(value_of(R"("type": "exp2", "in": 3)"), Floats{8});
@@ -95,7 +95,7 @@ TEST(NodeValues, FunctionsAreTheOnesTheyAreNamedAfter) {
   EXPECT_EQ(value_of(R"("type": "step", "in": 0.5, "edge": 0.6)"), Floats{0});
 }
 
-TEST(NodeValues, VectorsAreGeometry) {
+TEST(NodeValues, VectorNodesComputeGeometry) {
   EXPECT_EQ(value_of(R"("type": "dotproduct", "in1": [1, 2, 3], "in2": [4, 5, 6])"), Floats{32});
   EXPECT_EQ(value_of(R"("type": "crossproduct", "in1": [1, 0, 0], "in2": [0, 1, 0])"), (Floats{0, 0, 1}));
   EXPECT_EQ(value_of(R"("type": "normalize", "in": [0, 4, 0])"), (Floats{0, 1, 0}));
@@ -123,7 +123,7 @@ TEST(NodeValues, VectorsAreGeometry) {
             (Floats{741.5f, 852.25f, 963.125f}));
 }
 
-TEST(NodeValues, ColoursKeepTheirAlpha) {
+TEST(NodeValues, ColourNodesKeepAlpha) {
   EXPECT_EQ(value_of(R"("type": "luminance", "in": [0, 1, 0, 0.5])"),
             (Floats{0.7152f, 0.7152f, 0.7152f, 0.5f}));
   EXPECT_EQ(value_of(R"("type": "luminance", "in": [2, 3, 4], "lumacoeffs": [1, 10, 100])"),
@@ -144,7 +144,7 @@ TEST(NodeValues, RampsRunRightAndDown) {
   EXPECT_EQ(value_of(R"("type": "splittb", "valuet": 1, "valueb": 2)" + at), Floats{2});
 }
 
-TEST(NodeValues, PicturesArePlaced) {
+TEST(NodeValues, Place2dScalesRotatesAndOffsets) {
   const auto placed = [](const std::string& ports) {
     return value_of(R"("type": "place2d", "texcoord": [3, 5])" + ports);
   };
@@ -159,7 +159,7 @@ TEST(NodeValues, PicturesArePlaced) {
   EXPECT_NEAR(turned[1], -3, 1e-6);
 }
 
-TEST(NodeValues, NoiseHasTheComponentsItIsAskedFor) {
+TEST(NodeValues, NoiseReturnsTheRequestedComponents) {
   const std::string at = R"(, "texcoord": [1.25, 3.5])";
   const Floats three = value_of(R"("type": "noise2d", "to": "vector3")" + at);
   const Floats four = value_of(R"("type": "noise2d", "to": "color4")" + at);
@@ -192,14 +192,14 @@ TEST(NodeValues, FractalsSumOctavesOfNoise) {
             noise_at("[0.25, 0.5, 0.375]"));
 }
 
-TEST(NodeValues, FacingRatioFacesForwardUnlessTold) {
+TEST(NodeValues, FacingRatioFacesForwardByDefault) {
   const std::string ports = R"("type": "facingratio", "viewdirection": [0, 0, 1], "normal": [0, 0.6, -0.8])";
   EXPECT_EQ(value_of(ports), Floats{0.8f});
   EXPECT_EQ(value_of(ports + R"(, "faceforward": false)"), Floats{-0.8f});
   EXPECT_EQ(value_of(ports + R"(, "invert": true)"), Floats{1.0f - 0.8f});
 }
 
-TEST(NodeValues, ComparisonsChoose) {
+TEST(NodeValues, ComparisonsSelectAnInput) {
   const std::string ports = R"(, "in1": [1, 2], "in2": 7)";
   EXPECT_EQ(value_of(R"("type": "ifgreater", "value1": 2, "value2": 1)" + ports), (Floats{1, 2}));
   EXPECT_EQ(value_of(R"("type": "ifgreater", "value1": 2, "value2": 2)" + ports), (Floats{7, 7}));
@@ -211,7 +211,7 @@ TEST(NodeValues, ComparisonsChoose) {
   EXPECT_EQ(value_of(R"("type": "ifequal", "value1": true, "value2": false)" + ports), (Floats{7, 7}));
 }
 
-TEST(NodeValues, ComparisonsWithoutChoicesAreTruths) {
+TEST(NodeValues, ComparisonsWithoutInputsReturnBooleans) {
   const auto is = [](const std::string& comparison, const std::string& logic) {
     FrontEnd front_end;
     Program program(front_end.lower(R"({"isoshade": 1, "function": "f", "nodes": {"is": {)" + comparison +
@@ -249,7 +249,7 @@ TEST(NodeValues, StructureNodesKeepComponentsInOrder) {
   EXPECT_EQ(value_of(R"("type": "convert", "in": true, "to": "vector2")"), (Floats{1, 1}));
 }
 
-TEST(NodeValues, FloatsBecomeIntegersTowardsZeroAndNeverFail) {
+TEST(NodeValues, FloatToIntegerTruncatesAndSaturates) {
   FrontEnd front_end;
   Program program(front_end.lower(R"({"isoshade": 1, "function": "f", "inputs": {"x": {"type": "float"}},
     "nodes": {"i": {"type": "convert", "in": "x", "to": "integer"},
@@ -269,7 +269,7 @@ TEST(NodeValues, FloatsBecomeIntegersTowardsZeroAndNeverFail) {
   EXPECT_EQ(program({std::numeric_limits<float>::quiet_NaN()}), (Floats{0, 0, 1}));
 }
 
-TEST(NodeValues, SeparateGivesEveryComponentItsName) {
+TEST(NodeValues, SeparateNamesEveryComponent) {
   FrontEnd front_end;
   Program program(front_end.lower(R"({"isoshade": 1, "function": "f",
     "inputs": {"v": {"type": "vector2"}, "c": {"type": "color3"}, "d": {"type": "vector4"}},
@@ -280,7 +280,7 @@ TEST(NodeValues, SeparateGivesEveryComponentItsName) {
   EXPECT_EQ(program({1, 2, 3, 4, 5, 6, 7, 8, 9}), (Floats{2, 1, 5, 3, 9, 9, 7}));
 }
 
-TEST(NodeValues, SwizzlesTakeComponentsByEitherAlphabet) {
+TEST(NodeValues, SwizzlesAcceptXyzwAndRgba) {
   FrontEnd front_end;
   Program program(front_end.lower(R"({"isoshade": 1, "function": "f",
     "inputs": {"v": {"type": "vector4"}, "c": {"type": "color3"}},

@@ -51,7 +51,7 @@ TEST(CutLong, LeavesNoLongBlock) {
     EXPECT_EQ(ir::run(module, {x}), ir::run(before, {x}));
 }
 
-TEST(CutLong, LeavesShortFunctionsAsTheyAre) {
+TEST(CutLong, LeavesShortFunctionsUnchanged) {
   Module module = ir::valid(sum(20));
   const Module before = module;
   cut_long(module, 50);
@@ -78,7 +78,7 @@ TEST(CutLong, CutsInsideBranchesAndLoops) {
 }
 
 // C++ counts loops in plain ints: the count must not come out of a part that computes in lanes.
-TEST(CutLong, CountsOfLoopsStayUniform) {
+TEST(CutLong, LoopCountsStayUniform) {
   std::string text =
       "func @f(%x: float, %n: int uniform) -> (out: float) {\n  %s0 = fadd %x, %x\n  %n0: int = iadd %n, "
       "%n\n";

@@ -58,7 +58,7 @@ void check(const fs::path& path, void (*pass)(ir::Module&)) {
   }
 }
 
-TEST(PassesGolden, EveryPassMakesWhatItsGoldensSay) {
+TEST(PassesGolden, EveryPassMatchesItsGoldens) {
   const fs::path root = fs::path(ISOSHADE_SOURCE_DIR) / "tests/golden";
   for (const auto& [name, pass] : passes) {
     std::vector<fs::path> files;

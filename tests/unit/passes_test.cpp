@@ -16,7 +16,7 @@ namespace {
 
 using namespace ir;
 
-TEST(Renumber, PrintAndParseGiveBackTheSameModule) {
+TEST(Renumber, PrintedModulesParseBackEqual) {
   for (uint64_t seed = 0; seed < 500; ++seed) {
     Module module = RandomModule(seed).make();
     renumber(module);
@@ -27,7 +27,7 @@ TEST(Renumber, PrintAndParseGiveBackTheSameModule) {
   }
 }
 
-TEST(Derivatives, LeaveModulesThatAskForNoneAsTheyAre) {
+TEST(Derivatives, LeaveModulesWithoutDerivativesUnchanged) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
     const Module module = RandomModule(seed).make();
     Module after = module;
@@ -54,7 +54,7 @@ void shuffle(Function& f, BlockId block, std::mt19937& random) {
   }
 }
 
-TEST(Renumber, TheResultDoesNotDependOnTheOrderOfBuilding) {
+TEST(Renumber, IsIndependentOfBuildOrder) {
   for (uint32_t seed = 0; seed < 500; ++seed) {
     const Module module = RandomModule(seed).make();
     Module shuffled = module, canonical = module;
@@ -114,7 +114,7 @@ std::string guarded_effect(const std::string& range) {
   return print(module);
 }
 
-TEST(Decide, LeavesOutTheGuardsThatRangesOfParametersMakeNeedless) {
+TEST(Decide, RemovesGuardsMadeRedundantByParameterRanges) {
   const auto has_guards = [](const std::string& text) {
     return text.find("select") != std::string::npos || text.find("branch") != std::string::npos ||
            text.find(" call ") != std::string::npos;
@@ -125,7 +125,7 @@ TEST(Decide, LeavesOutTheGuardsThatRangesOfParametersMakeNeedless) {
   EXPECT_FALSE(has_guards(positive)) << positive;
 }
 
-TEST(HideFoldables, LeavesDriversNothingToFold) {
+TEST(HideFoldables, LeavesNothingForDriversToFold) {
   for (uint64_t seed = 0; seed < 500; ++seed) {
     Module module = RandomModule(seed).make({.library_calls = true});
     Entries entries{module.find("main")};
@@ -138,7 +138,7 @@ TEST(HideFoldables, LeavesDriversNothingToFold) {
   }
 }
 
-TEST(Pipeline, DumpsAfterEveryPassAndGivesReasons) {
+TEST(Pipeline, DumpsAfterEveryPassAndStatesReasons) {
   Module module = RandomModule(3).make();
   Entries entries{module.find("main")};
   size_t dumps = 0;
@@ -148,7 +148,7 @@ TEST(Pipeline, DumpsAfterEveryPassAndGivesReasons) {
   for (const ModulePass& pass : optimisations()) EXPECT_FALSE(pass.reason.empty());
 }
 
-TEST(Specialize, GrowsNoModuleWithoutBound) {
+TEST(Specialize, BoundsModuleGrowth) {
   // Each of the nested functions calls the next twice, with two constants made of its own: 2^40 clones.
   std::string text =
       "func @main(%y: float) -> (out: float) { %k = constant float 0x40490fdb %r = call @f0(%k, %y) return "
@@ -214,7 +214,7 @@ double seconds_for(const Module& module) {
   return best;
 }
 
-TEST(Passes, TimeGrowsWithTheSizeNotItsSquare) {
+TEST(Passes, TimeIsNotQuadraticInSize) {
   const double small = seconds_for(large(10'000)), big = seconds_for(large(80'000));
   EXPECT_LT(big, 8 * small * 4) << "10,000 instructions: " << small << " s, 80,000: " << big << " s";
 }

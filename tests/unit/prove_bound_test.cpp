@@ -81,9 +81,9 @@ struct Case {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
-class BoundOf : public testing::TestWithParam<Case> {};
+class OperationBound : public testing::TestWithParam<Case> {};
 
-TEST_P(BoundOf, HoldsEveryFloatAndItsError) {
+TEST_P(OperationBound, ContainsEveryResultAndItsError) {
   const Case& c = GetParam();
   const lanes::FpGuard guard;
   Random random;
@@ -123,7 +123,7 @@ TEST_P(BoundOf, HoldsEveryFloatAndItsError) {
 Outcome one(const Bound& bound) { return {bound}; }
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, BoundOf,
+    Operations, OperationBound,
     testing::Values(
         Case{"add", Opcode::fadd, 2, add, [](long double x, long double y) { return x + y; }},
         Case{"subtract", Opcode::fsub, 2, subtract, [](long double x, long double y) { return x - y; }},
@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
              [](long double x, long double) { return std::floor(x); }}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(BoundOf, ASquareHoldsEverySquare) {
+TEST(OperationBound, SquareContainsEverySquare) {
   const lanes::FpGuard guard;
   Random random;
   for (int i = 0; i < points; ++i) {
@@ -157,7 +157,7 @@ TEST(BoundOf, ASquareHoldsEverySquare) {
   }
 }
 
-TEST(BoundOf, TheLesserAndTheGreaterHoldBoth) {
+TEST(OperationBound, MinAndMaxContainBothOperands) {
   const lanes::FpGuard guard;
   Random random;
   for (int i = 0; i < points; ++i) {
@@ -172,7 +172,7 @@ TEST(BoundOf, TheLesserAndTheGreaterHoldBoth) {
   }
 }
 
-TEST(BoundOf, AComparisonIsDecidedOnlyWhereItIsAlwaysTheSame) {
+TEST(OperationBound, ComparisonIsDecidedOnlyIfConstant) {
   const lanes::FpGuard guard;
   Random random;
   int decided = 0;
@@ -189,7 +189,7 @@ TEST(BoundOf, AComparisonIsDecidedOnlyWhereItIsAlwaysTheSame) {
   EXPECT_GT(decided, points);
 }
 
-TEST(BoundOf, ASelectionHoldsTheSideThatIsTaken) {
+TEST(OperationBound, SelectContainsTheTakenSide) {
   const lanes::FpGuard guard;
   const Bound low = between(0, 1), high = between(5, 6);
   EXPECT_EQ(select(exactly(1), low, high).hi, 1);
@@ -202,7 +202,7 @@ TEST(BoundOf, ASelectionHoldsTheSideThatIsTaken) {
   EXPECT_GE(select({1, 1, 1}, low, high).absolute, 6);
 }
 
-TEST(BoundOf, ADivisionTellsOfAZeroDivisor) {
+TEST(OperationBound, DivisionReportsZeroDivisors) {
   const lanes::FpGuard guard;
   EXPECT_EQ(divide(exactly(1), between(0, 1)).breach, Breach::division_by_zero);
   EXPECT_EQ(divide(exactly(1), between(-1, 1)).breach, Breach::division_by_zero);
@@ -211,7 +211,7 @@ TEST(BoundOf, ADivisionTellsOfAZeroDivisor) {
   EXPECT_EQ(square_root(between(-1e-30, 1)).breach, Breach::root_of_negative);
 }
 
-TEST(BoundOf, ASumOfManyHoldsTheirSum) {
+TEST(OperationBound, SumContainsRepeatedAddition) {
   const lanes::FpGuard guard;
   Random random;
   const Outcome outcome = sum_of(between(-0.25, 3), 256);

@@ -61,7 +61,7 @@ bool breaks(const Checked& c) {
   return !finite;
 }
 
-TEST(Proof, OfWhatIsAlwaysFinite) {
+TEST(Proof, SucceedsForFiniteExpressions) {
   const Checked c = checked(function_of(x_and_y, code("sqrt(1 - x * x) / (2 + x * y)")));
   EXPECT_TRUE(c.proof.unproved.empty()) << c.messages;
   ASSERT_EQ(c.proof.outputs.size(), 1u);
@@ -69,7 +69,7 @@ TEST(Proof, OfWhatIsAlwaysFinite) {
   EXPECT_LE(c.proof.outputs[0].hi, 1);
 }
 
-TEST(Proof, RefutesByInputsThatBreak) {
+TEST(Proof, RefutesWithCounterexamples) {
   struct Case {
     const char* code;
     const char* ports;
@@ -89,7 +89,7 @@ TEST(Proof, RefutesByInputsThatBreak) {
   }
 }
 
-TEST(Proof, NamesThePortAndTheCaller) {
+TEST(Proof, NamesThePortAndTheCounterexample) {
   const Checked c = checked(R"({"isoshade": 1, "function": "f",
       "inputs": {"c": {"type": "float", "min": 0, "max": 1}},
       "nodes": {"q": {"type": "divide", "in1": 1, "in2": "c"}}, "outputs": {"out": "q"}})");
@@ -104,7 +104,7 @@ size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-TEST(Proof, RefutesEveryOperationThatBreaks) {
+TEST(Proof, RefutesEveryFailingOperation) {
   // Three that do not depend on each other, and one that reads another's result and breaks where that is finite.
   const std::string nodes = R"("q": {"type": "divide", "in1": 1, "in2": "x"},
       "l": {"type": "ln", "in": "q"}, "s": {"type": "sqrt", "in": "x"}, "p": {"type": "divide", "in1": "x", "in2": "y"},
@@ -125,7 +125,7 @@ TEST(Proof, ReportsComponentsOfOneOperationOnce) {
   EXPECT_EQ(count_of(c.messages, "error[refuted]"), 1u) << c.messages;
 }
 
-TEST(Proof, ReportsEachOperatorOfAnExpressionWhereItStands) {
+TEST(Proof, ReportsEachOperatorOfAnExpressionSeparately) {
   const Checked c = checked(function_of(x_and_y, code("(1 / x) * 0.5 + (2 / y) * 0.5")));
   EXPECT_EQ(count_of(c.messages, "in node \"r\": division by zero"), 2u) << c.messages;
   const size_t first = c.messages.find("test.json:"), second = c.messages.find("test.json:", first + 1);
@@ -134,7 +134,7 @@ TEST(Proof, ReportsEachOperatorOfAnExpressionWhereItStands) {
             c.messages.substr(second, c.messages.find(" error", second) - second));
 }
 
-TEST(Proof, ReportsSomeAndCountsTheRest) {
+TEST(Proof, ReportsAtMost20ErrorsAndCountsTheRest) {
   std::string nodes, sum;
   for (int i = 0; i < 30; ++i) {
     const std::string name = "q" + std::to_string(i);
@@ -160,7 +160,7 @@ TEST(Proof, SmoothstepWithEqualEdgesIsAStep) {
   EXPECT_EQ(c.proof.outputs.at(0).hi, 1);
 }
 
-TEST(Proof, KnowsWhatAChoiceSaysOfItsSides) {
+TEST(Proof, ConditionsNarrowTheSidesOfASelection) {
   // Only where y > 0 is the quotient looked at.
   const std::string guarded = R"("q": {"type": "divide", "in1": "x", "in2": "y"},
       "r": {"type": "ifgreater", "value1": "y", "value2": 0.5, "in1": "q", "in2": 0})";
@@ -174,7 +174,7 @@ TEST(Proof, KnowsWhatAChoiceSaysOfItsSides) {
   EXPECT_FALSE(checked(function_of(x_and_y, looked_at_elsewhere)).proof.unproved.empty());
 }
 
-TEST(Proof, WhatTheLesserIsAboveBothAreAbove) {
+TEST(Proof, MinAboveXImpliesBothOperandsAboveX) {
   const std::string inputs =
       R"("x": {"type": "float", "min": -1, "max": 1}, "y": {"type": "float", "min": -1})";
   const std::string both = R"("least": {"type": "min", "in1": "x", "in2": "y"},
@@ -183,7 +183,7 @@ TEST(Proof, WhatTheLesserIsAboveBothAreAbove) {
   EXPECT_TRUE(checked(function_of(inputs, both)).proof.unproved.empty());
 }
 
-TEST(Proof, KnowsUnitVectors) {
+TEST(Proof, UsesThatInputsAreUnitVectors) {
   const auto inputs = [](const std::string& key) {
     return R"("x": {"type": "vector3")" + key + R"(}, "y": {"type": "vector3")" + key + "}";
   };
@@ -205,7 +205,7 @@ TEST(Proof, SquaresAreNotNegative) {
   EXPECT_TRUE(checked(function_of(inputs, code("1 / (dot(x, x) + y * y + 1)"))).proof.unproved.empty());
 }
 
-TEST(Proof, OfASumOverLightsBoundsAnyNumberOfThem) {
+TEST(Proof, BoundsSumsOverAnyNumberOfLights) {
   const auto effect = [](const std::string& lit) {
     return R"({"isoshade": 1, "effect": "e", "parameters": {}, "nodes": {"n": {"type": "normal"},
         "l": {"type": "lightdirection"}, "c": {"type": "lightcolor"},
@@ -220,7 +220,7 @@ TEST(Proof, OfASumOverLightsBoundsAnyNumberOfThem) {
   EXPECT_FALSE(checked(effect("c / color3(dot(n, l))")).proof.unproved.empty());
 }
 
-TEST(Proof, TellsErrorsApartByWhetherRoundingTipsABranch) {
+TEST(Proof, SeparatesErrorsOfBranchesTippedByRounding) {
   const Checked c = checked(function_of(x_and_y, code("x * 0.1 > y * 0.3 ? 1 + y : 0")));
   ASSERT_EQ(c.proof.tipped.size(), 1u);
   EXPECT_GE(c.proof.outputs[0].absolute, 1);
@@ -230,7 +230,7 @@ TEST(Proof, TellsErrorsApartByWhetherRoundingTipsABranch) {
   EXPECT_LE(exact.proof.outputs[0].absolute, 0x1.1p-23);
 }
 
-TEST(Proof, NamesTheOperationAtWhichTheErrorIsLost) {
+TEST(Proof, NamesTheOperationThatLosesTheErrorBound) {
   // Where t is above 0 it is known to be a float, but exactly it may be nothing.
   const std::string nodes = R"=("t": {"type": "expression", "code": "x * 0.1 - y * 0.3", "x": "x", "y": "y"},
       "q": {"type": "divide", "in1": 0.5, "in2": "t"}, "half": {"type": "multiply", "in1": "q", "in2": 0.5},
@@ -242,7 +242,7 @@ TEST(Proof, NamesTheOperationAtWhichTheErrorIsLost) {
   EXPECT_EQ(tape.places[tape.operations[c.proof.lost[0]].place].node, "q");
 }
 
-TEST(Proof, IsOfThePartThatIsAskedFor) {
+TEST(Proof, CoversOnlyTheRestrictedInputs) {
   const Checked c = checked(function_of(x_and_y, code("1 / x", "x")));
   EXPECT_FALSE(c.proof.unproved.empty());
   const Proof part = prove::prove(c.subject.tape, {}, {{"x", {0.5, 2}}});
@@ -251,7 +251,7 @@ TEST(Proof, IsOfThePartThatIsAskedFor) {
   EXPECT_EQ(part.outputs[0].hi, 2);
 }
 
-TEST(Proof, SaysThatNoInputIsAllowed) {
+TEST(Proof, IsVacuousIfNoInputIsAllowed) {
   const Checked c = checked(function_of(x_and_y, code("x + y")));
   EXPECT_FALSE(c.proof.vacuous);
   EXPECT_TRUE(prove::prove(c.subject.tape, {}, {{"x", {2, 3}}}).vacuous);
@@ -265,12 +265,12 @@ TEST(Proof, SaysThatNoInputIsAllowed) {
   EXPECT_TRUE(checked(function_of(too_long, sum)).proof.vacuous);
 }
 
-TEST(Proof, IsTheSameEachTime) {
+TEST(Proof, IsDeterministic) {
   const std::string text = function_of(x_and_y, code("1 / (x * x - y * y * y + 0.149)"));
   EXPECT_EQ(checked(text).messages, checked(text).messages);
 }
 
-TEST(Proof, SaysWhereItIsOpen) {
+TEST(Proof, ReportsWhereItIsUndecided) {
   // It is never 0, but so near to it that no box shows it: x^2 + y^2 - 2 x y + 2^-40.
   const Checked c = checked(function_of(x_and_y, code("1 / (x * x + y * y - 2 * x * y + 1e-5)")));
   if (c.proof.unproved.empty()) return;  // it may become provable

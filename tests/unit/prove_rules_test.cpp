@@ -90,13 +90,13 @@ class Random {
   std::mt19937 engine_{3};
 };
 
-class RuleOf : public testing::TestWithParam<functions::Tier> {};
+class FunctionRule : public testing::TestWithParam<functions::Tier> {};
 std::string tier_of(const testing::TestParamInfo<functions::Tier>& info) {
   return std::string(functions::tier_name(info.param));
 }
-INSTANTIATE_TEST_SUITE_P(Tier, RuleOf, testing::ValuesIn(functions::tiers), tier_of);
+INSTANTIATE_TEST_SUITE_P(Tiers, FunctionRule, testing::ValuesIn(functions::tiers), tier_of);
 
-TEST_P(RuleOf, EveryFunctionHoldsWhatItComputes) {
+TEST_P(FunctionRule, BoundContainsEveryComputedValue) {
   constexpr int boxes = 150, points = 40;
   const lanes::FpGuard guard;
   Random random;
@@ -142,14 +142,14 @@ TEST_P(RuleOf, EveryFunctionHoldsWhatItComputes) {
   }
 }
 
-TEST(Rule, TheTangentOfNoFloatIsBeyondItsRange) {
+TEST(FunctionRule, TangentOfEveryFloatIsInRange) {
   // Of all floats this is the nearest to a pole, which angles_test finds by visiting every one.
   const long double hardest = 16367173 * 0x1p72L;
   EXPECT_LT(std::abs(std::tan(hardest)), 0.9e9L);
   EXPECT_GT(std::abs(std::tan(hardest)), 0.5e9L);
 }
 
-TEST(Rule, AnglesOfAnySizeHaveTheSineThatTheyHave) {
+TEST(FunctionRule, SineBoundContainsTheSineOfLargeAngles) {
   const auto variant = [](std::string_view row) {
     for (const functions::Variant& v : functions::variants())
       if (v.name == row) return v;

@@ -36,7 +36,7 @@ Proof proof_of_image(const std::string& texcoord, const std::string& ports, cons
       filter + R"("}}, "passes": [{"name": "base", "color": "c"}]})");
 }
 
-TEST(Sound, TheErrorOfACoordinateReachesTheTexel) {
+TEST(Soundness, CoordinateErrorsReachTheTexel) {
   // The sum loses a sixteenth: that is many texels of a large picture.
   EXPECT_GE(proof_of_image("vector2((p.x + 1e6) - 1e6, t.y)", "pt", "linear").outputs[0].absolute, 1000);
   const Proof plain = proof_of_image("t * 1", "t", "linear");
@@ -46,7 +46,7 @@ TEST(Sound, TheErrorOfACoordinateReachesTheTexel) {
       << "rounding moves to the next texel";
 }
 
-TEST(Sound, WhatMayTipTipsWhatComparesIt) {
+TEST(Soundness, TippedComparisonsPropagateThroughLogic) {
   // The sum loses up to a sixteenth, so that exact arithmetic may find another truth.
   for (const char* code : {"((x + 1e6) - 1e6 > 0.5) != (y > 2) ? 1 : 0", "((x + 1e6) - 1e6 > 0.5) == (y > 2) ? 1 : 0",
                            "((x + 1e6) - 1e6 > 0.5) && (y < 2) ? 1 : 0", "!((x + 1e6) - 1e6 > 0.5) ? 1 : 0 * y"}) {
@@ -58,12 +58,12 @@ TEST(Sound, WhatMayTipTipsWhatComparesIt) {
   }
 }
 
-TEST(Sound, WhatLiesBetweenTexelsMayBeRoundedBeyondThem) {
+TEST(Soundness, LinearFilterMayRoundBeyondItsTexels) {
   EXPECT_GT(proof_of_image("t * 1", "t", "linear").outputs[0].hi, 1000);
   EXPECT_LT(proof_of_image("t * 1", "t", "linear").outputs[0].hi, 1000.01);
 }
 
-TEST(Sound, AReadAtARoundedOffsetMayBeOfAnotherPixel) {
+TEST(Soundness, RoundedOffsetsMayReadAnotherPixel) {
   const auto post = [](const std::string& offset) {
     return proof_of(
         R"({"isoshade": 1, "post": "p", "parameters": {"x": {"type": "float", "value": 1, "min": 0, "max": 9}},
@@ -75,7 +75,7 @@ TEST(Sound, AReadAtARoundedOffsetMayBeOfAnotherPixel) {
   EXPECT_GE(post("integer((x + 0.1) * 1.1)").outputs[0].absolute, 1e6);
 }
 
-TEST(Sound, ADerivativeOfWhatIsRoundedHasAnUnknownError) {
+TEST(Soundness, DerivativesOfRoundedValuesHaveUnknownError) {
   const auto effect = [](const std::string& of) {
     return proof_of(R"({"isoshade": 1, "effect": "e", "parameters": {}, "nodes": {"p": {"type": "position"},
         "of": {"type": "expression", "code": ")" +
@@ -85,7 +85,7 @@ TEST(Sound, ADerivativeOfWhatIsRoundedHasAnUnknownError) {
   EXPECT_GT(effect("(p + vector3(1e6)) - vector3(1e6)").outputs[0].absolute, prove::largest);
 }
 
-TEST(Sound, SumsAreOverAsManyLightsAsASceneMayHave) {
+TEST(Soundness, LightSumsCoverTheMaximumNumberOfLights) {
   const auto effect = [](const std::string& factor) {
     return proof_of(R"({"isoshade": 1, "effect": "e", "parameters": {}, "nodes": {"c": {"type": "lightcolor"},
         "s": {"type": "multiply", "in1": "c", "in2": )" +
@@ -97,7 +97,7 @@ TEST(Sound, SumsAreOverAsManyLightsAsASceneMayHave) {
   EXPECT_GE(effect("1").outputs[0].hi, 1e6 * interface::max_lights);
 }
 
-TEST(Sound, SumsAreOverTheTapsThatAreWritten) {
+TEST(Soundness, TapSumsCoverTheWrittenTaps) {
   const Proof proof = proof_of(R"({"isoshade": 1, "post": "p", "nodes": {"i": {"type": "tapindex"},
       "c": {"type": "scenecolor", "offsetx": "i"}, "sum": {"type": "sum_taps", "in": "c", "first": -2, "last": 2}},
       "outputs": {"color": "sum"}})");
@@ -113,7 +113,7 @@ Proof proof_of_code(const std::string& x, const std::string& code,
                   tier);
 }
 
-TEST(Sound, WhatFlushingTakesIsInTheBound) {
+TEST(Soundness, BoundsIncludeFlushingToZero) {
   const prove::Bound small = proof_of_code(R"("min": 0, "max": 0.001)", "x * x").outputs[0];
   EXPECT_GE(small.slack, prove::smallest) << "no number of ULP holds for results that become 0";
   EXPECT_GE(small.absolute, prove::smallest);
@@ -122,7 +122,7 @@ TEST(Sound, WhatFlushingTakesIsInTheBound) {
   EXPECT_LE(normal.relative, 0x1.1p-24);
 }
 
-TEST(Sound, FunctionsBeyondTheirDomainsErrByMoreThanTheyPromise) {
+TEST(Soundness, FunctionsOutsideTheirDomainHaveLargerErrors) {
   const auto ulps = [](const std::string& x, const std::string& code) {
     return proof_of_code(x, code, functions::Tier::precise).outputs[0].relative * 0x1p23;
   };
@@ -135,7 +135,7 @@ TEST(Sound, FunctionsBeyondTheirDomainsErrByMoreThanTheyPromise) {
   EXPECT_GE(far.absolute, far.hi - far.lo) << "nothing is promised of noise so far away";
 }
 
-TEST(Sound, OfANumberThatHasNoExactRootNothingIsSaid) {
+TEST(Soundness, RootsOfPossiblyNegativeValuesHaveUnknownError) {
   // In floats this is not negative; exactly it may be.
   const std::string t = "(x * 0.3 - (x * 0.1 + x * 0.2))";
   const Proof proof = proof_of_code(R"("min": 0, "max": 1)", t + " >= 0 ? sqrt" + t + " : 0");

@@ -42,11 +42,11 @@ void expect_every_triangle_that_covers_a_pixel(const Box& area) {
   }
 }
 
-TEST(Bins, ListEveryTriangleWhereItCoversAPixel) {
+TEST(Bins, ContainEveryTriangleThatCoversAPixel) {
   expect_every_triangle_that_covers_a_pixel(box_at(0, 0, 300, 170));
 }
 
-TEST(Bins, ListEveryTriangleWhereItCoversAPixelOfAPart) {
+TEST(Bins, ContainEveryTriangleThatCoversAPixelOfAPart) {
   expect_every_triangle_that_covers_a_pixel(box_at(70, 9, 150, 151));
   expect_every_triangle_that_covers_a_pixel(box_at(299, 169, 1, 1));
 }
@@ -62,7 +62,7 @@ TEST(Bins, KeepTheOrderOfTriangles) {
   }
 }
 
-TEST(Bins, OfPartsMakeUpTheWhole) {
+TEST(Bins, OfTriangleRangesConcatenateToTheWhole) {
   const std::vector<int32_t> triangles = mixture(300, 170);
   const int count = shapes::count(triangles);
   const TileGrid grid(box_at(0, 0, 300, 170));
@@ -75,7 +75,7 @@ TEST(Bins, OfPartsMakeUpTheWhole) {
   }
 }
 
-TEST(Bins, LeaveOutTilesThatALongEdgeMisses) {
+TEST(Bins, OmitTilesThatALongEdgeMisses) {
   std::vector<int32_t> triangles;
   const int end = 16 * tile_size * 256;
   shapes::append(triangles, {shapes::Position{0, 0}, {end, end}, {end - 512, end}}, {0.5f, 0.5f, 0.5f});

@@ -68,7 +68,7 @@ std::vector<int> times_covered(const Clipped& clipped, int width, int height) {
 const std::vector<uint32_t> one_triangle = {0, 1, 2};
 
 // The corners of a 4x2 image are at +-1; a pixel is 256 units wide, y turns to point down.
-TEST(ClipAndSnap, PutsVerticesOnTheGrid) {
+TEST(ClipAndSnap, SnapsVerticesToTheGrid) {
   const Clipped result =
       run({-1, 1, 0.5f, 1, /**/ -1, -1, 0.25f, 1, /**/ 2, 2, 0.5f, 2}, one_triangle, Cull::back, 4, 2);
   ASSERT_EQ(result.count(), 1);
@@ -84,7 +84,7 @@ TEST(ClipAndSnap, PutsVerticesOnTheGrid) {
   EXPECT_EQ(result.at(0, word::object), 40 << lower::triangle_flag::bits);
 }
 
-TEST(ClipAndSnap, RoundsToTheEvenUnit) {
+TEST(ClipAndSnap, RoundsTiesToEven) {
   // A 2x2 image: x in units is 256 * x + 256.
   const auto snapped = [](float unit) {
     const Clipped result = run({(unit - 256) / 256, 1, 0.5f, 1, -1, -1, 0.5f, 1, 1, -1, 0.5f, 1},
@@ -98,7 +98,7 @@ TEST(ClipAndSnap, RoundsToTheEvenUnit) {
   EXPECT_EQ(snapped(-11.5f), -12);
 }
 
-TEST(ClipAndSnap, CullsByTheSideThatFacesTheViewer) {
+TEST(ClipAndSnap, CullsByFacing) {
   const std::vector<float> clip = {-1, -1, 0.5f, 1, 1, -1, 0.5f, 1, 0, 1, 0.5f, 1};  // counter-clockwise
   EXPECT_EQ(run(clip, {0, 1, 2}, Cull::back, 16, 16).count(), 1);
   EXPECT_EQ(run(clip, {0, 1, 2}, Cull::front, 16, 16).count(), 0);
@@ -108,7 +108,7 @@ TEST(ClipAndSnap, CullsByTheSideThatFacesTheViewer) {
   EXPECT_EQ(run(clip, {0, 1, 1}, Cull::none, 16, 16).count(), 0);
 }
 
-TEST(ClipAndSnap, DropsWhatIsNotFinite) {
+TEST(ClipAndSnap, DropsNonFiniteTriangles) {
   const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                        -std::numeric_limits<float>::infinity()};
   for (int component = 0; component < 4; ++component)
@@ -119,14 +119,14 @@ TEST(ClipAndSnap, DropsWhatIsNotFinite) {
     }
 }
 
-TEST(ClipAndSnap, DropsWhatCoversNoPixelCentreOfTheImage) {
+TEST(ClipAndSnap, DropsTrianglesThatCoverNoPixelCentre) {
   EXPECT_EQ(run({-1, -1, 0.5f, 1, -0.95f, -1, 0.5f, 1, -1, -0.95f, 0.5f, 1}, one_triangle, Cull::none, 16, 16)
                 .count(),
             0);
   EXPECT_EQ(run({2, 2, 0.5f, 1, 3, 2, 0.5f, 1, 2, 3, 0.5f, 1}, one_triangle, Cull::none, 16, 16).count(), 0);
 }
 
-TEST(ClipAndSnap, GivesNearVerticesADepthOfOne) {
+TEST(ClipAndSnap, NearPlaneVerticesHaveDepthOne) {
   // One vertex behind a camera with its near plane at 0.25; x and w are equally far.
   const Clipped perspective =
       run({-1, -1, 0.25f, 1, 1, -1, 0.25f, 1, 0, 3, 0.25f, -2}, one_triangle, Cull::none, 16, 16);
@@ -151,7 +151,7 @@ TEST(ClipAndSnap, GivesNearVerticesADepthOfOne) {
     }
 }
 
-TEST(ClipAndSnap, InterpolatesAttributesWhereItCuts) {
+TEST(ClipAndSnap, InterpolatesAttributesAtCuts) {
   const Clipped result =
       run({-1, -1, 0.25f, 1, 1, -1, 0.25f, 2, 0.5f, 1, 0.25f, -2}, one_triangle, Cull::none, 16, 16);
   ASSERT_EQ(result.vertices.size(), 5u * stride);
@@ -164,7 +164,7 @@ TEST(ClipAndSnap, InterpolatesAttributesWhereItCuts) {
   }
 }
 
-TEST(ClipAndSnap, LeavesVerticesOutsideOfTheImageAlone) {
+TEST(ClipAndSnap, DoesNotClipVerticesOutsideTheImage) {
   const Clipped result =
       run({-9, -9, 0.5f, 1, 9, -9, 0.5f, 1, 0, 9, 0.5f, 1}, one_triangle, Cull::none, 64, 64);
   EXPECT_EQ(result.count(), 1);
@@ -188,7 +188,7 @@ TEST(ClipAndSnap, KeepsPositionsWithinTheGuardBand) {
     }
 }
 
-TEST(ClipAndSnap, MarksTrianglesThatNeedLongProducts) {
+TEST(ClipAndSnap, MarksTrianglesThatNeedWideProducts) {
   const auto wide = [](float width) {
     const float x = width / 512 - 1;  // of 1024 pixels
     const Clipped result =
@@ -200,7 +200,7 @@ TEST(ClipAndSnap, MarksTrianglesThatNeedLongProducts) {
   EXPECT_EQ(wide(129), 1);
 }
 
-TEST(ClipAndSnap, ReachesTheLastPixelOfTheLargestImage) {
+TEST(ClipAndSnap, CoversTheLastPixelOfTheLargestImage) {
   const int size = max_image_size;
   const Clipped result =
       run({-3, -3, 0.5f, 1, 5, -3, 0.5f, 1, -3, 5, 0.5f, 1}, one_triangle, Cull::none, size, size);
@@ -252,7 +252,7 @@ struct Floor {
   }
 };
 
-TEST(ClipAndSnap, LeavesNoCrackAndNoSecondHitInAFloorThroughTheNearPlane) {
+TEST(ClipAndSnap, CoversAFloorThroughTheNearPlaneExactlyOnce) {
   const int width = 160, height = 120;
   for (const int cells : {1, 2, 7, 40})
     for (const float tilt : {0.0f, 0.4f}) {
@@ -278,7 +278,7 @@ TEST(ClipAndSnap, LeavesNoCrackAndNoSecondHitInAFloorThroughTheNearPlane) {
     }
 }
 
-TEST(ClipAndSnap, CutsASharedEdgeAtOnePlaceFromBothSides) {
+TEST(ClipAndSnap, CutsSharedEdgesIdenticallyFromBothSides) {
   std::mt19937 random(17);
   std::uniform_real_distribution<float> any(-3.0f, 3.0f);
   int cut = 0;

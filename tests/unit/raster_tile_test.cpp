@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <gtest/gtest.h>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,8 @@ struct Variant {
   Rasterize rasterize;
 };
 
+void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.lanes << " lanes"; }
+
 class TileAtLanes : public testing::TestWithParam<Variant> {
  protected:
   void SetUp() override {
@@ -73,7 +76,7 @@ class TileAtLanes : public testing::TestWithParam<Variant> {
   }
 };
 
-TEST_P(TileAtLanes, SeesWhatTheReferenceSees) {
+TEST_P(TileAtLanes, MatchesTheReferenceRasterizer) {
   for (const auto& [width, height] :
        {std::pair{64, 64}, std::pair{200, 150}, std::pair{1, 1}, std::pair{333, 65}})
     for (const std::string kind : shapes::kinds) {
@@ -124,7 +127,7 @@ TEST_P(TileAtLanes, CoversClosedFansExactlyOnce) {
 constexpr std::array<Position, 3> everywhere = {Position{-65536, -65536}, Position{262144, -65536},
                                                 Position{-65536, 262144}};
 
-TEST_P(TileAtLanes, TakesTheEarlierOfEqualDepths) {
+TEST_P(TileAtLanes, EarlierTriangleWinsAtEqualDepth) {
   std::vector<int32_t> triangles;
   shapes::append(triangles, everywhere, {0.25f, 0.25f, 0.25f});
   shapes::append(triangles, everywhere, {0.25f, 0.25f, 0.25f});
@@ -132,7 +135,7 @@ TEST_P(TileAtLanes, TakesTheEarlierOfEqualDepths) {
   for (const int32_t id : seen.ids) EXPECT_EQ(id, 0);
 }
 
-TEST_P(TileAtLanes, DrawsOverWhatIsNearerWhereItIsTold) {
+TEST_P(TileAtLanes, OverFlagDrawsOverNearerTriangles) {
   std::vector<int32_t> triangles;
   for (const float depth : {0.5f, 0.25f, 0.375f}) shapes::append(triangles, everywhere, {depth, depth, depth});
   triangles[word::stride + word::object] |= lower::triangle_flag::over;
@@ -141,7 +144,7 @@ TEST_P(TileAtLanes, DrawsOverWhatIsNearerWhereItIsTold) {
   for (const float depth : seen.depth) EXPECT_EQ(depth, 0.375f);
 }
 
-TEST_P(TileAtLanes, DrawsNothingInfinitelyFar) {
+TEST_P(TileAtLanes, IgnoresTrianglesAtDepthZero) {
   std::vector<int32_t> triangles;
   shapes::append(triangles, everywhere, {0, 0, 0});
   const Visible seen = by_tiles(GetParam().rasterize, triangles, 8, 8);
@@ -173,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(Raster, TileAtLanes,
                                          Variant{16, detail::rasterize_tile_16}),
                          [](const auto& info) { return std::to_string(info.param.lanes); });
 
-TEST(Tile, StoresEveryPixelOnce) {
+TEST(Tile, IndexInvertsItsCoordinates) {
   for (int i = 0; i < tile_pixels; ++i) EXPECT_EQ(tile_index(tile_x(i), tile_y(i)), i);
 }
 

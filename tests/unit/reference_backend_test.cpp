@@ -31,13 +31,13 @@ std::vector<Real> evaluate_at(const std::string& nodes, const std::string& out, 
   return evaluate(*program, inputs, 1);
 }
 
-TEST(ReferenceBackend, KeepsWhatFloatsLose) {
+TEST(ReferenceBackend, KeepsDigitsThatFloatsLose) {
   const std::string nodes = R"("sum": {"type": "add", "in1": "a", "in2": "b"},
     "left": {"type": "subtract", "in1": "sum", "in2": "a"})";
   EXPECT_EQ(evaluate_at(nodes, "left", 1e20f, 1e-20f)[0], Real(1e-20f));
 }
 
-TEST(ReferenceBackend, ComputesFunctionsToManyDigits) {
+TEST(ReferenceBackend, ComputesFunctionsTo40Digits) {
   EXPECT_EQ(
       evaluate_at(R"("e": {"type": "exp", "in": "a"}, "s": {"type": "multiply", "in1": "e", "in2": "b"})",
                   "s", 1, 1)[0]
@@ -53,7 +53,7 @@ TEST(ReferenceBackend, RunsLoopsBranchesAndIntegers) {
   EXPECT_EQ(evaluate_at(nodes, "c", -3e38f, -3e9f)[0], Real(-2147483648.0));
 }
 
-TEST(ReferenceBackend, GivesBitsOfWhatWouldBeStored) {
+TEST(ReferenceBackend, ReturnsTheBitsOfStoredFloats) {
   const auto program = compile(R"({"isoshade": 1, "function": "f", "inputs": {"p": {"type": "vector2"}},
     "nodes": {"n": {"type": "noise2d", "texcoord": "p"}}, "outputs": {"out": "n"}})",
                                true);
@@ -79,7 +79,7 @@ render::Plan small_plan(const std::string& path, bool reference) {
   return plan ? std::move(*plan) : render::Plan();
 }
 
-TEST(ReferenceBackend, DrawsShippedScenesAsTheOthersDoButForRounding) {
+TEST(ReferenceBackend, MatchesTheInterpreterOnShippedScenesUpToRounding) {
   const auto reference = create();
   const auto interpreter = interpreter::create();
   for (const std::string& path : equivalence::shipped_scenes()) {
@@ -96,7 +96,7 @@ TEST(ReferenceBackend, DrawsShippedScenesAsTheOthersDoButForRounding) {
   }
 }
 
-TEST(ReferenceBackend, ShadesTheMaterialBallsAsTheOthersDoAtEveryPixel) {
+TEST(ReferenceBackend, MatchesTheInterpreterAtEveryPixelOfMaterialBalls) {
   const std::string path = equivalence::scene_path("material_balls");
   const backends::Image exact = equivalence::draw(small_plan(path, true), *create());
   const backends::Image rounded = equivalence::draw(small_plan(path, false), *interpreter::create());
@@ -104,7 +104,7 @@ TEST(ReferenceBackend, ShadesTheMaterialBallsAsTheOthersDoAtEveryPixel) {
     ASSERT_LE(std::abs(exact.rgba[i] - rounded.rgba[i]), 0x1p-10f * std::max(1.0f, exact.rgba[i])) << i / 4;
 }
 
-TEST(ReferenceBackend, DrawsSeveralSamplesAPixel) {
+TEST(ReferenceBackend, DrawsSeveralSamplesPerPixel) {
   scene::Scene scene = equivalence::load(equivalence::scene_path("material_balls"));
   scene.samples = 16;
   const backends::Image image = equivalence::draw(equivalence::plan(scene, 12, 7), *interpreter::create());
@@ -123,7 +123,7 @@ TEST(ReferenceBackend, DrawsSeveralSamplesAPixel) {
     ASSERT_LE(std::abs(exact.rgba[i] - image.rgba[i]), 0x1p-10f * std::max(1.0f, exact.rgba[i])) << i / 4;
 }
 
-TEST(ReferenceBackend, RefusesLargeImages) {
+TEST(ReferenceBackend, RejectsLargeImages) {
   render::Plan plan = small_plan(equivalence::scene_path("borders"), true);
   plan.frame.views.back().target.width = max_size + 1;
   support::Diagnostics diagnostics;

@@ -47,7 +47,7 @@ std::vector<Real> exact(const functions::Variant& variant, const std::vector<flo
   return out;
 }
 
-TEST(Reference, GivesWhatTheBodyOfEveryVariantGivesNearly) {
+TEST(Reference, IsNearTheBodyOfEveryVariant) {
   std::mt19937 random(1);
   for (const functions::Variant& variant : functions::variants()) {
     Body body(variant);
@@ -79,7 +79,7 @@ std::vector<float> combination(const std::vector<float>& values, size_t count, s
   return chosen;
 }
 
-TEST(Reference, AgreesWithBodiesAtZeroesExtremesInfinitiesAndNan) {
+TEST(Reference, MatchesScalarBodiesAtSpecialValues) {
   const std::vector<float> ordinary{0, -0.0f, 1, -1, 2, 0.5f, -2.5f, inf, -inf, nan};
   std::vector<float> all = ordinary;
   all.insert(all.end(), {tiny, -tiny, huge, -huge, 3e9f, -3e9f, 0x1p31f, 1e-30f, 1e30f, 131073, 1e6f, 0x1p24f,
@@ -106,7 +106,7 @@ TEST(Reference, AgreesWithBodiesAtZeroesExtremesInfinitiesAndNan) {
   }
 }
 
-TEST(Reference, AgreesWithBodiesOfVectorsAndMatricesWhereTheyAreZeroHugeOrEqual) {
+TEST(Reference, MatchesVectorAndMatrixBodiesAtSpecialValues) {
   // Large enough for what is said of 2^31 and of whole turns, and not so large that products of four overflow.
   const std::vector<float> values{0, -0.0f, 1, -1, 2, 0.5f, -2.5f, 3e9f, -3e9f, 0x1p31f, 131073, 1e6f, 1e-6f};
   // How far sums of products of such numbers may be off, where they cancel, and what they then make of it.
@@ -143,7 +143,7 @@ TEST(Reference, AgreesWithBodiesOfVectorsAndMatricesWhereTheyAreZeroHugeOrEqual)
   }
 }
 
-TEST(Reference, CountsWhatIsFarFromTheOriginOfNoisesAs0AsBodiesDo) {
+TEST(Reference, TreatsFarNoiseCoordinatesAsZeroLikeTheBodies) {
   for (const functions::Variant& variant : functions::variants()) {
     if (!variant.row.starts_with("noise") && !variant.row.starts_with("cellnoise") &&
         !variant.row.starts_with("worleynoise"))
@@ -163,7 +163,7 @@ TEST(Reference, CountsWhatIsFarFromTheOriginOfNoisesAs0AsBodiesDo) {
   }
 }
 
-TEST(Real, BehavesAsFloatsDoAtTheirEnds) {
+TEST(Real, FollowsIeee754AtInfinityAndNan) {
   const Real zero = 0, one = 1, nan = zero / zero;
   EXPECT_EQ(stored(one / zero), std::numeric_limits<float>::infinity());
   EXPECT_EQ(stored(one / -zero), -std::numeric_limits<float>::infinity());

@@ -97,13 +97,13 @@ class FiniteTest : public ::testing::Test {
   render::DrawStats stats_;
 };
 
-TEST_F(FiniteTest, AFinitePictureIsNotSpokenOf) {
+TEST_F(FiniteTest, FiniteImagesAreNotReported) {
   ASSERT_EQ(render(3).width, 32) << diagnostics_.text();
   EXPECT_TRUE(stats_.non_finite.none());
   EXPECT_EQ(diagnostics_.text(), "");
 }
 
-TEST_F(FiniteTest, NamesTheObjectAndThePassThatDrewTheFirst) {
+TEST_F(FiniteTest, NamesTheObjectAndPassOfTheFirstPixel) {
   for (const int bad : {1, 2}) {
     for (const int samples : {1, 4, 16}) {
       render(bad, ", \"samples\": " + std::to_string(samples));
@@ -117,7 +117,7 @@ TEST_F(FiniteTest, NamesTheObjectAndThePassThatDrewTheFirst) {
   }
 }
 
-TEST_F(FiniteTest, NamesThePostThatMadeThem) {
+TEST_F(FiniteTest, NamesThePostThatMadePixelsNonFinite) {
   render(0, R"(, "posts": [{"name": "first", "effect": "invert.json"}, {"name": "again", "effect": "invert.json"}])");
   EXPECT_EQ(stats_.non_finite.drawn.count, 0);
   ASSERT_EQ(stats_.non_finite.posts.size(), 1u);
@@ -144,7 +144,7 @@ std::string bloom(const std::string& first = "") {
          R"(combine.json", "inputs": {"color": "scene", "narrow": "half", "middle": "quarter", "wide": "eighth"}}])";
 }
 
-TEST_F(FiniteTest, BloomDoesNotSpreadThem) {
+TEST_F(FiniteTest, BloomDoesNotSpreadNonFinitePixels) {
   const backends::Image black = render(0, bloom());
   ASSERT_EQ(black.width, 32) << diagnostics_.text();
   EXPECT_TRUE(stats_.non_finite.none());
@@ -159,7 +159,7 @@ TEST_F(FiniteTest, BloomDoesNotSpreadThem) {
   }
 }
 
-TEST_F(FiniteTest, BloomLimitsALoneBrightPixel) {
+TEST_F(FiniteTest, BloomLimitsFireflies) {
   const auto brightest_beside = [&](const std::string& firefly) {
     const backends::Image image =
         render(3, bloom(R"(, "parameters": {"threshold": 1, "firefly": )" + firefly + "}"), 8);  // a cell is a pixel

@@ -74,7 +74,7 @@ class Parts : public ::testing::Test {
   std::optional<scene::Scene> scene_;
 };
 
-TEST_F(Parts, HaveTheColorsOfTheirMaterialsAndTheSameBitsOnAllBackends) {
+TEST_F(Parts, UseTheirMaterialsAndAreIdenticalOnAllBackends) {
   const auto made = plan(R"("effect": "flat.json")");
   ASSERT_TRUE(made) << diagnostics_.text();
   const backends::Image image = draw(*made, *interpreter::create());
@@ -90,7 +90,7 @@ TEST_F(Parts, HaveTheColorsOfTheirMaterialsAndTheSameBitsOnAllBackends) {
   EXPECT_TRUE(comparison.identical()) << compare::describe(comparison, "interpreter", "cpu");
 }
 
-TEST_F(Parts, OfOneMaterialAreOneDraw) {
+TEST_F(Parts, OfOneMaterialShareADraw) {
   const auto made = plan(R"("effect": "flat.json")");
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(made->stats.meshes, 1);
@@ -127,7 +127,7 @@ TEST_F(Parts, AreDrawnPassByPassAndSkippedPerMaterial) {
   EXPECT_EQ(made->stats.skips[0].what, "shine of 2 of 3 parts of row");
 }
 
-TEST_F(Parts, OutsideOfTheViewAreACopyThatIs) {
+TEST_F(Parts, OutsideTheViewAreReportedAsOneCopy) {
   const auto made = plan(R"("effect": "flat.json", "repeat": [{"count": 2, "step": [0, 100, 0]}])");
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(made->stats.draws, 3);
@@ -143,7 +143,7 @@ TEST_F(Parts, CountTowardsTheLimits) {
   EXPECT_NE(diagnostics_.text().find("words of object records"), std::string::npos) << diagnostics_.text();
 }
 
-TEST_F(Parts, ReportAWrongParameterOnce) {
+TEST_F(Parts, ReportAnUnknownParameterOnce) {
   EXPECT_FALSE(plan(R"("effect": "flat.json", "parameters": {"base_colour": [1, 0, 0]})"));
   EXPECT_EQ(diagnostics_.error_count(), 1u) << diagnostics_.text();
 }

@@ -74,7 +74,7 @@ class PlanTest : public ::testing::Test {
   std::optional<scene::Scene> scene_;
 };
 
-TEST_F(PlanTest, ParametersAreTheDefaultsButForWhatTheSceneSays) {
+TEST_F(PlanTest, SceneParametersOverrideDefaults) {
   const auto made = plan(R"("objects": {
     "plain": {"mesh": "box", "effect": "tinted.json"},
     "set": {"mesh": "box", "effect": "tinted.json",
@@ -89,7 +89,7 @@ TEST_F(PlanTest, ParametersAreTheDefaultsButForWhatTheSceneSays) {
   EXPECT_EQ(words(1), (std::vector<float>{1, 0, 0, 0.5f, 1, 7}));
 }
 
-TEST_F(PlanTest, GridsVaryParametersAndPlaces) {
+TEST_F(PlanTest, GridsVaryParametersAndPositions) {
   const auto made = plan(R"("objects": {"grid": {"mesh": "box", "effect": "tinted.json",
     "transform": {"scale": 0.1},
     "repeat": [{"count": 3, "step": [0.5, 0, 0], "parameters": {"gain": {"from": 1, "to": 2}}},
@@ -106,7 +106,7 @@ TEST_F(PlanTest, GridsVaryParametersAndPlaces) {
   EXPECT_EQ(made->meshes.size(), 1u);
 }
 
-TEST_F(PlanTest, MeshesEffectsAndProgramsAreSharedWhereTheyAreTheSame) {
+TEST_F(PlanTest, EqualMeshesEffectsAndProgramsAreShared) {
   const auto made = plan(R"("objects": {
     "a": {"mesh": "sphere", "effect": "tinted.json"},
     "b": {"mesh": {"type": "sphere"}, "effect": "./tinted.json"},
@@ -125,7 +125,7 @@ TEST_F(PlanTest, MeshesEffectsAndProgramsAreSharedWhereTheyAreTheSame) {
             static_cast<float>(made->frame.picture().draws[3].pixel_program));
 }
 
-TEST_F(PlanTest, AMovedPlanPointsToWhatItPointedTo) {
+TEST_F(PlanTest, MovedPlanKeepsItsPointersValid) {
   auto made = plan(R"("objects": {"a": {"mesh": "sphere", "effect": "tinted.json"}})");
   ASSERT_TRUE(made) << diagnostics_.text();
   const render::Plan moved = std::move(*made);
@@ -134,7 +134,7 @@ TEST_F(PlanTest, AMovedPlanPointsToWhatItPointedTo) {
   EXPECT_EQ(moved.frame.programs[0], &moved.effects[0].passes[0].vertex);
 }
 
-TEST_F(PlanTest, MirroredObjectsKeepTheirOutside) {
+TEST_F(PlanTest, MirroringSwapsTheCulledSide) {
   const auto made = plan(R"("objects": {
     "a": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [1, -1, 1]}},
     "b": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [-1, -1, 1]}}})");
@@ -145,7 +145,7 @@ TEST_F(PlanTest, MirroredObjectsKeepTheirOutside) {
   EXPECT_EQ(made->frame.picture().draws[3].state.cull, interface::Cull::back);
 }
 
-TEST_F(PlanTest, ReportsParametersThatAnEffectHasNotOrThatDoNotFit) {
+TEST_F(PlanTest, ReportsUnknownAndMistypedParameters) {
   const auto object = [](const std::string& parameters) {
     return R"("objects": {"a": {"mesh": "box", "effect": "tinted.json", "parameters": {)" + parameters +
            "}}}";
@@ -163,7 +163,7 @@ TEST_F(PlanTest, ReportsParametersThatAnEffectHasNotOrThatDoNotFit) {
                                   "list its values"));
 }
 
-TEST_F(PlanTest, ValuesGoByTheirNamesOrNumbers) {
+TEST_F(PlanTest, EnumValuesMayBeNamesOrNumbers) {
   write("named.json", R"({"isoshade": 1, "effect": "named",
     "parameters": {"mode": {"type": "integer", "enum": ["plain", "odd", "wide"], "value": "odd"}},
     "nodes": {"f": {"type": "convert", "in": "mode", "to": "color3"}}, "passes": [{"name": "p", "color": "f"}]})");
@@ -192,13 +192,13 @@ TEST_F(PlanTest, ValuesGoByTheirNamesOrNumbers) {
       object("0.5"), "of type integer, a whole number without fraction, or one of plain, odd, wide"));
 }
 
-TEST_F(PlanTest, ReportsWhoNeedsAnEffectThatDoesNotCompile) {
+TEST_F(PlanTest, EffectErrorsNameTheObject) {
   EXPECT_TRUE(planning_fails_with(R"("objects": {"ball": {"mesh": "box", "effect": "none.json"}})",
                                   "the effect of \"ball\""))
       << diagnostics_.text();
 }
 
-TEST_F(PlanTest, BoundsWhatIsDrawn) {
+TEST_F(PlanTest, RejectsScenesWithTooManyTriangles) {
   EXPECT_TRUE(planning_fails_with(
       R"("objects": {"a": {"mesh": {"type": "sphere", "segments": 1024, "rings": 1024},
                            "effect": "tinted.json",
@@ -214,7 +214,7 @@ constexpr const char* lifted = R"({"isoshade": 1, "effect": "lifted",
   "passes": [{"name": "base", "color": "tint"},
              {"name": "lifted", "color": "tint", "position": "moved", "enabled": "on"}]})";
 
-TEST_F(PlanTest, PassesAreLeftOutWhereTheirParameterIsZero) {
+TEST_F(PlanTest, PassesAreSkippedWhereTheirParameterIsZero) {
   write("lifted.json", lifted);
   const auto made = plan(R"("objects": {
     "row": {"mesh": "box", "effect": "lifted.json",
@@ -228,7 +228,7 @@ TEST_F(PlanTest, PassesAreLeftOutWhereTheirParameterIsZero) {
   EXPECT_EQ(made->stats.skips[1].what, "lifted of one");
 }
 
-TEST_F(PlanTest, PassesThatMoveVerticesAreNotSkippedByTheMeshsPlace) {
+TEST_F(PlanTest, PassesThatMoveVerticesAreNotCulledByMeshBounds) {
   write("lifted.json", lifted);
   const std::string members = R"("size": [32, 32], "objects": {
     "below": {"mesh": "box", "effect": "lifted.json", "transform": {"translate": [0, -4, 0]}},
@@ -246,7 +246,7 @@ TEST_F(PlanTest, PassesThatMoveVerticesAreNotSkippedByTheMeshsPlace) {
   EXPECT_GT(seen, 10);
 }
 
-TEST_F(PlanTest, PixelsKnowTheirSizeAndTheMeshAsItWasBeforeItMoved) {
+TEST_F(PlanTest, PixelsSeeTheirSizeAndUndisplacedPositions) {
   write("sizes.json", R"({"isoshade": 1, "effect": "sizes", "nodes": {
     "s": {"type": "pixelsize"}, "p": {"type": "position"}, "up": {"type": "constant", "value": [0, 2, 0]},
     "c": {"type": "combine3", "in1": "s", "in2": "p.y", "to": "color3"}, "moved": {"type": "add", "in1": "p", "in2": "up"}},
@@ -266,7 +266,7 @@ TEST_F(PlanTest, PixelsKnowTheirSizeAndTheMeshAsItWasBeforeItMoved) {
   }
 }
 
-TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
+TEST_F(PlanTest, FrameHoldsCameraLightsAndBackground) {
   const auto made = plan(R"("background": [0.1, 0.2, 0.3, 0.4], "size": [17, 9], "time": 2.5,
     "lights": {"sun": {"type": "directional", "direction": [0, -1, 0]},
                "lamp": {"type": "point", "position": [1, 2, 3], "intensity": 5}}, "objects": {})");
@@ -301,7 +301,7 @@ TEST_F(PlanTest, TheFrameHoldsCameraLightsAndBackground) {
   EXPECT_EQ(other->frame.picture().target.height, 7);
 }
 
-TEST_F(PlanTest, SkippingWhatIsOutsideOfTheViewChangesNoBit) {
+TEST_F(PlanTest, CullingChangesNoBit) {
   const std::string members = R"("size": [48, 27], "background": [0.5, 0.25, 0.125, 1],
     "objects": {"grid": {"mesh": {"type": "sphere", "segments": 12, "rings": 6}, "effect": "tinted.json",
       "transform": {"translate": [-8, -4, -1], "scale": 0.6},
@@ -336,7 +336,7 @@ TEST_F(PlanTest, SkippingWhatIsOutsideOfTheViewChangesNoBit) {
   EXPECT_LT(background, 48u * 27u - 50u);
 }
 
-TEST_F(PlanTest, ASceneWithoutObjectsIsItsBackground) {
+TEST_F(PlanTest, SceneWithoutObjectsShowsItsBackground) {
   const auto made = plan(R"("size": [3, 2], "background": [0.5, 0.25, 0.125, 1])");
   ASSERT_TRUE(made) << diagnostics_.text();
   backends::Image image;
@@ -347,7 +347,7 @@ TEST_F(PlanTest, ASceneWithoutObjectsIsItsBackground) {
   EXPECT_EQ(image.depth, std::vector<float>(6, 0.0f));
 }
 
-TEST_F(PlanTest, GivesTheFactorsOfAModelToParametersThatTheObjectLeaves) {
+TEST_F(PlanTest, ModelFactorsSetParametersTheObjectDoesNot) {
   write("model.glb", testing::glb(testing::square_json(), testing::square_data()));
   write("pbr.json", R"({"isoshade": 1, "effect": "pbr",
     "parameters": {"base_color": {"type": "color3", "value": [1, 1, 1]},
@@ -369,7 +369,7 @@ TEST_F(PlanTest, GivesTheFactorsOfAModelToParametersThatTheObjectLeaves) {
   EXPECT_EQ(record(*made, 1)[lower::object_word::parameters + 3], 0.125f);
 }
 
-TEST_F(PlanTest, ReadsModelsOnlyWhereEffectsMayLie) {
+TEST_F(PlanTest, RejectsModelsOutsideTheCollection) {
   EXPECT_TRUE(planning_fails_with(
       R"("objects": {"a": {"mesh": {"type": "gltf", "file": "../x.glb"}, "effect": "tinted.json"}})",
       "outside-reference"));

@@ -96,7 +96,7 @@ TEST_F(PostsTest, EachReadsTheImageOfThePostBefore) {
   EXPECT_EQ(red(post("a", "gain") + "," + post("b", "gain", R"("parameters": {"gain": 1})")), 3.0f);
 }
 
-TEST_F(PostsTest, ReadImagesByTheNamesOfEarlierPosts) {
+TEST_F(PostsTest, InputsNameImagesOfEarlierPosts) {
   const std::string two = post("a", "gain") + "," + post("b", "gain") + ",";
   EXPECT_EQ(red(two + post("c", "sum", R"("inputs": {"other": "a"})")), 4.5f + 1.5f);
   EXPECT_EQ(red(two + post("c", "sum", R"("inputs": {"other": "scene"})")), 4.5f + 0.5f);
@@ -104,7 +104,7 @@ TEST_F(PostsTest, ReadImagesByTheNamesOfEarlierPosts) {
   EXPECT_EQ(red(two + post("c", "sum", R"("inputs": {"other": "b"})")), 9.0f);
 }
 
-TEST_F(PostsTest, OnlyImagesThatAreStillReadAreKept) {
+TEST_F(PostsTest, KeepsOnlyImagesThatAreReadLater) {
   std::string chain = post("p0", "gain");
   for (int i = 1; i < 8; ++i)
     chain += "," + post("p" + std::to_string(i), "gain", R"("parameters": {"gain": 1})");
@@ -191,7 +191,7 @@ TEST_F(PostsTest, PostsWithUnusedImagesAreSkipped) {
   EXPECT_EQ(red_of(*made), 2.25f);
 }
 
-TEST_F(PostsTest, SkippingKeepsEveryBit) {
+TEST_F(PostsTest, SkippingChangesNoBit) {
   const std::string chain = post("a", "gain", R"("parameters": {"gain": 0})") + "," + post("b", "gain") +
                             "," + post("unread", "fill") + "," +
                             post("c", "gain", R"("inputs": {"color": "b"})");
@@ -239,7 +239,7 @@ TEST_F(PostsTest, TheLastPostMakesTheWholeImage) {
       "error[out-of-range]: post \"a\" makes the scene's image"));
 }
 
-TEST_F(PostsTest, ImagesAndParametersAreThoseOfTheDocument) {
+TEST_F(PostsTest, ReportsUnknownImagesAndParameters) {
   EXPECT_TRUE(
       fails_with(post("a", "sum"), "error[unknown-image]: post \"a\" has no input for the image \"other\""));
   EXPECT_TRUE(fails_with(post("a", "sum", R"("inputs": {"othr": "scene", "other": "scene"})"),

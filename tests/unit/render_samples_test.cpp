@@ -38,7 +38,7 @@ uint32_t bits_of_mean(const std::array<float, 4>& samples) {
   return std::bit_cast<uint32_t>(image.rgba[0]);
 }
 
-TEST(Halve, GivesTheMeanOfEachChannelAndOfTheDepth) {
+TEST(Halve, AveragesEachChannelAndTheDepth) {
   Image image = two_by_two({0.5f, 1, 0, 0.25f});
   render::halve(image);
   EXPECT_EQ(image.width, 1);
@@ -60,7 +60,7 @@ TEST(Halve, TakesEachPixelFromItsOwnSamples) {
   for (size_t i = 0; i < 24; ++i) EXPECT_EQ(image.rgba[i], static_cast<float>(10 * (i / 4) + i % 4));
 }
 
-TEST(Halve, NeitherOverflowsNorLeavesDenormalsOrSeveralNaNs) {
+TEST(Halve, AvoidsOverflowDenormalsAndNoncanonicalNans) {
   EXPECT_EQ(bits_of_mean({largest, largest, largest, largest}), std::bit_cast<uint32_t>(largest));
   EXPECT_EQ(bits_of_mean({largest, largest, -largest, -largest}), 0u);
   EXPECT_EQ(bits_of_mean({0x1p-126f, 0x1p-126f, 0x1p-126f, 0x1p-126f}), 0u);
@@ -69,7 +69,7 @@ TEST(Halve, NeitherOverflowsNorLeavesDenormalsOrSeveralNaNs) {
   EXPECT_EQ(bits_of_mean({1, std::bit_cast<float>(0xffc12345u), 1, 1}), 0x7fc00000u);
 }
 
-TEST(MeanOfFour, HasTheErrorThatItStates) {
+TEST(MeanOfFour, ErrorIsWithinItsStatedBound) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> any(-1, 1);
   for (int i = 0; i < 100'000; ++i) {
@@ -124,7 +124,7 @@ class SamplesTest : public ::testing::Test {
   support::Diagnostics diagnostics_;
 };
 
-TEST_F(SamplesTest, MakeTheFrameLargerAndLeaveTheCameraAndThePixelAsTheyAre) {
+TEST_F(SamplesTest, EnlargeTheFrameButNotThePixelSize) {
   const std::string members =
       R"("size": [30, 20], "objects": {"o": {"mesh": "box", "effect": "plain.json"}})";
   const auto one = plan(members);
@@ -162,7 +162,7 @@ TEST_F(SamplesTest, AreAveragedAtEdges) {
   EXPECT_EQ(image.depth[8 + 2], 0.5f * image.depth[8 + 3]);
 }
 
-TEST_F(SamplesTest, LeaveOutPartsWithoutTriangles) {
+TEST_F(SamplesTest, SkipPartsWithoutTriangles) {
   const std::string members = R"("size": [600, 300], "samples": 16, "background": [0.3, 1e-38, 0.1, 1],
     "objects": {"o": {"mesh": "plane", "effect": "plain.json", "transform": {"rotate": [90, 0, 0], "scale": 0.01,
                                                                            "translate": [3, 1, 0]}}})";
@@ -180,7 +180,7 @@ TEST_F(SamplesTest, LeaveOutPartsWithoutTriangles) {
   EXPECT_EQ(pixel(0)[0], 0.3f);
 }
 
-TEST_F(SamplesTest, PostsRunOverTheImage) {
+TEST_F(SamplesTest, PostsRunAtImageResolution) {
   const auto made =
       plan(R"("size": [12, 6], "samples": 16, "posts": [{"name": "p", "effect": "sizes.json"}])");
   ASSERT_TRUE(made) << diagnostics_.text();
@@ -190,7 +190,7 @@ TEST_F(SamplesTest, PostsRunOverTheImage) {
   EXPECT_EQ(image.rgba[1], 6.0f);
 }
 
-TEST_F(SamplesTest, AreRefusedWhereTheFrameWouldBeTooLarge) {
+TEST_F(SamplesTest, AreRejectedIfTheFrameWouldBeTooLarge) {
   EXPECT_TRUE(plan(R"("size": [2048, 1], "samples": 16)"));
   EXPECT_FALSE(plan(R"("size": [2049, 1], "samples": 16)"));
   EXPECT_NE(diagnostics_.text().find(

@@ -88,13 +88,13 @@ class Textures : public ::testing::Test {
   std::optional<scene::Scene> scene_;
 };
 
-TEST_F(Textures, AreShownUprightFromTheUpperLeft) {
+TEST_F(Textures, AreUprightWithTheOriginAtTheUpperLeft) {
   const auto made = plan(square("shown"));
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(draw(*made), picture().texels);
 }
 
-TEST_F(Textures, TrilinearShowsTheMipLevelOfThePixelsSize) {
+TEST_F(Textures, TrilinearSelectsTheMipLevelByPixelSize) {
   const auto made = plan(square("small"), 2);
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(draw(*made), as_bytes(scene::half_size(picture())));

@@ -29,7 +29,7 @@ bool cube_outside(glm::vec3 centre, float half) {
   return outside_view(centre - half, centre + half, projection(), width, height);
 }
 
-TEST(Visibility, KeepsWhatReachesIntoTheView) {
+TEST(Visibility, KeepsBoxesThatReachIntoTheView) {
   EXPECT_FALSE(cube_outside({0, 0, -10}, 1));
   EXPECT_FALSE(cube_outside({0, 11, -10}, 1));   // its lower edge, at the back
   EXPECT_FALSE(cube_outside({-21, 0, -10}, 1));  // twice as wide as high
@@ -38,7 +38,7 @@ TEST(Visibility, KeepsWhatReachesIntoTheView) {
   EXPECT_FALSE(cube_outside({0, 0, -1e8f}, 1));  // the view has no end
 }
 
-TEST(Visibility, SkipsWhatLiesOnOneSide) {
+TEST(Visibility, SkipsBoxesOutsideOnePlane) {
   EXPECT_TRUE(cube_outside({0, 0, 10}, 1));         // behind
   EXPECT_TRUE(cube_outside({0, 0, -0.5f}, 0.25f));  // before the near plane
   EXPECT_TRUE(cube_outside({0, 13, -10}, 1));
@@ -53,7 +53,7 @@ TEST(Visibility, LeavesAMarginForSnapping) {
   EXPECT_TRUE(cube_outside({0, 10.5f, -10}, 0.01f));
 }
 
-TEST(Visibility, KeepsWhatItCannotTell) {
+TEST(Visibility, KeepsBoxesWithNonFiniteBounds) {
   const float inf = std::numeric_limits<float>::infinity();
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const glm::mat4 view = projection();

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
+#include <string>
 
 #include "runtime/scene/chromaticities.h"
 #include "runtime/scene/image_file.h"
@@ -59,7 +61,7 @@ void expect_values(const ExrPart& part, const FileImage& image, float error) {
 
 class ExrCompression : public ::testing::TestWithParam<int> {};
 
-TEST_P(ExrCompression, IsReadInRowsAndTilesOfEveryType) {
+TEST_P(ExrCompression, IsReadInScanlinesAndTilesOfEveryType) {
   const auto compression = static_cast<Imf::Compression>(GetParam());
   const bool lossy = compression >= Imf::B44_COMPRESSION;
   for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
@@ -87,7 +89,11 @@ TEST_P(ExrCompression, IsReadInRowsAndTilesOfEveryType) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, ExrCompression, ::testing::Range(0, int{Imf::NUM_COMPRESSION_METHODS}));
+constexpr const char* compression_names[] = {"none",  "rle", "zips", "zip",  "piz",
+                                             "pxr24", "b44", "b44a", "dwaa", "dwab"};
+static_assert(std::size(compression_names) == size_t{Imf::NUM_COMPRESSION_METHODS});
+INSTANTIATE_TEST_SUITE_P(Methods, ExrCompression, ::testing::Range(0, int{Imf::NUM_COMPRESSION_METHODS}),
+                         [](const auto& info) { return std::string(compression_names[info.param]); });
 
 TEST(Exr, DataWindowIsPlacedInTheDisplayWindow) {
   ExrPart part;
@@ -132,7 +138,7 @@ TEST(Exr, DataOutsideTheDisplayWindowAreCropped) {
   }
 }
 
-TEST(Exr, TheFirstPartWithColoursIsRead) {
+TEST(Exr, ReadsTheFirstPartWithColours) {
   ExrPart depth, color, other;
   depth.name = "depth";
   depth.channels = {{"Z", Imf::FLOAT}};
@@ -162,7 +168,7 @@ TEST(Exr, GreyBecomesThreeEqualColours) {
   EXPECT_EQ(pixel(decoded(exr_file(part)), 1, 0), (std::array<float, 4>{0.125f, 0.125f, 0.125f, 1.125f}));
 }
 
-TEST(Exr, ChromaAndSparseColoursAreRefusedByName) {
+TEST(Exr, RejectsChromaAndSubsampledColours) {
   ExrPart part;
   part.channels = {{"Y"}, {"RY", Imf::HALF, 2}, {"BY", Imf::HALF, 2}};
   part.display = {{0, 0}, {7, 5}};
@@ -212,7 +218,7 @@ TEST(Exr, PrimariesAreConvertedToRec709) {
   EXPECT_NE(reason(exr_file(part)).find("chromaticities are degenerate"), std::string::npos);
 }
 
-TEST(Exr, TheMatrixOfRec2020HasTheseBits) {
+TEST(Exr, Rec2020MatrixHasTheRecordedBits) {
   const auto found =
       scene::to_rec709({{0.708f, 0.292f}, {0.170f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.3290f}});
   ASSERT_TRUE(found.valid && found.matrix);
@@ -239,7 +245,7 @@ TEST(Exr, NonFiniteNumbersAreClampedAndCounted) {
   }
 }
 
-TEST(Exr, TruncatedFilesAreErrors) {
+TEST(Exr, RejectsTruncatedFiles) {
   for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
     for (const bool tiled : {false, true}) {
       ExrPart part;
@@ -276,7 +282,7 @@ TEST(Exr, ChunksWithTooFewSamplesAreErrors) {
   }
 }
 
-TEST(Exr, ChunksOfZerosAreErrors) {
+TEST(Exr, RejectsChunksOfZeros) {
   ExrPart part;
   part.display = {{0, 0}, {63, 63}};
   for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
@@ -324,7 +330,7 @@ TEST(Exr, TiledFilesWithoutATileSizeAreRefused) {
   EXPECT_NE(reason(bytes).find("tiles"), std::string::npos);
 }
 
-TEST(Exr, DeepFilesAreRefused) {
+TEST(Exr, RejectsDeepFiles) {
   std::string bytes = exr_file(ExrPart());
   bytes[5] = 8;
   EXPECT_EQ(reason(bytes), "it is deep: its pixels are lists");

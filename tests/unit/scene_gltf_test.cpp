@@ -117,7 +117,7 @@ TEST_F(Gltf, MirroringTransformsKeepTheOutsideOutside) {
   EXPECT_EQ(model.mesh.vertices[word::tangent + 3], -1.0f);
 }
 
-TEST_F(Gltf, HasAPartForEachMaterialInTheOrderOfTheFile) {
+TEST_F(Gltf, HasOnePartPerMaterialInFileOrder) {
   const Model model = loaded(materials_json());
   ASSERT_EQ(model.parts.size(), 3u);
   EXPECT_EQ(model.parts[0].material_index, 1);
@@ -142,7 +142,7 @@ TEST_F(Gltf, HasAPartForEachMaterialInTheOrderOfTheFile) {
   EXPECT_EQ(vertices * word::stride, model.mesh.vertices.size());
 }
 
-TEST_F(Gltf, RefusesMaterialsBeyondItsLimit) {
+TEST_F(Gltf, RejectsTooManyMaterials) {
   std::string primitives, materials;
   for (size_t i = 1; i <= scene::max_gltf_parts; ++i) {
     primitives += R"(, {"attributes": {"POSITION": 0}, "indices": 4, "material": )" + std::to_string(i) + "}";
@@ -213,7 +213,7 @@ TEST_F(Gltf, RefusesQuantitiesThatAreNotNumbers) {
                            "/nodes/0/translation/0 is a string"));
 }
 
-TEST_F(Gltf, RefusesOtherVersions) {
+TEST_F(Gltf, RejectsOtherVersions) {
   EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": "1.0"})", "of version \"1.0\", not 2"));
   EXPECT_TRUE(refuses_json(R"({"version": "2.0"})", R"({"version": 2.0})", "it is not a glTF"));
 }
@@ -298,7 +298,7 @@ TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
   }
 }
 
-TEST_F(Gltf, RefusesRequiredExtensionsAndLaterVersions) {
+TEST_F(Gltf, RejectsRequiredExtensionsAndLaterVersions) {
   for (const char* name :
        {"KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness", "KHR_lights_punctual"})
     EXPECT_TRUE(

@@ -64,7 +64,7 @@ TEST_F(GltfTextures, BaseColourAndEmissionAreSrgb) {
     EXPECT_EQ(image.srgb, name == "base_color_texture" || name == "emissive_texture") << name;
 }
 
-TEST_F(GltfTextures, ComeFromFilesBelowTheFolder) {
+TEST_F(GltfTextures, AreReadFromFilesBelowTheFolder) {
   folder_.write("m.bin", testing::square_data());
   const std::string file = folder_.write("maps/a b+c.png", "no image");
   const auto model = load(gltf(R"({"uri": "maps/a%20b+c.png"})"), "m.gltf");

@@ -47,7 +47,7 @@ Floats reds(const std::string& bytes) {
   return found;
 }
 
-TEST(Hdr, ColoursAreDividedByEveryExposureAndCorrection) {
+TEST(Hdr, DividesColoursByEveryExposureAndCorrection) {
   const std::string one = "-Y 1 +X 1";
   EXPECT_EQ(colors(hdr("", one, unit)), (Floats{1, 0.5f, 0.25f}));
   EXPECT_EQ(colors(hdr("EXPOSURE=2\n", one, unit)), (Floats{0.5f, 0.25f, 0.125f}));
@@ -88,7 +88,7 @@ TEST(Hdr, NewRunLengthsAndPlainPixelsAreRead) {
   EXPECT_EQ(colors(hdr("", "-Y 1 +X 1", std::string("\xff\xff\xff\0", 4))), (Floats{0, 0, 0}));
 }
 
-TEST(Hdr, AllEightOrientationsAreTurnedUpright) {
+TEST(Hdr, TurnsAllEightOrientationsUpright) {
   std::string pixels;
   for (int i = 1; i <= 6; ++i) pixels += red(i);
   // Three columns, two rows.
@@ -118,7 +118,7 @@ TEST(Hdr, PrimariesAreConvertedToRec709) {
   EXPECT_NE(reason(hdr("PRIMARIES=1 2 3\n", one, unit)).find("eight numbers"), std::string::npos);
 }
 
-TEST(Hdr, XyzIsRefusedByName) {
+TEST(Hdr, RejectsXyz) {
   EXPECT_NE(reason("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + unit).find("XYZ"),
             std::string::npos);
 }
@@ -131,7 +131,7 @@ TEST(Hdr, OverflowIsClampedAndCounted) {
   EXPECT_EQ(image.found->rgba[0], 65504);
 }
 
-TEST(Hdr, TruncatedFilesAreErrors) {
+TEST(Hdr, RejectsTruncatedFiles) {
   const std::string packed = std::string("\2\2\0\10", 4) + std::string("\x88\x80\x88\x40\x88\x20\x88\x81", 8);
   for (const std::string& whole : {hdr("", "-Y 3 +X 2", units(6)), hdr("", "-Y 1 +X 4", unit + "\1\1\1\3"),
                                    hdr("EXPOSURE=2\n", "-Y 1 +X 8", packed)}) {

@@ -87,7 +87,7 @@ TEST_F(ImageFile, ExrKeepsEveryFiniteColourAndEveryDepth) {
   }
 }
 
-TEST_F(ImageFile, PixelsThatAreNotFiniteAreClampedWithAWarningThatNamesTheFile) {
+TEST_F(ImageFile, NonFinitePixelsAreClampedWithAWarning) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   FileImage image{3, 1, {}, {inf, 1, -inf, 1, 1, 2, 3, 1, 0, nan, 0, 1}, {0, 0, 0}};
   for (const bool clean : {false, true}) {
@@ -132,7 +132,7 @@ TEST_F(ImageFile, RefusesUnknownExtensionsBeforeRendering) {
   EXPECT_EQ(file_count(), 0u);
 }
 
-TEST_F(ImageFile, RefusesDamagedFilesWithAReason) {
+TEST_F(ImageFile, RejectsDamagedFilesWithAReason) {
   const FileImage image = special_image(40, 30);
   Diagnostics diagnostics;
   for (const std::string name : {"a.exr", "a.png"}) {
@@ -163,7 +163,7 @@ TEST_F(ImageFile, FilesAreReplacedAtomicallyAndKeepTheirMode) {
   EXPECT_EQ(file_count(), 1u);  // no temporary file is left
 }
 
-TEST_F(ImageFile, NewFilesHaveTheUsualMode) {
+TEST_F(ImageFile, NewFilesFollowTheUmask) {
   const mode_t mask = ::umask(022);
   Diagnostics diagnostics;
   ASSERT_TRUE(scene::write_file(path("f"), "x", diagnostics));
@@ -171,7 +171,7 @@ TEST_F(ImageFile, NewFilesHaveTheUsualMode) {
   EXPECT_EQ(static_cast<int>(fs::status(path("f")).permissions()), 0644);
 }
 
-TEST_F(ImageFile, LinksAreWrittenThrough) {
+TEST_F(ImageFile, SymlinksAreWrittenThrough) {
   Diagnostics diagnostics;
   ASSERT_TRUE(scene::write_file(path("f"), "old", diagnostics));
   fs::create_symlink("f", folder_ / "link");

@@ -92,7 +92,7 @@ TEST(Jpeg, DecodesToTheRecordedBytes) {
 
 // Each kind of vector instructions has its own code in libjpeg-turbo, which asks for its variables once in a process.
 // The last two are glibc's: what is allocated holds such bytes before it is written.
-TEST(Jpeg, DecodesToTheSameBytesWithAllInstructionsAndAnyMemory) {
+TEST(Jpeg, DecodesIdenticallyWithAnyInstructionSetAndMemory) {
   for (const char* variable : {"JSIMD_FORCENONE=1", "JSIMD_FORCESSE2=1", "JSIMD_FORCEAVX2=1",
                                "MALLOC_PERTURB_=165", "MALLOC_PERTURB_=90"}) {
     const std::string command = std::string("exec env ") + variable + " /proc/" + std::to_string(getpid()) +

@@ -47,7 +47,7 @@ class LoadScene : public ::testing::Test {
   support::Diagnostics diagnostics_;
 };
 
-TEST_F(LoadScene, ExtendsAnother) {
+TEST_F(LoadScene, ExtendsAnotherScene) {
   const auto scene = load(R"("extends": "base/base.json", "size": [4, 4], "camera": {"fov": 60},
       "lights": {"sun": {"outer_angle": 25}},
       "objects": {"box": null, "ball": {"parameters": {"a": 5, "b": null, "c": 6}},
@@ -133,7 +133,7 @@ TEST_F(LoadScene, AnExtendingSceneNeedsTheKeysOfADocument) {
             std::string::npos);
 }
 
-TEST_F(LoadScene, SuggestsTheKeyThatExtends) {
+TEST_F(LoadScene, SuggestsExtendsForMisspelledKeys) {
   load(R"("extend": "base/base.json")");
   EXPECT_NE(diagnostics_.text().find("did you mean \"extends\"?"), std::string::npos) << diagnostics_.text();
 }

@@ -60,7 +60,7 @@ std::string hash_of(const Mesh& mesh, int first, int last) {
   return hash.hex();
 }
 
-TEST(Mesh, IndicesPointToVertices) {
+TEST(Mesh, IndicesAreInRange) {
   for (const MeshShape& shape : shapes) {
     const Mesh mesh = scene::make_mesh(shape);
     EXPECT_EQ(mesh.indices.size() % 3, 0u);
@@ -87,7 +87,7 @@ TEST(Mesh, NormalsAreUnitAndAgreeWithTheWinding) {
   }
 }
 
-TEST(Mesh, ClosedMeshesHaveEveryEdgeTwiceInOppositeDirections) {
+TEST(Mesh, ClosedMeshesAreWatertightAndOriented) {
   using Point = std::array<float, 3>;
   for (const MeshShape& shape : shapes) {
     if (shape.kind == MeshKind::plane) continue;
@@ -106,7 +106,7 @@ TEST(Mesh, ClosedMeshesHaveEveryEdgeTwiceInOppositeDirections) {
   }
 }
 
-TEST(Mesh, SpheresAreRoundAndTheirPolesPoints) {
+TEST(Mesh, SpheresHaveTheirRadiusAndExactPoles) {
   const Mesh mesh = scene::make_mesh({MeshKind::sphere, {2, 2, 2}, 64, 32});
   for (size_t v = 0; v < mesh.vertices.size() / word::stride; ++v)
     ASSERT_NEAR(glm::length(vector_at(mesh, v, word::position)), 2.0f, 1e-6f);
@@ -117,7 +117,7 @@ TEST(Mesh, SpheresAreRoundAndTheirPolesPoints) {
   EXPECT_EQ(vector_at(mesh, 0, word::position), glm::vec3(0, 2, 0));
 }
 
-TEST(Mesh, TextureRunsRightAndDownSeenFromOutside) {
+TEST(Mesh, TexcoordsRunRightAndDownSeenFromOutside) {
   const Mesh sphere = scene::make_mesh({MeshKind::sphere, {1, 1, 1}, 4, 2});
   // The equator, from the seam at -z over -x, +z and +x.
   const size_t equator = 4;
@@ -130,7 +130,7 @@ TEST(Mesh, TextureRunsRightAndDownSeenFromOutside) {
   EXPECT_EQ(plane.vertices[word::texcoord], 0.0f);
 }
 
-TEST(Mesh, TangentsAreUnitAndRunAlongUWithTheirNormalsAndUpRightHanded) {
+TEST(Mesh, TangentsAreUnitAlongUAndRightHanded) {
   for (const MeshShape& shape : shapes) {
     const Mesh mesh = scene::make_mesh(shape);
     for (size_t t = 0; t < mesh.indices.size(); t += 3) {
@@ -198,7 +198,7 @@ TEST(Mesh, HasTheSameBitsOnEveryMachine) {
   }
 }
 
-TEST(OutlineNormals, PointAwayFromACubeAtItsCornersEvenly) {
+TEST(OutlineNormals, PointDiagonallyAtCubeCorners) {
   // Whichever way the two triangles of a face lie: it is the angle that counts.
   for (const float size : {1.0f, 2e-6f, 1e6f}) {
     const Mesh cube = scene::make_mesh({MeshKind::box, glm::vec3(size), 1, 1});
@@ -210,7 +210,7 @@ TEST(OutlineNormals, PointAwayFromACubeAtItsCornersEvenly) {
   }
 }
 
-TEST(OutlineNormals, AreUnitAndOneForAllVerticesAtAPosition) {
+TEST(OutlineNormals, AreUnitAndSharedByVerticesAtOnePosition) {
   for (const MeshShape& shape : shapes) {
     const Mesh mesh = scene::make_mesh(shape);
     std::map<std::array<float, 3>, glm::vec3> known;
@@ -223,7 +223,7 @@ TEST(OutlineNormals, AreUnitAndOneForAllVerticesAtAPosition) {
   }
 }
 
-TEST(OutlineNormals, AgreeWithTheNormalsOfSmoothMeshes) {
+TEST(OutlineNormals, MatchTheNormalsOfSmoothMeshes) {
   for (const MeshShape& shape : {shapes[0], MeshShape{MeshKind::icosphere, {1, 1, 1}, 1, 4},
                                  MeshShape{MeshKind::torus, {1, 0.25f, 1}, 64, 32}}) {
     const Mesh mesh = scene::make_mesh(shape);
@@ -240,7 +240,7 @@ glm::vec3 corner_normal(const Mesh& mesh, size_t vertex, int which) {
   return glm::normalize(glm::vec3(n[0], n[1], n[2]));
 }
 
-TEST(CornerNormals, AreThoseOfTheThreeSidesOfABox) {
+TEST(CornerNormals, AreTheThreeFaceNormalsAtBoxCorners) {
   const Mesh box = scene::make_mesh({MeshKind::box, glm::vec3(2, 3, 5), 1, 1});
   for (size_t v = 0; v < box.vertices.size() / word::stride; ++v) {
     const glm::vec3 corner = glm::sign(vector_at(box, v, word::position));
@@ -254,7 +254,7 @@ TEST(CornerNormals, AreThoseOfTheThreeSidesOfABox) {
   }
 }
 
-TEST(CornerNormals, AreOneForAllVerticesAtAPositionAndTheOutlineNormalWhereTheSurfaceIsSmooth) {
+TEST(CornerNormals, AreSharedAtOnePositionAndEqualOutlineNormalsIfSmooth) {
   for (const MeshShape& shape : shapes) {
     const Mesh mesh = scene::make_mesh(shape);
     std::map<std::array<float, 3>, std::array<glm::vec3, 3>> known;
@@ -270,7 +270,7 @@ TEST(CornerNormals, AreOneForAllVerticesAtAPositionAndTheOutlineNormalWhereTheSu
   }
 }
 
-TEST(CornerNormals, ArePackedToWithinElevenTenThousandthsOfARadian) {
+TEST(CornerNormals, PackingErrorIsAtMost1100Microradians) {
   const lanes::FpGuard guard;
   for (int i = 0; i < 20'000; ++i) {
     const float z = std::sin(0.37f * static_cast<float>(i)), angle = 1.7f * static_cast<float>(i);
@@ -283,7 +283,7 @@ TEST(CornerNormals, ArePackedToWithinElevenTenThousandthsOfARadian) {
   }
 }
 
-TEST(OutlineNormals, AreTheShadingNormalsWhereTwoSidesCancelOut) {
+TEST(OutlineNormals, FallBackToShadingNormalsIfSidesCancel) {
   Mesh sheet = scene::make_mesh({MeshKind::plane, {1, 0, 1}, 1, 1});
   const size_t words = sheet.vertices.size(), corners = sheet.indices.size();
   for (size_t i = 0; i < words; ++i) {
@@ -297,7 +297,7 @@ TEST(OutlineNormals, AreTheShadingNormalsWhereTwoSidesCancelOut) {
     EXPECT_EQ(vector_at(sheet, v, word::outline_normal), glm::vec3(0, v < words / word::stride ? 1 : -1, 0));
 }
 
-TEST(Lathe, HasEdgesWhereItsProfileIsNotSmooth) {
+TEST(Lathe, HasHardEdgesWhereItsProfileIsNotSmooth) {
   const auto normals_at_the_rim = [](bool smooth) {
     const Mesh mesh = scene::make_mesh(lathe({{0, 0}, {1, 0, smooth}, {1, 1, false}}));
     std::vector<float> ups;
@@ -312,7 +312,7 @@ TEST(Lathe, HasEdgesWhereItsProfileIsNotSmooth) {
   EXPECT_NEAR(smooth[0], -std::sqrt(0.5f), 1e-6f);
 }
 
-TEST(Icosphere, HasFourTimesTheTrianglesWithEachSubdivision) {
+TEST(Icosphere, SubdivisionQuadruplesTheTriangles) {
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(scene::make_mesh({MeshKind::icosphere, {1, 1, 1}, 1, i}).indices.size(), 60u << (2 * i));
 }

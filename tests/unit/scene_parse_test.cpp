@@ -63,19 +63,19 @@ TEST(ParseScene, ReadsEveryPart) {
   EXPECT_EQ(scene.output.encoding, scene::Encoding::linear);
 }
 
-TEST(ParseScene, NeedsOnlyACamera) {
+TEST(ParseScene, RequiresOnlyACamera) {
   const ParsedScene parsed = parse_members("");
   ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
   EXPECT_EQ(parsed.scene->background, (std::array<float, 4>{0, 0, 0, 1}));
   EXPECT_TRUE(parse_text(R"({"isoshade": 1, "scene": "s"})").fails_with("missing-key"));
 }
 
-TEST(ParseScene, RefusesOtherKindsOfDocument) {
+TEST(ParseScene, RejectsOtherKindsOfDocument) {
   EXPECT_TRUE(parse_text(R"({"isoshade": 1, "effect": "e"})").fails_with("wrong-kind"));
   EXPECT_TRUE(parse_text(R"([1])").fails_with("wrong-type"));
 }
 
-TEST(ParseScene, GridsCountTheFirstAxisFastest) {
+TEST(ParseScene, FirstGridAxisVariesFastest) {
   const ParsedScene parsed = parse_members(R"("objects": {"balls": {"mesh": "sphere", "effect": "e.json",
     "transform": {"translate": [10, 0, 0]},
     "repeat": [{"count": 3, "step": [2, 0, 0], "parameters": {"roughness": {"from": 0.1, "to": 0.7}}},
@@ -98,14 +98,14 @@ TEST(ParseScene, GridsCountTheFirstAxisFastest) {
             (std::vector<float>{0, 1, 0}));
 }
 
-TEST(ParseScene, SuggestsTheKeyThatWasMeant) {
+TEST(ParseScene, SuggestsTheNearestKey) {
   const ParsedScene parsed = parse_members(R"("objects": {"ball": {"mesh": "sphere", "efect": "e.json"}})");
   EXPECT_FALSE(parsed.scene);
   EXPECT_NE(parsed.diagnostics.text().find("\"effect\""), std::string::npos) << parsed.diagnostics.text();
   EXPECT_TRUE(parse_members(R"("objects": {"b": {"mesh": "shpere", "effect": "e"}})").fails_with("shpere"));
 }
 
-TEST(ParseScene, KnowsEveryMesh) {
+TEST(ParseScene, ReadsEveryMeshType) {
   const auto mesh_of = [](const std::string& mesh) {
     const ParsedScene parsed = parse_members(R"("objects": {"b": {"mesh": )" + mesh + R"(, "effect": "e"}})");
     EXPECT_TRUE(parsed.scene) << mesh;
@@ -132,7 +132,7 @@ TEST(ParseScene, KnowsEveryMesh) {
             (std::vector<scene::ProfilePoint>{{0, -1, false}, {1, 0, true}, {0.5f, 1, false}}));
 }
 
-TEST(ParseScene, RefusesMeshesWithoutASurface) {
+TEST(ParseScene, RejectsDegenerateMeshes) {
   const auto fails_with = [](const std::string& mesh, const char* text) {
     return parse_members(R"("objects": {"b": {"mesh": )" + mesh + R"(, "effect": "e"}})").fails_with(text);
   };
@@ -156,7 +156,7 @@ TEST(ParseScene, RefusesMeshesWithoutASurface) {
   EXPECT_TRUE(profile_fails_with("[1, 0], {\"smooth\": true}", "missing-key"));
 }
 
-TEST(ParseScene, ReportsSeveralErrorsWithTheirPlaces) {
+TEST(ParseScene, ReportsSeveralErrorsWithPositions) {
   const ParsedScene parsed =
       parse_members("\"size\": [0, 1],\n\"background\": [1],\n\"lights\": {\"1x\": {}}");
   EXPECT_FALSE(parsed.scene);
@@ -165,12 +165,12 @@ TEST(ParseScene, ReportsSeveralErrorsWithTheirPlaces) {
     EXPECT_GT(diagnostic.where.line(), 0u) << diagnostic.message;
 }
 
-TEST(ParseScene, RefusesPostsWithoutNames) {
+TEST(ParseScene, RejectsPostsWithoutNames) {
   EXPECT_TRUE(parse_members(R"("posts": [{"name": "", "effect": "p.json"}])").fails_with("bad-id"));
   EXPECT_TRUE(parse_members(R"("posts": [{"effect": "p.json"}])").fails_with("missing-key"));
 }
 
-TEST(ParseScene, RefusesViewsWithoutDirection) {
+TEST(ParseScene, RejectsDegenerateCameras) {
   const auto camera = [](const std::string& members) {
     return parse_members("\"camera\": {" + members + "}");
   };
@@ -206,7 +206,7 @@ TEST(ParseScene, RefusesScalesAndDirectionsOfZero) {
                   .fails_with("outer_angle"));
 }
 
-TEST(ParseScene, RefusesNumbersBeyondItsLimits) {
+TEST(ParseScene, RejectsNumbersOutOfRange) {
   EXPECT_TRUE(parse_members(R"("size": [8193, 1])").fails_with("out-of-range"));
   EXPECT_TRUE(parse_members(R"("size": [99999999999999999999, 1])").fails_with("wrong-type"));
   EXPECT_TRUE(parse_members(R"("size": [1.5, 1])").fails_with("wrong-type"));
@@ -264,7 +264,7 @@ TEST(ParseScene, RefusesAParameterThatIsSetTwice) {
   EXPECT_TRUE(parsed.fails_with("duplicate-name")) << parsed.first_error();
 }
 
-TEST(ParseScene, ChecksVariations) {
+TEST(ParseScene, RejectsInvalidVariations) {
   const auto varied = [](const std::string& variation) {
     return parse_members(R"("objects": {"b": {"mesh": "box", "effect": "e",
       "repeat": [{"count": 3, "step": [1, 0, 0], "parameters": {"p": )" +
@@ -306,7 +306,7 @@ TEST(ParseScene, RefusesDuplicateNames) {
   EXPECT_TRUE(parse_members(R"("objects": {"a b": {"mesh": "box", "effect": "e"}})").fails_with("bad-id"));
 }
 
-TEST(ParseScene, ReadsPostsInTheirOrder) {
+TEST(ParseScene, ReadsPostsInOrder) {
   const auto parsed = parse_members(R"("posts": [
     {"name": "small", "effect": "blur.json", "size": 0.5, "parameters": {"radius": 3}},
     {"name": "glow", "effect": "../fx/glow.json", "inputs": {"color": "scene", "blurred": "small"}}])");
@@ -340,7 +340,7 @@ TEST(ParseScene, PostsReadOnlyImagesOfEarlierPosts) {
                   .fails_with("wrong-type"));
 }
 
-TEST(ParseScene, PostsHaveNamesOfTheirOwnAndSizesUpToTheScenes) {
+TEST(ParseScene, RejectsPostsWithDuplicateNamesOrBadSizes) {
   const auto posts = [](const std::string& list) { return parse_members("\"posts\": [" + list + "]"); };
   EXPECT_TRUE(
       posts(R"({"name": "a", "effect": "e"}, {"name": "a", "effect": "e"})").fails_with("duplicate-name"));

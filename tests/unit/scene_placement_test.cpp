@@ -23,7 +23,7 @@ void expect_near(const glm::vec4& a, const glm::vec4& b, float tolerance = 1e-5f
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
-TEST(Placement, AnglesAreExactAtQuartersAndSymmetric) {
+TEST(Placement, AnglesAreExactAtQuarterTurnsAndSymmetric) {
   const lanes::FpGuard guard;
   constexpr float sines[] = {0, 1, 0, -1};
   for (int quarter = -40; quarter <= 40; ++quarter) {
@@ -57,7 +57,7 @@ TEST(Placement, PerspectiveDepthIsReversedWithAnInfiniteFarPlane) {
   EXPECT_EQ(view.eye, glm::vec4(1, 2, 3, 1));
 }
 
-TEST(Placement, TheFieldOfViewIsVerticalAndThePixelsSquare) {
+TEST(Placement, FieldOfViewIsVerticalAndPixelsAreSquare) {
   const lanes::FpGuard guard;
   Camera camera;
   camera.fov = 90;
@@ -95,7 +95,7 @@ TEST(Placement, ScalesThenRotatesThenTranslates) {
   EXPECT_EQ(scene::multiply(model, glm::vec4(0, 0, 1, 1)), glm::vec4(14, 20, 30, 1));
 }
 
-TEST(Placement, QuaternionsRotateAsTheirAnglesDo) {
+TEST(Placement, QuaternionsMatchEulerAngles) {
   const lanes::FpGuard guard;
   Object by_angle;
   by_angle.transform.rotate = {0, 60, 0};
@@ -107,7 +107,7 @@ TEST(Placement, QuaternionsRotateAsTheirAnglesDo) {
   }
 }
 
-TEST(Placement, NormalsStandOnScaledAndMirroredSurfaces) {
+TEST(Placement, NormalsStayPerpendicularUnderScalingAndMirroring) {
   const lanes::FpGuard guard;
   for (const float mirror : {1.0f, -1.0f}) {
     Object object;
@@ -124,7 +124,7 @@ TEST(Placement, NormalsStandOnScaledAndMirroredSurfaces) {
   }
 }
 
-TEST(Placement, InversesTakePointsBack) {
+TEST(Placement, InverseMatricesMapPointsBack) {
   const lanes::FpGuard guard;
   scene::Object object;
   object.transform.scale = {-2, 0.25f, 3};
@@ -155,7 +155,7 @@ TEST(Placement, LightRecordsPointTowardsTheLight) {
   EXPECT_EQ(record[word::range], 0.0f);
 }
 
-TEST(Placement, SpotsFallFromTheirInnerToTheirOuterAngle) {
+TEST(Placement, SpotFalloffRunsFromInnerToOuterAngle) {
   const lanes::FpGuard guard;
   scene::Light spot;
   spot.kind = scene::LightKind::spot;
@@ -198,7 +198,7 @@ TEST(Placement, ExtremeScenesStayFinite) {
     for (int r = 0; r < 3; ++r) EXPECT_TRUE(std::isfinite(normals[c][r]));
 }
 
-TEST(Placement, FramesHoldNoDenormalsAndOneNan) {
+TEST(Placement, CanonicalFlushesDenormalsAndUnifiesNans) {
   EXPECT_EQ(std::signbit(scene::canonical(-1e-40f)), true);
   EXPECT_EQ(scene::canonical(1e-40f), 0.0f);
   EXPECT_EQ(std::bit_cast<uint32_t>(scene::canonical(std::bit_cast<float>(0xffc12345u))), 0x7fc00000u);

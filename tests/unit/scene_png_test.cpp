@@ -14,7 +14,7 @@ const std::string palette = png_chunk("PLTE", "\xff\x33\x66\x33\xff\x99");
 
 float whole(int value) { return static_cast<float>(value) / 65535.0f; }
 
-TEST(Png, GreyIsThreeColoursAlike) {
+TEST(Png, GreyBecomesThreeEqualChannels) {
   EXPECT_EQ(rgba_of(png_file(2, 1, 8, 0, {std::string("\x00\x33", 2)}), true),
             (Floats{0, 0, 0, 1, 0.2f, 0.2f, 0.2f, 1}));
   EXPECT_EQ(rgba_of(png_file(1, 1, 8, 4, {"\x33\x66"}), true), (Floats{0.2f, 0.2f, 0.2f, 0.4f}));
@@ -26,7 +26,7 @@ TEST(Png, GreyIsThreeColoursAlike) {
   EXPECT_EQ(rgba_of(png_file(1, 1, 16, 4, {"\x12\x34\x56\x78"}), false)[3], whole(0x5678));
 }
 
-TEST(Png, PalettesBecomeColours) {
+TEST(Png, ExpandsPalettes) {
   EXPECT_EQ(rgba_of(png_file(2, 1, 8, 3, {std::string("\x01\x00", 2)}, palette), true),
             (Floats{0.2f, 1, 0.6f, 1, 1, 0.2f, 0.4f, 1}));
   EXPECT_EQ(
@@ -39,12 +39,12 @@ TEST(Png, PalettesBecomeColours) {
         << bits;
 }
 
-TEST(Png, SixteenBitsAreKept) {
+TEST(Png, KeepsSixteenBits) {
   EXPECT_EQ(rgba_of(png_file(1, 1, 16, 6, {std::string("\x00\x01\x80\x00\xff\xff\x12\x34", 8)}), false),
             (Floats{whole(1), whole(0x8000), 1, whole(0x1234)}));
 }
 
-TEST(Png, ATransparentColourHasAlphaZero) {
+TEST(Png, TransparentColourHasAlphaZero) {
   const auto alphas = [](const std::string& bytes, bool has_bytes) {
     Floats found;
     const Floats rgba = rgba_of(bytes, has_bytes);
@@ -97,7 +97,7 @@ std::vector<std::string> interlaced(size_t width, size_t height, size_t bits,
   return all;
 }
 
-TEST(Png, InterlacedOnesHaveTheSamePixels) {
+TEST(Png, InterlacingKeepsThePixels) {
   struct Kind {
     int type, bits, channels;
   };
@@ -135,7 +135,7 @@ TEST(Png, KeepsEveryByte) {
   for (size_t i = 0; i < rgba.size(); ++i) ASSERT_EQ(read->bytes[i / 4] >> (8 * (i % 4)) & 255, rgba[i]) << i;
 }
 
-TEST(Png, SaysNothingOfColourThatIsHeeded) {
+TEST(Png, IgnoresColourProfiles) {
   const std::string gamma = png_chunk("gAMA", big_endian(100000)),
                     srgb = png_chunk("sRGB", std::string(1, '\0'));
   const std::string profile = png_chunk("iCCP", std::string("p\0\0", 3) + stored("no profile"));
@@ -144,7 +144,7 @@ TEST(Png, SaysNothingOfColourThatIsHeeded) {
     EXPECT_EQ(rgba_of(png_file(1, 1, 8, 2, {"\x33\x66\x99"}, chunk), true), plain);
 }
 
-TEST(Png, ColoursBeyondThePaletteAreRefused) {
+TEST(Png, RejectsColoursBeyondThePalette) {
   const std::string three = png_chunk("PLTE", "abcdefghi");
   EXPECT_EQ(reason_of(png_file(4, 1, 8, 3, {std::string("\0\1\2\3", 4)}, three)),
             "a pixel has the colour 3 of a palette of 3");
@@ -161,7 +161,7 @@ TEST(Png, ColoursBeyondThePaletteAreRefused) {
   EXPECT_NE(reason_of(png_file(1, 1, 8, 3, {std::string(1, '\0')})), "");
 }
 
-TEST(Png, ADamagedTransparencyIsRefused) {
+TEST(Png, RejectsDamagedTransparency) {
   const std::vector<std::string> row = {std::string(1, '\0')};
   const std::string damaged = "its tRNS chunk is damaged";
   EXPECT_EQ(reason_of(png_file(1, 1, 8, 3, row, palette + png_chunk("tRNS", "abc"))), damaged);
@@ -174,7 +174,7 @@ TEST(Png, ADamagedTransparencyIsRefused) {
   EXPECT_EQ(reason_of(png_file(1, 1, 8, 4, {"ab"}, png_chunk("tRNS", "ab"))), "");
 }
 
-TEST(Png, CutShortGivesNoPicture) {
+TEST(Png, RejectsTruncatedFiles) {
   std::vector<uint8_t> rgba;
   for (int i = 0; i < 4 * 20 * 20; ++i) rgba.push_back(static_cast<uint8_t>(i * i));
   const std::string files[] = {scene::png(20, 20, rgba),
@@ -187,7 +187,7 @@ TEST(Png, CutShortGivesNoPicture) {
   }
 }
 
-TEST(Png, NoByteOfItsDataCanBeChanged) {
+TEST(Png, DetectsEveryChangedByte) {
   std::vector<uint8_t> rgba(4 * 9 * 9, 77);
   const std::string bytes = scene::png(9, 9, rgba);
   ASSERT_EQ(reason_of(bytes), "");
@@ -198,7 +198,7 @@ TEST(Png, NoByteOfItsDataCanBeChanged) {
   }
 }
 
-TEST(Png, SidesAreCheckedBeforeAnythingIsUnpacked) {
+TEST(Png, ChecksSizesBeforeDecoding) {
   for (const uint32_t side : {8193u, 0x7fffffffu, 0xffffffffu, 0u}) {
     const std::string reason = "a side is not from 1 to 8192 pixels";
     EXPECT_EQ(reason_of(png_file(side, 1, 8, 0, {std::string(1, '\0')})), reason) << side;
@@ -207,16 +207,16 @@ TEST(Png, SidesAreCheckedBeforeAnythingIsUnpacked) {
   EXPECT_EQ(reason_of(png_file(1, 1, 3, 0, {""})).rfind("its header is damaged", 0), 0u);
 }
 
-TEST(Png, WhatHasTooFewDataForItsSizeTakesNoMemory) {
+TEST(Png, RejectsTooLittleDataBeforeAllocating) {
   EXPECT_EQ(reason_of(png_file(8192, 8192, 16, 6, {std::string(1, '\0')})),
             "its 13 bytes of data are too few for its size");
 }
 
-TEST(Png, DataAreNotUnpackedBeyondTheRows) {
+TEST(Png, IgnoresDataBeyondTheRows) {
   EXPECT_EQ(rgba_of(png_file(1, 1, 8, 0, {"\x33" + std::string(60'000, 'a')}), true)[0], 0.2f);
 }
 
-TEST(Png, LargeChunksAreRead) {
+TEST(Png, LimitsTheSizeOfTextChunks) {
   const std::string text = png_chunk("tEXt", std::string("a\0", 2) + std::string(1 << 20, 'b'));
   EXPECT_EQ(reason_of(png_file(1, 1, 8, 0, {"a"}, text)), "");
   EXPECT_EQ(reason_of(png_file(1, 1, 8, 0, {"a"},

@@ -32,7 +32,7 @@ TEST(Settings, ReplaceAParameterOfAnObject) {
   EXPECT_EQ(find(parsed.scene->objects[1], "metallic")->value.number, 0.0f);
 }
 
-TEST(Settings, EndAVariationAlongAGrid) {
+TEST(Settings, ReplaceAVariationAlongAGrid) {
   const ParsedScene parsed = parse_members(members, {"roughness=0.5", "balls.tint=0.75"});
   ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
   const scene::Object& balls = parsed.scene->objects[0];
@@ -47,7 +47,7 @@ TEST(Settings, ReplaceTheNumberOfSamples) {
   EXPECT_EQ(parsed.scene->samples, 4);
 }
 
-TEST(Settings, ApplyOneAfterAnother) {
+TEST(Settings, ApplyInOrder) {
   const ParsedScene parsed = parse_members(members, {"gloss=0.1", "gloss=0.2", "balls.gloss=0.3"});
   ASSERT_TRUE(parsed.scene) << parsed.diagnostics.text();
   EXPECT_EQ(find(parsed.scene->objects[0], "gloss")->value.number, 0.3f);
@@ -67,7 +67,7 @@ TEST(Settings, ReplaceAParameterOfAPost) {
   EXPECT_TRUE(parse_members(posts, {"gloss=1"}).fails_with("2 objects or posts have a parameter \"gloss\""));
 }
 
-TEST(Settings, ReachCameraLightsOutputAndTheSceneItself) {
+TEST(Settings, ReplaceValuesOfCameraLightsOutputAndScene) {
   const ParsedScene parsed =
       parse_members(members, {"camera.fov=30", "camera.position=1,2,3", "sun.intensity=4",
                               "output.encoding=linear", "background=[1, 0, 0, 1]", "size=64,32"});
@@ -80,7 +80,7 @@ TEST(Settings, ReachCameraLightsOutputAndTheSceneItself) {
   EXPECT_EQ(parsed.scene->width, 64);
 }
 
-TEST(Settings, ReachParametersThatOnlyTheEffectDeclares) {
+TEST(Settings, SetParametersThatOnlyTheEffectDeclares) {
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "isoshade_settings";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "e.json") << R"({"isoshade": 1, "effect": "e", "parameters": {"sheen": {}}})";
@@ -98,7 +98,7 @@ TEST(Settings, ReachParametersThatOnlyTheEffectDeclares) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Settings, SuggestWhatWasMeant) {
+TEST(Settings, SuggestTheNearestName) {
   const auto text = [](const std::string& setting) {
     return parse_members(members, {setting}).diagnostics.text();
   };
@@ -109,7 +109,7 @@ TEST(Settings, SuggestWhatWasMeant) {
   EXPECT_NE(text("camera.fvo=1").find("\"fov\""), std::string::npos) << text("camera.fvo=1");
 }
 
-TEST(Settings, RefuseWhatIsNoSetting) {
+TEST(Settings, RejectMalformedSettings) {
   for (const char* setting :
        {"", "balls", "=", "balls.=1", ".metallic=1", "balls.metallic", "balls.metallic=", "a.b.c=1",
         "balls.metallic=1\"", "balls.metallic={\"a\"", "balls.metallic=\x01", "balls.metallic=[1, 2"}) {
@@ -117,7 +117,7 @@ TEST(Settings, RefuseWhatIsNoSetting) {
   }
 }
 
-TEST(Settings, CannotWriteAnythingButTheirValue) {
+TEST(Settings, CannotInjectJson) {
   EXPECT_FALSE(parse_members(members, {R"(balls.metallic=1, "gloss": 2)"}).scene);
   EXPECT_FALSE(parse_members(members, {"balls.metallic=1}, \"x\": {"}).scene);
 }
@@ -134,7 +134,7 @@ TEST(Settings, ErrorsPointIntoTheirText) {
   EXPECT_EQ(parse_members(members, {"sun.colour=1"}).diagnostics.all()[0].where.begin, 4u);
 }
 
-TEST(Settings, RefuseAByteOrderMarkBeforeAValue) {
+TEST(Settings, RejectAByteOrderMarkBeforeAValue) {
   EXPECT_TRUE(parse_members(members, {"camera.fov=\xef\xbb\xbf"
                                       "30"})
                   .fails_with("bad-setting"));

@@ -32,7 +32,7 @@ double mean(const TextureLevel& level, double x0, double x1, double y0, double y
   return sum / ((x1 - x0) * (y1 - y0));
 }
 
-TEST(Mips, EveryTexelIsTheMeanOfWhatItCovers) {
+TEST(Mips, EveryTexelIsTheMeanOfItsArea) {
   for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 9}, {13, 1}, {2, 3}, {33, 17}, {3, 3}}) {
     const TextureLevel level = noise(width, height);
     const TextureLevel half = scene::half_size(level);
@@ -48,7 +48,7 @@ TEST(Mips, EveryTexelIsTheMeanOfWhatItCovers) {
   }
 }
 
-TEST(Mips, OneTexelStays) {
+TEST(Mips, OneTexelIsUnchanged) {
   const TextureLevel level = noise(1, 1);
   EXPECT_EQ(scene::half_size(level).texels, level.texels);
 }
@@ -60,7 +60,7 @@ scene::ByteLevel all_bytes() {
   return level;
 }
 
-TEST(Texture, DecodesBytesAndLeavesAlphaAlone) {
+TEST(Texture, DecodesSrgbBytesExceptAlpha) {
   const TextureLevel decoded = scene::linear_level(all_bytes(), true);
   const TextureLevel plain = scene::linear_level(all_bytes(), false);
   for (size_t i = 0; i < 256; ++i) {
@@ -72,7 +72,7 @@ TEST(Texture, DecodesBytesAndLeavesAlphaAlone) {
   }
 }
 
-TEST(Texture, FloatsOfBytesAreThoseThatTheirNumbersGive) {
+TEST(Texture, ByteAndFloatImagesDecodeEqually) {
   const scene::ByteLevel level = all_bytes();
   const scene::FileImage bytes{256, 1, level.texels, {}, {}};
   const scene::FileImage floats{256, 1, {}, scene::numbers_of(bytes), {}};
@@ -80,7 +80,7 @@ TEST(Texture, FloatsOfBytesAreThoseThatTheirNumbersGive) {
     EXPECT_EQ(scene::linear_level(bytes, srgb).texels, scene::linear_level(floats, srgb).texels);
 }
 
-TEST(Texture, BytesAreTheNearestAndBetweenTwoTheLower) {
+TEST(Texture, EncodesToTheNearestByteAndTiesDown) {
   for (const bool srgb : {false, true}) {
     EXPECT_EQ(scene::byte_level(scene::linear_level(all_bytes(), srgb), srgb).texels, all_bytes().texels);
     for (const bool alpha : {false, true}) {
@@ -104,7 +104,7 @@ TEST(Texture, BytesAreTheNearestAndBetweenTwoTheLower) {
   }
 }
 
-TEST(Mips, OfBytesAreThoseOfTheirFloats) {
+TEST(Mips, ByteMipsMatchFloatMips) {
   for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 9}, {13, 1}, {1, 1}}) {
     scene::ByteLevel level{width, height, {}};
     std::mt19937 random(5);
@@ -115,7 +115,7 @@ TEST(Mips, OfBytesAreThoseOfTheirFloats) {
   }
 }
 
-TEST(Texture, HoldsNothingThatIsNotFinite) {
+TEST(Texture, ClampsNonFiniteTexels) {
   const float inf = std::numeric_limits<float>::infinity(), most = std::numeric_limits<float>::max();
   const scene::FileImage image{2, 1, {}, {std::nanf(""), inf, -inf, 1e-40f, 1, 2, most, most}, {}};
   const TextureLevel level = scene::linear_level(image, false);

@@ -17,7 +17,7 @@ Span find(const Source& file, std::string_view what) {
   return {file, begin, begin + static_cast<uint32_t>(what.size())};
 }
 
-TEST(Diagnostics, TextShowsPlaceLineCaretFixAndNotes) {
+TEST(Diagnostics, TextShowsPositionLineCaretFixAndNotes) {
   const Source file = source("{\n  \"scale\": 1,\n  \"b\": \"specualr_scale\"\n}\n");
   Diagnostics diagnostics;
   diagnostics
@@ -35,13 +35,13 @@ dir/a.json:2:3: note: this is
 )");
 }
 
-TEST(Diagnostics, WithoutAPlaceOnlyTheMessageIsShown) {
+TEST(Diagnostics, WithoutAPositionShowsOnlyTheMessage) {
   Diagnostics diagnostics;
   diagnostics.report(Id::missing_file, "cannot read \"x\"").suggest("look again");
   EXPECT_EQ(diagnostics.text(), "error[missing-file]: cannot read \"x\"\n  look again\n");
 }
 
-TEST(Diagnostics, CaretStandsWhereNothingIs) {
+TEST(Diagnostics, EmptyRangesAreMarkedByOneCaret) {
   const Source file = source("{\n");
   Diagnostics diagnostics;
   diagnostics.report(Id::syntax, {file, 2, 2}, "end");
@@ -51,14 +51,14 @@ TEST(Diagnostics, CaretStandsWhereNothingIs) {
             "dir/a.json:1:2: error[syntax]: end of line\n  1 | {\n    |  ^\n");
 }
 
-TEST(Diagnostics, SpanOverLinesIsUnderlinedOnItsFirst) {
+TEST(Diagnostics, MultiLineSpansAreUnderlinedOnTheirFirstLine) {
   const Source file = source("{\"a\": {\n}}");
   Diagnostics diagnostics;
   diagnostics.report(Id::wrong_type, {file, 6, 9}, "m");
   EXPECT_EQ(diagnostics.text(), "dir/a.json:1:7: error[wrong-type]: m\n  1 | {\"a\": {\n    |       ^\n");
 }
 
-TEST(Diagnostics, CaretIsAlignedUnderTabsWideAndInvisibleText) {
+TEST(Diagnostics, CaretIsAlignedUnderTabsWideAndInvisibleCharacters) {
   const Source file = source("\t\"\xe5\xb1\xb1\": \x01 \"x\"");
   Diagnostics diagnostics;
   diagnostics.report(Id::wrong_type, find(file, "\"x\""), "m");
@@ -68,7 +68,7 @@ TEST(Diagnostics, CaretIsAlignedUnderTabsWideAndInvisibleText) {
             "    |                ^^^\n");
 }
 
-TEST(Diagnostics, LongLinesAreShownAroundTheCaret) {
+TEST(Diagnostics, LongLinesAreTruncatedAroundTheCaret) {
   const Source file = source(std::string(1000, 'a') + "HERE" + std::string(1000, 'b'));
   Diagnostics diagnostics;
   diagnostics.report(Id::wrong_type, find(file, "HERE"), "m");
@@ -77,7 +77,7 @@ TEST(Diagnostics, LongLinesAreShownAroundTheCaret) {
                                     "^^^^\n");
 }
 
-TEST(Diagnostics, LongLinesAreNotCutInsideACharacter) {
+TEST(Diagnostics, LongLinesAreNotCutInsideAUtf8Sequence) {
   std::string text;
   for (int i = 0; i < 500; ++i) text += "\xe5\xb1\xb1";
   for (uint32_t begin : {0u, 200u, 201u, 202u, 1497u, 1500u}) {
@@ -87,7 +87,7 @@ TEST(Diagnostics, LongLinesAreNotCutInsideACharacter) {
   }
 }
 
-TEST(Diagnostics, NoTextOfADocumentReachesTheTerminalRaw) {
+TEST(Diagnostics, ControlCharactersOfDocumentsAreEscaped) {
   const std::string evil =
       "\x1b]0;owned\x07\xc2\x9b"
       "2J\r\n\xff\xe2\x80\xae";
@@ -103,7 +103,7 @@ TEST(Diagnostics, NoTextOfADocumentReachesTheTerminalRaw) {
   for (const char c : diagnostics.json()) EXPECT_TRUE((c >= 0x20 && c < 0x7f) || c == '\n');
 }
 
-TEST(Diagnostics, ColourOnlyOnRequest) {
+TEST(Diagnostics, ColoursAreUsedOnlyOnRequest) {
   Diagnostics diagnostics;
   diagnostics.report(Id::syntax, find(source("abc"), "b"), "m").suggest("f");
   EXPECT_EQ(diagnostics.text().find('\x1b'), std::string::npos);
@@ -126,7 +126,7 @@ TEST(Diagnostics, ErrorsPastTheLimitAreCounted) {
       "error[missing-file]: m0\n  note: n\nerror[missing-file]: m1\n  note: n\n3 more errors not shown\n");
 }
 
-TEST(Diagnostics, WarningsAreNoErrorsUnlessAskedFor) {
+TEST(Diagnostics, WarningsBecomeErrorsOnlyOnRequest) {
   Diagnostics diagnostics(2);
   for (int i = 0; i < 3; ++i) diagnostics.report(Id::unused_node, "m" + std::to_string(i));
   EXPECT_FALSE(diagnostics.has_errors());
@@ -140,7 +140,7 @@ TEST(Diagnostics, WarningsAreNoErrorsUnlessAskedFor) {
   EXPECT_EQ(strict.text(), "error[unused-node]: m\n");
 }
 
-TEST(Diagnostics, WarningsCanBeDisabledAndErrorsCannot) {
+TEST(Diagnostics, OnlyWarningsCanBeDisabled) {
   Diagnostics diagnostics;
   diagnostics.warnings_as_errors(true);
   diagnostics.disable(Id::unused_node);
@@ -151,7 +151,7 @@ TEST(Diagnostics, WarningsCanBeDisabledAndErrorsCannot) {
   EXPECT_EQ(diagnostics.text(), "error[syntax]: m\n");
 }
 
-TEST(Diagnostics, UnknownNamesComeWithTheNearest) {
+TEST(Diagnostics, UnknownNamesSuggestTheNearest) {
   Diagnostics diagnostics(2);
   const auto fix = [&](std::string_view word) {
     return diagnostics.report_unknown(Id::unknown_key, {}, "m", word, {"roughness", "metallic"}).fix;
@@ -161,7 +161,7 @@ TEST(Diagnostics, UnknownNamesComeWithTheNearest) {
   EXPECT_EQ(fix("roughnes"), "");  // not shown any more, so not searched for
 }
 
-TEST(Diagnostics, JsonHasEveryField) {
+TEST(Diagnostics, JsonContainsEveryField) {
   const Source file = source("{\n  \"a\": 1\n}");
   Diagnostics diagnostics;
   diagnostics.report(Id::unknown_key, find(file, "\"a\""), "no \"a\"")
@@ -187,7 +187,7 @@ TEST(Diagnostics, IdsAreDistinctAndExplained) {
   EXPECT_FALSE(texts.empty());
 }
 
-TEST(Nearest, FindsSlipsOfTheHand) {
+TEST(Nearest, FindsTypos) {
   const std::vector<std::string_view> words = {"base_color", "metallic", "roughness", "in1", "in2"};
   EXPECT_EQ(nearest("roughnes", words), "roughness");
   EXPECT_EQ(nearest("metalilc", words), "metallic");  // two neighbours swapped
@@ -196,7 +196,7 @@ TEST(Nearest, FindsSlipsOfTheHand) {
   EXPECT_EQ(nearest("in3", words), "in1");
 }
 
-TEST(Nearest, SuggestsNothingFarAway) {
+TEST(Nearest, SuggestsNothingForDistantWords) {
   const std::vector<std::string_view> words = {"roughness", "x", ""};
   EXPECT_EQ(nearest("elephant", words), "");
   EXPECT_EQ(nearest("y", words), "");
@@ -205,7 +205,7 @@ TEST(Nearest, SuggestsNothingFarAway) {
   EXPECT_EQ(nearest(std::string(1'000'000, 'x'), words), "");
 }
 
-TEST(Nearest, IsQuickAmongVeryMany) {
+TEST(Nearest, IsFastForManyCandidates) {
   std::vector<std::string> words(300'000, std::string(60, 'x'));
   const std::vector<std::string_view> candidates(words.begin(), words.end());
   const std::clock_t begin = std::clock();

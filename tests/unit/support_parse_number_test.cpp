@@ -52,7 +52,7 @@ TEST(ParseFloat, RoundsOnceToNearestEven) {
   EXPECT_EQ(bits("0x1.ffffffp127"), 0x7f800000u);  // halfway to 2^128
 }
 
-TEST(ParseFloat, FlushesDenormalsToZeroOfTheirSign) {
+TEST(ParseFloat, FlushesDenormalsToSignedZero) {
   EXPECT_EQ(bits("1.17549435e-38"), 0x00800000u);
   EXPECT_EQ(bits("1.17549421e-38"), 0u);
   EXPECT_EQ(bits("-1e-40"), 0x80000000u);
@@ -64,7 +64,7 @@ TEST(ParseFloat, FlushesDenormalsToZeroOfTheirSign) {
   EXPECT_EQ(bits("0." + std::string(500, '0') + "1"), 0u);
 }
 
-TEST(ParseFloat, BeyondTheRangeIsInfinite) {
+TEST(ParseFloat, OverflowsToInfinity) {
   EXPECT_EQ(bits("1e39"), 0x7f800000u);
   EXPECT_EQ(bits("-1e400"), 0xff800000u);
   EXPECT_EQ(bits("1e99999999999999999999"), 0x7f800000u);
@@ -83,7 +83,7 @@ TEST(ParseFloat, ReadsNanAndInfinities) {
   EXPECT_EQ(bits("-inf"), 0xff800000u);
 }
 
-TEST(ParseFloat, RefusesEverythingElse) {
+TEST(ParseFloat, RejectsEverythingElse) {
   for (const std::string_view text :
        {"",    " ",   " 1",     "1 ",  "-",    "+",     "--1", "-+1",  ".",   "e1",
         "1e",  "1e+", "0x",     "0x.", "0xp1", "0x1p",  "x1",  "1x",   "1,5", "infinity",
@@ -104,7 +104,7 @@ TEST(FormatFloat, IsShortAndReadsAsAFloat) {
   EXPECT_EQ(format_float(-std::numeric_limits<float>::infinity()), "-inf");
 }
 
-TEST(FormatHexFloat, IsAsC) {
+TEST(FormatHexFloat, MatchesPrintf) {
   EXPECT_EQ(format_hex_float(3.0f), "0x1.8p+1");
   EXPECT_EQ(format_hex_float(-1.0f), "-0x1p+0");
   EXPECT_EQ(format_hex_float(0.0f), "0x0p+0");
@@ -115,7 +115,7 @@ TEST(FormatHexFloat, IsAsC) {
   EXPECT_EQ(format_hex_float(std::numeric_limits<float>::quiet_NaN()), "nan");
 }
 
-TEST(FormatFloat, BothFormsReadBackAsTheSameBits) {
+TEST(FormatFloat, DecimalAndHexReadBackAsTheSameBits) {
   std::mt19937 random(1);
   for (int i = 0; i < 200'000; ++i) {
     const uint32_t wanted = random();
@@ -138,7 +138,7 @@ TEST(FormatFloat, BothFormsReadBackAsTheSameBits) {
 }
 
 #ifdef __x86_64__
-TEST(ParseFloat, IsTheSameWhereArithmeticFlushesDenormals) {
+TEST(ParseFloat, IsIndependentOfDenormalFlushing) {
   std::mt19937 random(2);
   const unsigned mode = _mm_getcsr();
   for (int i = 0; i < 100'000; ++i) {

@@ -54,7 +54,7 @@ class Processes : public testing::Test {
   std::string folder_;
 };
 
-TEST_F(Processes, AreEndedWithTheirChildrenWhenTheirTimeIsOver) {
+TEST_F(Processes, AreKilledWithTheirChildrenAtTheTimeout) {
   const std::string script = "sleep 100 & echo $! >" + path("child") + "; echo words; wait";
   const auto begin = Clock::now();
   const auto end = run_process({"/bin/sh", "-c", script}, {}, Seconds(0.5));
@@ -65,7 +65,7 @@ TEST_F(Processes, AreEndedWithTheirChildrenWhenTheirTimeIsOver) {
   EXPECT_TRUE(ends(process_in("child")));
 }
 
-TEST_F(Processes, AreNotHeldUpByWhatTheyLeaveRunning) {
+TEST_F(Processes, DoNotWaitForBackgroundChildren) {
   const auto begin = Clock::now();
   const auto end = run_process({"/bin/sh", "-c", "sleep 10 & echo $! >" + path("child") + "; echo words"});
   ASSERT_TRUE(end);
@@ -76,14 +76,14 @@ TEST_F(Processes, AreNotHeldUpByWhatTheyLeaveRunning) {
   kill(process_in("child"), SIGKILL);
 }
 
-TEST_F(Processes, MayCloseTheirOutputBeforeTheyEnd) {
+TEST_F(Processes, MayCloseTheirOutputEarly) {
   const auto end = run_process({"/bin/sh", "-c", "exec >&- 2>&-; sleep 0.2; exit 7"});
   ASSERT_TRUE(end);
   EXPECT_EQ(end->status, 7);
   EXPECT_TRUE(run_process({"/bin/sh", "-c", "exec >&- 2>&-; sleep 100"}, {}, Seconds(0.2))->late);
 }
 
-TEST_F(Processes, AndFoldersAreGoneAfterASignal) {
+TEST_F(Processes, EndTheirChildrenAndRemoveFoldersOnSignals) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     fs::remove(path("child"));
     const pid_t process = fork();
@@ -104,7 +104,7 @@ TEST_F(Processes, AndFoldersAreGoneAfterASignal) {
   }
 }
 
-TEST_F(Processes, AreNotAskedToEndByASignalThatIsIgnored) {
+TEST_F(Processes, KeepIgnoringIgnoredSignals) {
   const pid_t process = fork();
   if (process == 0) {
     std::signal(SIGHUP, SIG_IGN);
@@ -118,7 +118,7 @@ TEST_F(Processes, AreNotAskedToEndByASignalThatIsIgnored) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
 }
 
-TEST_F(Processes, ThatAreKilledLeaveNoHalfFile) {
+TEST_F(Processes, LeaveNoPartialFileWhenKilled) {
   {
     const TemporaryFile probe(folder_);
     if (file_count() != 0) GTEST_SKIP() << "this file system has no nameless files";
@@ -133,7 +133,7 @@ TEST_F(Processes, ThatAreKilledLeaveNoHalfFile) {
   EXPECT_EQ(file_count(), 0u);
 }
 
-TEST_F(Processes, ReplaceAFileAtOnce) {
+TEST_F(Processes, ReplaceFilesAtomically) {
   std::ofstream(path("f")) << "old";
   {
     TemporaryFile file(folder_);
@@ -150,7 +150,7 @@ TEST_F(Processes, ReplaceAFileAtOnce) {
   EXPECT_TRUE(file.rename_to(path(longest))) << errno;
 }
 
-TEST(TemporaryFolders, HaveNamesThatNobodyElseGives) {
+TEST(TemporaryFolders, HaveRecognizableNames) {
   const auto folder = TemporaryFolder::make(temporary_parent());
   ASSERT_TRUE(folder);
   EXPECT_TRUE(TemporaryFolder::is_name(fs::path(folder->path()).filename()));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t most = 1 << 20;
 
-TEST(ReadFile, RefusesWithoutOpeningWhatIsNoRegularFile) {
+TEST(ReadFile, RejectsNonRegularFilesWithoutOpeningThem) {
   const auto folder = TemporaryFolder::make(temporary_parent());
   ASSERT_TRUE(folder);
   const std::string pipe = folder->path() + "/pipe", link = folder->path() + "/link",
@@ -43,7 +43,7 @@ TEST(ReadFile, RefusesWithoutOpeningWhatIsNoRegularFile) {
   }
 }
 
-TEST(ReadFile, ReadsAPipeThatAShellMadeWhereItMay) {
+TEST(ReadFile, ReadsNamelessPipesOnlyIfAllowed) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   ASSERT_EQ(write(ends[1], "text", 4), 4);
@@ -54,7 +54,7 @@ TEST(ReadFile, ReadsAPipeThatAShellMadeWhereItMay) {
   close(ends[0]);
 }
 
-TEST(ReadFile, KnowsAgainWhatItHasRead) {
+TEST(ReadFile, RecognizesFilesItHasRead) {
   const auto folder = TemporaryFolder::make(temporary_parent());
   ASSERT_TRUE(folder);
   const std::string read = folder->path() + "/read", other = folder->path() + "/other";
@@ -70,7 +70,7 @@ TEST(ReadFile, KnowsAgainWhatItHasRead) {
   EXPECT_FALSE(was_read(folder->path() + "/absent"));
 }
 
-TEST(ReadFile, SaysWhyThereAreNoBytes) {
+TEST(ReadFile, ReportsWhyReadingFails) {
   EXPECT_EQ(read_file("no/such/file", most).id, Id::missing_file);
   EXPECT_EQ(read_file(std::string("a\0b", 3), most).id, Id::missing_file);
   EXPECT_EQ(read_file("/proc/self/exe", 1000).id, Id::too_large);

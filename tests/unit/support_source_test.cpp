@@ -20,7 +20,7 @@ TEST(Source, PositionsCountLinesAndBytesFromOne) {
   EXPECT_EQ(position(1000), std::pair(3u, 3u));  // beyond the end is the end
 }
 
-TEST(Source, LinesComeWithoutTheirEnds) {
+TEST(Source, LinesExcludeLineEndings) {
   const SourceFile file("a.json", "ab\r\n\ncd");
   EXPECT_EQ(file.line(1), "ab");
   EXPECT_EQ(file.line(2), "");
@@ -43,7 +43,7 @@ TEST(Source, ByteOrderMarkTakesNoColumns) {
   EXPECT_EQ(file.position(0).column, 1u);
 }
 
-TEST(Source, SpanOutsideDocumentsHasNoLine) {
+TEST(Source, SpanWithoutADocumentHasNoLine) {
   EXPECT_EQ(Span{}.line(), 0u);
   const Source file = std::make_shared<SourceFile>("a.json", "\n\nx");
   EXPECT_EQ((Span{file, 2, 3}.line()), 3u);

@@ -29,7 +29,7 @@ void main() {
 )";
 }
 
-TEST(VulkanTransform, GivesEachDrawItsVerticesInOrder) {
+TEST(VulkanTransform, ReturnsTheVerticesOfEachDrawInOrder) {
   HandWritten hand(Texts{{"move", transform_glsl()}});
   const driver::Program move = named("move", Stage::vertex);
   Frame frame;
@@ -183,7 +183,7 @@ class VulkanDraw : public testing::Test {
   }
 };
 
-TEST_F(VulkanDraw, ShowsTheNearestTriangleOfEachProgramAtAnySize) {
+TEST_F(VulkanDraw, DrawsTheNearestTriangleAtAnySize) {
   for (const auto& [width, height] : {std::pair{1, 1}, {64, 64}, {37, 5}, {129, 200}, {1921, 3}}) {
     expect_identical({width,
                       height,
@@ -196,18 +196,18 @@ TEST_F(VulkanDraw, ShowsTheNearestTriangleOfEachProgramAtAnySize) {
   }
 }
 
-TEST_F(VulkanDraw, ShadesNothingWhereThereAreNoTriangles) {
+TEST_F(VulkanDraw, DrawsTheBackgroundWithoutTriangles) {
   expect_identical({64, 48, {}});
   expect_identical({64, 48, {{100, 100, 200, 200, 0.5f, 0}, {-80, -30, 0, 900, 0.5f, 1}}});
 }
 
 /// 2048 x 2048 pixels come back in more than one band.
-TEST_F(VulkanDraw, BringsBackLargeImagesInBands) {
+TEST_F(VulkanDraw, ReadsLargeImagesBackInBands) {
   static_assert(size_t{2048} * 2048 * 20 > max_readback_bytes);
   expect_identical({2048, 2048, {{1000, 1500, 2048, 2048, 0.5f, 0}}});
 }
 
-TEST_F(VulkanDraw, RefusesFramesBeyondTheGuardBand) {
+TEST_F(VulkanDraw, RejectsFramesBeyondTheGuardBand) {
   Rectangles scene(1, 1, {});
   scene.frame.views[0].target.width = guard_band + 1;
   Image image;
@@ -218,7 +218,7 @@ TEST_F(VulkanDraw, RefusesFramesBeyondTheGuardBand) {
   EXPECT_NE(hand.diagnostics.text().find("at most 8192"), std::string::npos) << hand.diagnostics.text();
 }
 
-TEST_F(VulkanDraw, ReportsAShaderThatDoesNotCompileAndGoesOn) {
+TEST_F(VulkanDraw, ReportsShaderErrorsAndContinues) {
   const Rectangles scene(8, 8, {{0, 0, 8, 8, 0.5f, 0}});
   hand.texts["red"] = "#version 450\nvoid main() { nothing(); }\n";
   Image image;
@@ -289,7 +289,7 @@ TEST(VulkanEvaluate, FillsEveryRowOfTablesOfAnyLength) {
   expect_table(hand, max_table_rows + 1, 2, 1);
 }
 
-TEST(VulkanEvaluate, RunsInTheVertexStageToo) {
+TEST(VulkanEvaluate, RunsInTheVertexStage) {
   HandWritten hand(Texts{}, EvalStage::vertex);
   for (const size_t words : {1, 5, 33}) {
     hand.texts["table"] = vertex_eval_glsl(words, 2);
@@ -299,7 +299,7 @@ TEST(VulkanEvaluate, RunsInTheVertexStageToo) {
   expect_table(hand, max_table_rows + 1, 1, 1);
 }
 
-TEST(VulkanEvaluate, RefusesMoreResultsThanAFragmentShaderWrites) {
+TEST(VulkanEvaluate, RejectsMoreResultsThanAFragmentShaderWrites) {
   HandWritten hand(Texts{{"table", ""}});
   std::vector<int32_t> outputs;
   EXPECT_FALSE(
@@ -308,7 +308,7 @@ TEST(VulkanEvaluate, RefusesMoreResultsThanAFragmentShaderWrites) {
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::device_limit);
 }
 
-TEST(VulkanValidation, MakesWhatTheLayersSayAnError) {
+TEST(VulkanValidation, LayerMessagesBecomeErrors) {
   std::string without_point_size = vertex_eval_glsl(1, 1);
   without_point_size.erase(without_point_size.find("gl_PointSize"), std::strlen("gl_PointSize = 1.0;"));
   HandWritten hand(Texts{{"table", without_point_size}}, EvalStage::vertex);

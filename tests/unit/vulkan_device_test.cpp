@@ -26,7 +26,7 @@ TEST_F(Devices, AreListedByIndex) {
   }
 }
 
-TEST_F(Devices, TheDefaultIsASoftwareDeviceWhereThereIsOne) {
+TEST_F(Devices, DefaultIsASoftwareDeviceIfAvailable) {
   const std::vector<DeviceInfo> devices = list_devices(diagnostics);
   const auto backend = create({}, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();
@@ -34,7 +34,7 @@ TEST_F(Devices, TheDefaultIsASoftwareDeviceWhereThereIsOne) {
             std::any_of(devices.begin(), devices.end(), [](const DeviceInfo& device) { return device.cpu; }));
 }
 
-TEST_F(Devices, TheDefaultPassesTheProbe) {
+TEST_F(Devices, DefaultPassesTheProbe) {
   const auto backend = create({}, diagnostics);
   ASSERT_NE(backend, nullptr) << diagnostics.text();
   for (const Check& check : backend->probe().checks)
@@ -52,7 +52,7 @@ TEST_F(Devices, LavapipeDividesNatively) {
   EXPECT_NE(backend->description().find("native division"), std::string::npos) << backend->description();
 }
 
-TEST_F(Devices, AreChosenByIndexAndByPartOfTheNameInAnyCase) {
+TEST_F(Devices, AreSelectedByIndexOrCaseInsensitiveName) {
   const std::vector<DeviceInfo> devices = list_devices(diagnostics);
   ASSERT_FALSE(devices.empty());
   std::string part = devices[0].name.substr(0, 5);
@@ -68,7 +68,7 @@ TEST_F(Devices, AreChosenByIndexAndByPartOfTheNameInAnyCase) {
   }
 }
 
-TEST_F(Devices, MatchTheirNumberOrAPartOfTheirNameInAnyCase) {
+TEST_F(Devices, MatchTheirIndexOrCaseInsensitiveName) {
   DeviceInfo info;
   info.index = 3;
   info.name = "NVIDIA H200";
@@ -78,7 +78,7 @@ TEST_F(Devices, MatchTheirNumberOrAPartOfTheirNameInAnyCase) {
     EXPECT_FALSE(matches(info, selector)) << selector;
 }
 
-TEST_F(Devices, UnknownOnesAreReportedWithThoseThereAre) {
+TEST_F(Devices, UnknownSelectorsListTheAvailableDevices) {
   for (const std::string selector : {"no such device", "99", "-1", "12345678901234567890"}) {
     support::Diagnostics report;
     VulkanOptions options;
@@ -90,7 +90,7 @@ TEST_F(Devices, UnknownOnesAreReportedWithThoseThereAre) {
   }
 }
 
-TEST_F(Devices, AMachineWithoutADriverIsToldWhatToInstall) {
+TEST_F(Devices, MissingDriverErrorSaysWhatToInstall) {
   // Later loaders read the first, earlier ones the second.
   setenv("VK_DRIVER_FILES", "/nonexistent.json", 1);
   setenv("VK_ICD_FILENAMES", "/nonexistent.json", 1);

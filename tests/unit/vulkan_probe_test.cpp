@@ -41,7 +41,7 @@ class ProbeArithmetic : public testing::Test {
   static float flushed(float x) { return lanes::from_bits(lanes::bits_nonnan(x)); }
 };
 
-TEST_F(ProbeArithmetic, PassesTheContractItself) {
+TEST_F(ProbeArithmetic, AcceptsConformingArithmetic) {
   const auto guarded = [](auto compute) {
     return [compute](const Row& row) {
       const lanes::FpGuard guard;
@@ -55,13 +55,13 @@ TEST_F(ProbeArithmetic, PassesTheContractItself) {
   EXPECT_EQ(noticed("quotient", guarded([](float a, float b) { return a / b; })), 0u);
 }
 
-TEST_F(ProbeArithmetic, NoticesKeptDenormals) {
+TEST_F(ProbeArithmetic, DetectsKeptDenormals) {
   EXPECT_GT(noticed("difference", [](const Row& r) { return r.a - r.b; }), 100u);
   EXPECT_GT(noticed("product", [](const Row& r) { return r.a * r.b; }), 100u);
   EXPECT_GT(noticed("quotient", [](const Row& r) { return r.a / r.b; }), 100u);
 }
 
-TEST_F(ProbeArithmetic, NoticesAFlushBeforeRounding) {
+TEST_F(ProbeArithmetic, DetectsFlushingBeforeRounding) {
   EXPECT_GT(noticed("product",
                     [](const Row& r) {
                       const double exact = static_cast<double>(r.a) * r.b;
@@ -71,16 +71,16 @@ TEST_F(ProbeArithmetic, NoticesAFlushBeforeRounding) {
             10u);
 }
 
-TEST_F(ProbeArithmetic, NoticesFusedMultiplyAdd) {
+TEST_F(ProbeArithmetic, DetectsFusedMultiplyAdd) {
   EXPECT_GT(noticed("multiply_add", [](const Row& r) { return flushed(std::fma(r.a, r.b, r.c)); }), 500u);
 }
 
-TEST_F(ProbeArithmetic, NoticesReorderedSums) {
+TEST_F(ProbeArithmetic, DetectsReorderedSums) {
   EXPECT_GT(noticed("back_again", [](const Row& r) { return r.b; }), 500u);
   EXPECT_GT(noticed("distributed", [](const Row& r) { return flushed(r.a * flushed(r.b + r.c)); }), 500u);
 }
 
-TEST_F(ProbeArithmetic, NoticesQuotientsAndRootsWrongByTheLeastThereIs) {
+TEST_F(ProbeArithmetic, DetectsMisroundedQuotientsAndRoots) {
   // A device that errs by 2^-20 of the last place before it rounds.
   for (const double factor : {1 - 0x1p-44, 1 + 0x1p-44}) {
     EXPECT_GT(noticed("quotient",
@@ -96,7 +96,7 @@ TEST_F(ProbeArithmetic, NoticesQuotientsAndRootsWrongByTheLeastThereIs) {
   }
 }
 
-TEST_F(ProbeArithmetic, NoticesASelectThatSwallowsNan) {
+TEST_F(ProbeArithmetic, DetectsMinAndMaxThatDropNan) {
   EXPECT_GT(noticed("lesser", [](const Row& r) { return std::fmin(r.a, r.b); }), 10u);
   EXPECT_GT(noticed("greater", [](const Row& r) { return std::fmax(r.a, r.b); }), 10u);
 }
@@ -108,7 +108,7 @@ TEST_F(ProbeArithmetic, FitsOneTable) {
   EXPECT_EQ(seen.size(), static_cast<size_t>(topic_count));
 }
 
-TEST(ProbeRefusal, NamesTheDeviceAndEveryCheckItFails) {
+TEST(ProbeReport, NamesTheDeviceAndEveryFailedCheck) {
   Probe probe;
   probe.checks = {{"floor (fragment)", true, ""},
                   {"comparisons (vertex)", false, "3 differ"},
@@ -125,9 +125,10 @@ TEST(ProbeRefusal, NamesTheDeviceAndEveryCheckItFails) {
 }
 
 class ProbeCoverage : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Axis, ProbeCoverage, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Axis, ProbeCoverage, testing::Bool(),
+                         [](const auto& along_y) { return std::string(along_y.param ? "y" : "x"); });
 
-TEST_P(ProbeCoverage, ReachesAllOfTheGuardBand) {
+TEST_P(ProbeCoverage, CoversTheWholeGuardBand) {
   const CoverageScene scene = coverage_scene(guard_band, GetParam());
   int lowest = 0, highest = 0;
   for (size_t i = 0; i < scene.triangles.size(); i += lower::triangle_word::stride) {
@@ -141,7 +142,7 @@ TEST_P(ProbeCoverage, ReachesAllOfTheGuardBand) {
   EXPECT_EQ(highest, raster::max_image_size * 256);
 }
 
-TEST_P(ProbeCoverage, DrawsSomethingInMostCellsAndEverythingInFew) {
+TEST_P(ProbeCoverage, CoversOneToSevenEighthsOfThePixels) {
   const CoverageScene scene = coverage_scene(guard_band, GetParam());
   const float background[4] = {7, 7, 7, 7};
   const backends::Image image = expected_image(scene, background);
@@ -151,7 +152,7 @@ TEST_P(ProbeCoverage, DrawsSomethingInMostCellsAndEverythingInFew) {
 }
 
 /// The ids hold 12 bits of triangle and 18 of pixel.
-TEST_P(ProbeCoverage, FitsItsIds) {
+TEST_P(ProbeCoverage, FitsTheBitsOfItsIds) {
   const CoverageScene scene = coverage_scene(guard_band, GetParam());
   EXPECT_LT(scene.values.size() / value_stride, (1u << 12) - 1);
   EXPECT_LE(scene.width * scene.height, 1 << 18);
