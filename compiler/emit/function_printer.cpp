@@ -133,7 +133,9 @@ class FunctionPrinter : private ExpressionPrinter {
       case Opcode::loop: return print_loop(instruction);
       case Opcode::ddx:
       case Opcode::ddy: support::bug("a derivative in what is printed");
-      default: return print_primitive(instruction);
+#define OP(name, ...) case Opcode::name:
+#include "compiler/ir/ops.def"
+        return print_primitive(instruction);
     }
   }
 

@@ -16,40 +16,6 @@ using graph::Type;
 using nodes::Value;
 using From = Operand::From;
 
-using interface::SpaceMatrix;
-
-constexpr interface::SurfaceValue world_position{interface::Surface::position};
-
-/// What a node of a surface attribute gives. Its port "space", if it has one, is the first.
-interface::SurfaceValue surface_value(const check::TypedGraph& graph, const Node& node) {
-  const auto attribute = std::get<nodes::Surface>(node.row->lowering);
-  const bool has_space = !node.row->ports.empty() && node.row->ports[0].name == "space";
-  return {attribute, has_space ? nodes::space_of(graph.operands_of(node)[0].index) : nodes::Space::world};
-}
-
-/// One matrix on the way between spaces; normals go by the transpose of its inverse.
-struct Step {
-  SpaceMatrix matrix;
-  bool transposed;
-};
-
-/// The way from one space to another, which leads through world space.
-std::vector<Step> way_of(const check::TypedGraph& graph, const Node& node, nodes::Transform what) {
-  using enum SpaceMatrix;
-  const std::span<const Operand> operands = graph.operands_of(node);
-  const nodes::Space from = nodes::space_of(operands[1].index), to = nodes::space_of(operands[2].index);
-  if (from == to) return {};
-  std::vector<Step> way;
-  const bool normal = what == nodes::Transform::normal;
-  if (from == nodes::Space::object)
-    way.push_back(normal ? Step{object_from_world, true} : Step{world_from_object, false});
-  if (from == nodes::Space::view) way.push_back({world_from_view, false});  // a rotation
-  if (to == nodes::Space::object)
-    way.push_back(normal ? Step{world_from_object, true} : Step{object_from_world, false});
-  if (to == nodes::Space::view) way.push_back({view_from_world, false});
-  return way;
-}
-
 class Body {
  public:
   Body(ir::Builder& builder, const check::TypedGraph& graph, const Environment& environment)
@@ -214,7 +180,7 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
 
 Value Body::transform(nodes::Transform what, const Node& node) {
   ir::ValueId at = read(graph_.operands_of(node)[0]).id();
-  for (const Step step : way_of(graph_, node, what)) {
+  for (const SpaceStep step : steps_between_spaces(graph_, node, what)) {
     const std::array<ir::ValueId, 4>& columns = environment_.matrices[static_cast<size_t>(step.matrix)];
     std::vector<ir::ValueId> arguments(columns.begin(), columns.begin() + 3);
     if (step.transposed) arguments = functions::call_library(b_, "transpose", arguments);
@@ -373,75 +339,6 @@ void Body::name_results(uint32_t index, ir::ValueId first_new) {
 }
 
 }  // namespace
-
-Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
-                         const std::vector<interface::Binding>& bindings, interface::Interface& host)
-    : interface(host), inputs(graph.graph.inputs.size()) {
-  namespace source = interface::source;
-  std::vector<std::vector<ir::ValueId>> columns(inputs.size());
-  surface.fill(ir::none);
-  screen.values.fill(ir::none);
-  screen.images.resize(post_image(graph.graph.images.size()) + 1);
-  for (size_t i = 0; i < bindings.size(); ++i) {
-    const ir::ValueId id = b.parameter(i);
-    std::visit(interface::Cases{
-                   [&](const source::Attribute& s) { surface[s.value.index()] = id; },
-                   [&](const source::MatrixColumn& s) { matrices[static_cast<size_t>(s.matrix)][s.column] = id; },
-                   [&](const source::Time&) { time = id; },
-                   [&](const source::Input& s) { columns[s.input].push_back(id); },
-                   [&](const source::Image& s) {
-                     image_slots.resize(std::max<size_t>(image_slots.size(), s.slot + 1), ir::none);
-                     image_slots[s.slot] = id;
-                   },
-                   [&](const source::LightCount&) { light_count = id; },
-                   [&](const source::ScreenValue& s) { screen.values[static_cast<size_t>(s.value)] = id; },
-                   [&](const source::PixelOfImage& s) {
-                     ReadImage& image = screen.images[s.image];
-                     (s.axis == interface::Axis::x ? image.x : image.y) = id;
-                     const bool is_depth = s.image == depth_image;
-                     image.at = host.find(is_depth ? interface::Host::depth : interface::Host::image, s.image);
-                   },
-                   [&](const source::OffsetInPixel& s) { screen.images[s.image].inside = id; },
-                   [&](const source::SizeOfImage& s) {
-                     ReadImage& image = screen.images[s.image];
-                     (s.axis == interface::Axis::x ? image.width : image.height) = id;
-                   },
-                   [&](const source::TapCount& s) { screen.tap_counts.emplace_back(s.node, id); },
-               },
-               bindings[i].source);
-  }
-  for (size_t i = 0; i < inputs.size(); ++i)
-    if (!columns[i].empty()) inputs[i] = Value(columns[i]);
-}
-
-Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
-    : nodes(graph.nodes.size()), inputs(graph.graph.inputs.size()) {
-  const auto need = [&](const Operand& operand) {
-    if (operand.from == From::node) nodes[operand.index] = true;
-    screen.add(graph, operand);
-    if (operand.from == From::input && operand.needed != Type::filename) inputs[operand.index] = true;
-    if (operand.from == From::surface) surface[operand.index] = true;
-  };
-  std::ranges::for_each(results, need);
-  for (auto it = graph.order.rbegin(); it != graph.order.rend(); ++it) {
-    if (!nodes[*it]) continue;
-    const Node& node = graph.nodes[*it];
-    std::ranges::for_each(graph.operands_of(node), need);
-    if (node.row == nullptr) continue;
-    if (node.row->is<nodes::Surface>()) surface[surface_value(graph, node).index()] = true;
-    if (const auto* what = std::get_if<nodes::Transform>(&node.row->lowering)) {
-      for (const Step step : way_of(graph, node, *what)) {
-        size_t& count = columns[static_cast<size_t>(step.matrix)];
-        count = std::max<size_t>(count, *what == nodes::Transform::point ? 4 : 3);
-      }
-    }
-    time |= node.row->is<nodes::Time>();
-    lights |= node.row->is<nodes::SumLights>();
-    light_at |= node.row->is<nodes::Light>();
-    screen.add(graph, *it);
-  }
-  surface[world_position.index()] |= light_at;
-}
 
 std::vector<Value> build_body(ir::Builder& builder, const check::TypedGraph& graph, const Needs& needs,
                               const Environment& environment, std::span<const Operand> results) {

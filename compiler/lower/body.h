@@ -49,6 +49,20 @@ struct Environment {
   std::vector<uint32_t>* node_of_origin = nullptr;                ///< if given: filled, see NodesOfOrigins
 };
 
+inline constexpr interface::SurfaceValue world_position{interface::Surface::position};
+
+/// The value that a node of a surface attribute reads.
+interface::SurfaceValue surface_value(const check::TypedGraph& graph, const check::Node& node);
+
+/// One step of a transformation between spaces; a normal is multiplied by the transpose of the inverse matrix.
+struct SpaceStep {
+  interface::SpaceMatrix matrix;
+  bool transposed;
+};
+/// The steps from one space to another, through world space.
+std::vector<SpaceStep> steps_between_spaces(const check::TypedGraph& graph, const check::Node& node,
+                                            nodes::Transform what);
+
 /// Makes the needed nodes and returns the results, of the types that they are needed in.
 std::vector<nodes::Value> build_body(ir::Builder& builder, const check::TypedGraph& graph, const Needs& needs,
                                      const Environment& environment, std::span<const check::Operand> results);
