@@ -149,7 +149,7 @@ TEST(Compiler, ReportsAFullDisk) {
   Diagnostics diagnostics;
   const auto compiler = Compiler::find(folder / "c++", diagnostics);
   EXPECT_FALSE(compiler->compile(folder.path(), "the program", *lane_count("4"), diagnostics));
-  EXPECT_NE(diagnostics.text().find("make room on the disk"), std::string::npos) << diagnostics.text();
+  EXPECT_NE(diagnostics.text().find("free space on the disk"), std::string::npos) << diagnostics.text();
 }
 
 TEST(LaneCount, WidestIsAvailableAndUnknownNamesAreRejected) {

@@ -5,6 +5,7 @@
 
 #include "backends/cpu/compiler.h"
 #include "backends/cpu/kernel.h"
+#include "compiler/lower/frame_layout.h"
 #include "runtime/lanes/lanes.h"
 #include "tests/unit/cpu_folders.h"
 #include "tests/unit/cpu_programs.h"
@@ -51,8 +52,8 @@ bool works(KernelStore& store, Diagnostics& diagnostics) {
   if (!kernels) return false;
   const float inputs[] = {3, 5, 7, 11};
   int results[4] = {};
-  BufferView buffers[6] = {};
-  buffers[5] = {inputs, 4};
+  BufferView buffers[std::size(lower::frame_buffers)] = {};
+  buffers[static_cast<size_t>(lower::FrameBuffer::inputs)] = {inputs, 4};
   const lanes::FpGuard guard_floats;
   kernels->front()->eval(buffers, 0, 2, results);
   return results[0] == 0x41700000 && results[1] == 0 && results[2] == 0x429a0000 && results[3] == 1;
