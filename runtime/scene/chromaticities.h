@@ -19,8 +19,7 @@ using ColorMatrix = std::array<float, 9>;
 /// The conversion to the primaries of Rec. 709 and white D65, which sRGB shares.
 struct ToRec709 {
   bool valid = false;  ///< false: the primaries are degenerate
-  std::optional<ColorMatrix>
-      matrix;  ///< none if the primaries are those of Rec. 709, each number within 0.0005
+  std::optional<ColorMatrix> matrix;  ///< none if they are those of Rec. 709, each number within 0.0005
 };
 
 /// The matrix is inverse(M(Rec. 709)) B M(from): M takes red, green and blue to XYZ so that their sum is the white with
