@@ -79,10 +79,10 @@ class Cpp final : public Language {
     out.append("load(buffers.").append(buffer).append(", ").append(index).append(")");
   }
   void word_reader(std::string& out, std::string_view name, int width) const override {
-    out.append("template <class I>\nISOSHADE_INLINE auto ")
+    out.append("template <class Word>\nISOSHADE_INLINE auto ")
         .append(name)
-        .append("(const Buffers& buffers, I word) {\n");
-    out.append("  return vec").append(std::to_string(width)).append("<float_of<I>>(");
+        .append("(const Buffers& buffers, Word word) {\n");
+    out.append("  return vec").append(std::to_string(width)).append("<float_of<Word>>(");
   }
   void end_word_reader(std::string& out) const override { out += ");\n}\n"; }
   void callee(std::string& out, const FunctionText& function, bool uniform) const override {

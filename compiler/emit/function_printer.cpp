@@ -189,8 +189,8 @@ class FunctionPrinter : private ExpressionPrinter {
       const int columns = 2 + (is_plain ? columns_of(operands[i]) : static_cast<int>(groups[i].size()));
       column += columns;
       if (column > most_columns + 8 && columns < column) {
-        made.text.back() = '\n';
-        made.text.append(indent_ + 4, ' ');
+        if (made.text.back() == ' ') made.text.pop_back();
+        made.text.append("\n").append(indent_ + 4, ' ');
         column = static_cast<int>(indent_) + 4 + columns;
       }
       made.text += is_plain ? operand(operands[i]).text : std::string_view(groups[i]);

@@ -115,7 +115,7 @@ class Finder {
       } else if (shape == Shape::words) {
         const Instruction& load = f_.instructions[nesting_[operands[0]].made_by];
         if (const ValueId base = split_index(f_, nesting_, f_.operands_of(load)[0]).base; base != none)
-          use(base, id, true);
+          use(base, id);
       } else if (shape == Shape::component) {
         uses_[operands[0]] = {id, true, false};
       } else {

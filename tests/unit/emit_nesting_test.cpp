@@ -180,6 +180,50 @@ func @f(%a: float, %count: int uniform) -> (out: float) {
               "once = a * a;\n");
 }
 
+// The base of consecutive words may itself be a sum with a constant.
+TEST(Nesting, WritesTheConstantOfAnIndexThatIsASum) {
+  expect_both(Texts(ir::valid(R"(
+buffer objects: float
+func @f(%object: int) -> (first: vec2) {
+  %1 = constant int 1
+  %4 = constant int 4
+  %camera = iadd %object, %4
+  %next = iadd %camera, %1
+  %x = load objects[%camera]
+  %y = load objects[%next]
+  %first = construct %x, %y
+  return %first
+})")),
+              "int camera = object + 4;\n  return vec2(objects[camera], objects[camera + 1]);",
+              "const int_of<F> camera = object + 4;\n  return vec2<F>(load(buffers.objects, camera), ");
+}
+
+TEST(Nesting, WritesTheConstantsOfNestedIndices) {
+  expect_both(Texts(ir::valid(R"(
+buffer objects: float
+func @f(%object: int) -> (later: vec2) {
+  %1 = constant int 1
+  %3 = constant int 3
+  %4 = constant int 4
+  %camera = iadd %object, %4
+  %a = iadd %camera, %3
+  %b = iadd %camera, %4
+  %x = load objects[%a]
+  %y = load objects[%b]
+  %later = construct %x, %y
+  return %later
+})")),
+              "return objects2(object + 4 + 3);", "return objects2(buffers, object + 4 + 3);");
+}
+
+TEST(Nesting, BreaksTheLineBehindTheBracketOfACallWithALongArgument) {
+  const std::string name(99, 'a');
+  const std::string function = "func @" + name + "(%x: float) -> (out: float) {\n  %1 = fadd %x, %x\n  return %1\n}";
+  expect_both(Texts(ir::valid("func @f(%" + name + ": float) -> (out: float) {\n  %1 = call @" + name + "(%" + name +
+                              ")\n  return %1\n}\n" + function)),
+              "(\n      " + name);
+}
+
 TEST(Nesting, NamesTheWordsOfRecords) {
   ir::Module module = ir::valid(R"(
 buffer objects: float
