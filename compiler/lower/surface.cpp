@@ -114,11 +114,6 @@ ir::ValueId SurfacePoint::value(interface::SurfaceValue value) {
     case Surface::color: return attributes_(4, vertex_word::color);
     case Surface::outline_normal: return normal_in(value.space, local_outline_normal()).value;
     case Surface::pixel_size: return pixel_size().value;
-    case Surface::object_origin: {
-      if (value.space == Space::object) return functions::splat<3>(Float(k_.b, k_.b.constant(0.0f))).value;
-      const Vec3 world = column(SpaceMatrix::world_from_object, 3);
-      return value.space == Space::view ? to_view(world).value : world.value;
-    }
     case Surface::corner_normal1: return normal_in(value.space, local_corner_normal(0)).value;
     case Surface::corner_normal2: return normal_in(value.space, local_corner_normal(1)).value;
     case Surface::corner_normal3: return normal_in(value.space, local_corner_normal(2)).value;
