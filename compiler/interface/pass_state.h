@@ -20,15 +20,10 @@ namespace isoshade::interface {
   VALUE(nearer, "a pixel keeps the nearest face; of equally near ones, the one that is drawn first")      \
   VALUE(always, "the pass is drawn over everything, nearer faces too; objects are drawn in the order of the scene")
 
-#define ISOSHADE_WINDING(VALUE)                                                                    \
-  VALUE(counter_clockwise, "a face is seen from the front where its vertices turn counter-clockwise") \
-  VALUE(clockwise, "a face is seen from the front where its vertices turn clockwise")
-
 // STATE(type, member and key, default, values, what it is for the manual)
 #define ISOSHADE_PASS_STATES(STATE)                                                                              \
   STATE(Cull, cull, back, ISOSHADE_CULL, "Which faces of the mesh are left out; a mirroring transform changes nothing") \
-  STATE(DepthTest, depth, nearer, ISOSHADE_DEPTH_TEST, "Which faces of a pixel are seen")                        \
-  STATE(Winding, winding, counter_clockwise, ISOSHADE_WINDING, "Which side of a face is its front")
+  STATE(DepthTest, depth, nearer, ISOSHADE_DEPTH_TEST, "Which faces of a pixel are seen")
 
 #define ISOSHADE_VALUE(name, doc) name,
 #define ISOSHADE_ENUM(Type, member, fallback, VALUES, doc) enum class Type : uint8_t { VALUES(ISOSHADE_VALUE) };

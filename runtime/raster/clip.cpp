@@ -225,15 +225,6 @@ class Assembler {
     vertices_.insert(vertices_.end(), vertex.attributes.begin(), vertex.attributes.end());
   }
 
-  /// y points down.
-  bool is_front(int64_t area) const {
-    switch (surface_.state.winding) {
-      case interface::Winding::counter_clockwise: return area < 0;
-      case interface::Winding::clockwise: return area > 0;
-    }
-    return false;
-  }
-
   bool is_culled(bool front) const {
     switch (surface_.state.cull) {
       case interface::Cull::none: return false;
@@ -256,7 +247,8 @@ class Assembler {
     const int64_t area =
         static_cast<int64_t>(b.x - a.x) * (c.y - a.y) - static_cast<int64_t>(b.y - a.y) * (c.x - a.x);
     if (area == 0) return;
-    if (is_culled(is_front(area))) return;
+    const bool front = area < 0;  // y points down
+    if (is_culled(front)) return;
     if (area < 0) {
       std::swap(corners[1], corners[2]);
       std::swap(indices[1], indices[2]);
