@@ -152,12 +152,12 @@ class Cpp final : public Language {
       out.append(text.result_type).append("<F>");
     out.append(" ").append(text.name).append(text.loads ? "(const Buffers& buffers" : "(");
   }
-  void group_value(std::string& out, std::string_view record, bool uniform) const override {
-    out.append(record).append(uniform ? "" : "<F>");
+  void group_value(std::string& out, std::string_view record, bool uniform, bool one_lane) const override {
+    out.append(record).append(uniform ? "" : lanes_of(one_lane));
   }
   void group_type(std::string& out, std::string_view record, bool uniform) const override {
     out += "const ";
-    group_value(out, record, uniform);
+    group_value(out, record, uniform, false);
     out += "&";
   }
 

@@ -146,6 +146,7 @@ class FunctionPrinter : private ExpressionPrinter {
     const std::vector<ir::Parameter>& parameters = context_.module.functions[instruction.imm].parameters;
     const FunctionText& called = context_.texts[instruction.imm];
     const auto operands = function_.operands_of(instruction);
+    const bool one_lane = uniform_[instruction.first_result];
     std::vector<std::string> names(operands.size());
     size_t first = 0;
     for (size_t i = 0; i < operands.size(); ++i) {
@@ -154,11 +155,11 @@ class FunctionPrinter : private ExpressionPrinter {
       if (i == 0 || parameter.group != parameters[i - 1].group) {
         first = i;
         names[i] = names_.take(parameter.group);
-        language_.group_value(indent(), called.groups[i], parameter.uniform);
+        language_.group_value(indent(), called.groups[i], parameter.uniform, one_lane);
         body_.append(" ").append(names[i]).append(";\n");
       }
       indent().append(names[first]).append(".").append(called.fields[i]).append(" = ");
-      put_exactly(body_, operands[i], parameter.uniform);
+      put_exactly(body_, operands[i], parameter.uniform || one_lane);
       body_ += ";\n";
     }
     return names;

@@ -83,7 +83,7 @@ class Glsl final : public Language {
     out.append(text.result_type.empty() ? ir::name(function.results[0].type) : text.result_type);
     out.append(" ").append(text.name).append("(");
   }
-  void group_value(std::string& out, std::string_view record, bool) const override { out += record; }
+  void group_value(std::string& out, std::string_view record, bool, bool) const override { out += record; }
   void group_type(std::string& out, std::string_view record, bool) const override { out += record; }
 };
 

@@ -87,8 +87,9 @@ class Language {
   /// All before the first parameter; in C++ with the buffers, if the function loads.
   virtual void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
                              bool exact) const = 0;
-  /// The type of a local, and of a parameter, that is a whole group.
-  virtual void group_value(std::string& out, std::string_view record, bool uniform) const = 0;
+  /// The type of a local, and of a parameter, that is a whole group. `uniform`: the group's parameters are; `one_lane`: the
+  /// local is an argument of a function's instance for one value.
+  virtual void group_value(std::string& out, std::string_view record, bool uniform, bool one_lane) const = 0;
   virtual void group_type(std::string& out, std::string_view record, bool uniform) const = 0;
 };
 

@@ -224,6 +224,22 @@ TEST(Nesting, BreaksTheLineBehindTheBracketOfACallWithALongArgument) {
               "(\n      " + name);
 }
 
+// A struct of an instance for one value holds one value, though its fields may vary elsewhere.
+TEST(Nesting, PassesStructsOfOneValueToInstancesForOneValue) {
+  const Texts texts(ir::valid(R"(
+func @f(%a: float uniform, %b: float) -> (out: float) {
+  %1 = call @g(%a)
+  %2 = fadd %1, %b
+  return %2
+}
+func @g(%inputs.x: float) -> (out: float) {
+  %1 = fadd %inputs.x, %inputs.x
+  return %1
+})"));
+  EXPECT_NE(texts.cpp.find("Inputs<float> inputs_;"), std::string::npos) << texts.cpp;
+  EXPECT_NE(texts.cpp.find("g<float>(inputs_)"), std::string::npos) << texts.cpp;
+}
+
 TEST(Nesting, NamesTheWordsOfRecords) {
   ir::Module module = ir::valid(R"(
 buffer objects: float
