@@ -44,7 +44,7 @@ class Compiler {
 
 /// A header of runtime/lanes. They are embedded in the program, so that an installed isoshade needs no source tree.
 struct Header {
-  std::string_view path;  ///< as generated code includes it: "runtime/lanes/lanes.h"
+  std::string_view path;  ///< as generated code includes it: "isoshade/lanes/lanes.h"
   std::string_view text;
 };
 std::span<const Header> lanes_headers();

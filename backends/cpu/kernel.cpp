@@ -26,7 +26,7 @@ void add_part(support::Sha256& hash, std::string_view part) {
 }
 
 bool write_headers(const std::string& folder, Diagnostics& diagnostics) {
-  for (const char* made : {"/runtime", "/runtime/lanes"}) mkdir((folder + made).c_str(), 0700);
+  for (const char* made : {"/isoshade", "/isoshade/lanes"}) mkdir((folder + made).c_str(), 0700);
   return std::ranges::all_of(lanes_headers(), [&](const Header& header) {
     return write_file(folder + "/" + std::string(header.path), header.text, diagnostics);
   });

@@ -13,7 +13,7 @@ namespace isoshade::emit {
 namespace {
 
 constexpr std::string_view head =
-    "#include \"runtime/lanes/lanes.h\"\n\n"
+    "#include \"isoshade/lanes/lanes.h\"\n\n"
     "#ifndef ISOSHADE_LANES\n#define ISOSHADE_LANES 1\n#endif\n"
     "#ifndef ISOSHADE_REGISTERS\n#define ISOSHADE_REGISTERS 1\n#endif\n\n"
     "namespace isoshade_program {\n\n"

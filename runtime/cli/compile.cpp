@@ -234,7 +234,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
   if (flush(diagnostics, common) || !done) return failure;
   if (!common.quiet)
     for (const std::string& path : writer.written())
-      if (path.find("runtime/lanes/") == std::string::npos) std::fprintf(stderr, "wrote %s\n", path.c_str());
+      if (path.find("isoshade/lanes/") == std::string::npos) std::fprintf(stderr, "wrote %s\n", path.c_str());
   return success;
 }
 

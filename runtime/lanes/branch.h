@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A select that computes only the sides that are wanted.
-#pragma once
+#ifndef ISOSHADE_LANES_BRANCH_H
+#define ISOSHADE_LANES_BRANCH_H
 
-#include "runtime/lanes/vector.h"
+#include "vector.h"
 
 namespace isoshade::lanes {
 
@@ -30,3 +31,5 @@ ISOSHADE_INLINE auto branch(Bool<W, R> condition, Then&& then, Other&& other) {
 }
 
 }  // namespace isoshade::lanes
+
+#endif

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Reading and writing memory: tables by index, and lanes side by side.
-#pragma once
+#ifndef ISOSHADE_LANES_BUFFER_H
+#define ISOSHADE_LANES_BUFFER_H
 
-#include "runtime/lanes/vector.h"
+#include "vector.h"
 
 namespace isoshade::lanes {
 
@@ -130,3 +131,5 @@ ISOSHADE_INLINE I lane_index() {
 }
 
 }  // namespace isoshade::lanes
+
+#endif

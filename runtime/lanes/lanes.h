@@ -2,7 +2,8 @@
 //
 // The SIMD value types that generated C++ and the function library are written in.
 //
-//   Float<W, R>  Int<W, R>  Bool<W, R>   W lanes a register: 4; 8 with AVX2; 16 with AVX-512.
+//   Float<W, R>  Int<W, R>  Bool<W, R>   W lanes a register: 4; 8 with AVX2; 16 with AVX-512. (x86-64 with g++
+//                                        or clang. Elsewhere there is one lane, in standard C++.)
 //                                        R registers a value: 1, or 2 to hide the latency of arithmetic.
 //   float        int        bool         One lane; or a value uniform over all lanes, broadcast implicitly.
 //   vec<T, N>                            2 to 4 components of any float type.
@@ -20,12 +21,18 @@
 // - Compile for each instruction set in files of its own. All that is here is always inlined, so no linker
 //   merges the code of one instruction set into another; names of yours must not meet either.
 //
+// The files of this folder include each other by their names alone, and have include guards that are macros:
+// `isoshade compile` writes a copy beside what it generates, and a program may see several copies.
+//
 // There is no system include below this line: a generated file compiles in a fifth of a second.
-#pragma once
+#ifndef ISOSHADE_LANES_LANES_H
+#define ISOSHADE_LANES_LANES_H
 
-#include "runtime/lanes/branch.h"
-#include "runtime/lanes/buffer.h"
-#include "runtime/lanes/float_rules.h"
-#include "runtime/lanes/scalar.h"
-#include "runtime/lanes/vec.h"
-#include "runtime/lanes/vector.h"
+#include "branch.h"
+#include "buffer.h"
+#include "float_rules.h"
+#include "scalar.h"
+#include "vec.h"
+#include "vector.h"
+
+#endif

@@ -3,11 +3,17 @@
 // One SIMD register: the vector types of the compiler, and under one name the few instructions that its
 // operators do not reach. Register<W> exists where the instruction set that the file is compiled for has
 // registers of W lanes.
-#pragma once
+#ifndef ISOSHADE_LANES_REGISTER_H
+#define ISOSHADE_LANES_REGISTER_H
 
-#include "runtime/lanes/scalar.h"
+#include "scalar.h"
 
 namespace isoshade::lanes {
+
+template <int W>
+struct Register;
+
+#if ISOSHADE_SIMD
 
 template <int W>
 struct Vectors {
@@ -16,9 +22,6 @@ struct Vectors {
   typedef unsigned Uints __attribute__((vector_size(4 * W)));
   typedef unsigned long long Longs __attribute__((vector_size(4 * W)));
 };
-
-template <int W>
-struct Register;
 
 /// Masks as vectors: each lane all ones or all zeros.
 template <int W>
@@ -106,4 +109,8 @@ struct Register<4> : VectorMasks<4> {
 #endif
 };
 
+#endif
+
 }  // namespace isoshade::lanes
+
+#endif

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Eight lanes: AVX2.
-#pragma once
+#ifndef ISOSHADE_LANES_REGISTER_AVX2_H
+#define ISOSHADE_LANES_REGISTER_AVX2_H
 
-#include "runtime/lanes/register.h"
+#include "register.h"
 
-#if defined(__AVX2__)
+#if ISOSHADE_SIMD && defined(__AVX2__)
 
 namespace isoshade::lanes {
 
@@ -48,5 +49,7 @@ struct Register<8> : VectorMasks<8> {
 };
 
 }  // namespace isoshade::lanes
+
+#endif
 
 #endif

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Sixteen lanes: AVX-512 F, VL, DQ and BW. Masks live in mask registers, one bit a lane.
-#pragma once
+#ifndef ISOSHADE_LANES_REGISTER_AVX512_H
+#define ISOSHADE_LANES_REGISTER_AVX512_H
 
-#include "runtime/lanes/register.h"
+#include "register.h"
 
-#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
+#if ISOSHADE_SIMD && defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
 
 namespace isoshade::lanes {
 
@@ -89,5 +90,7 @@ struct Register<16> : Vectors<16> {
 };
 
 }  // namespace isoshade::lanes
+
+#endif
 
 #endif

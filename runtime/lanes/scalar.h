@@ -2,9 +2,14 @@
 //
 // The operations on one lane: plain float, int and bool. These are also the uniform values of wider code.
 // + - * / on float and + - * & | ^ and comparisons on int are the language's own.
-#pragma once
+#ifndef ISOSHADE_LANES_SCALAR_H
+#define ISOSHADE_LANES_SCALAR_H
 
-#include "runtime/lanes/float_rules.h"
+#include "float_rules.h"
+
+#if !defined(__GNUC__)
+#include <cmath>
+#endif
 
 namespace isoshade::lanes {
 
@@ -64,27 +69,47 @@ ISOSHADE_INLINE float from_bits(int x) {
   return from_bits_normal((x & exponent_bits) == 0 ? x & sign_bit : x);
 }
 
-/// Toward zero. x within the range of int.
+/// Toward zero. x within the range of int; otherwise the least int.
 ISOSHADE_INLINE int to_int(float x) {
+#if ISOSHADE_SIMD
   typedef float Floats __attribute__((vector_size(16)));
   return __builtin_ia32_cvttss2si(Floats{x, 0, 0, 0});
+#else
+  return x >= -2147483648.0f && x < 2147483648.0f ? static_cast<int>(x) : sign_bit;
+#endif
 }
 /// To nearest even.
 ISOSHADE_INLINE float to_float(int x) { return static_cast<float>(x); }
 
 ISOSHADE_INLINE float negate(float x) { return -x; }
-ISOSHADE_INLINE float abs(float x) { return __builtin_fabsf(x); }
+ISOSHADE_INLINE float abs(float x) {
+#if defined(__GNUC__)
+  return __builtin_fabsf(x);
+#else
+  return from_bits_normal(bits_nonnan(x) & ~sign_bit);
+#endif
+}
 
 /// Correctly rounded; the square root of a negative number is NaN, of -0 it is -0.
 ISOSHADE_INLINE float sqrt(float x) {
-  // Not __builtin_sqrtf, which calls the C library to set errno.
+  // Not __builtin_sqrtf where there is another way: it calls the C library to set errno.
+#if ISOSHADE_SIMD
   typedef float Floats __attribute__((vector_size(16)));
   return __builtin_ia32_sqrtss(Floats{x, 0, 0, 0})[0];
+#elif defined(__aarch64__) && defined(__GNUC__)
+  float root;
+  asm("fsqrt %s0, %s1" : "=w"(root) : "w"(x));
+  return root;
+#elif defined(__GNUC__)
+  return __builtin_sqrtf(x);
+#else
+  return std::sqrt(x);
+#endif
 }
 
 /// The largest whole number not above x; keeps -0, infinities and NaN.
 ISOSHADE_INLINE float floor(float x) {
-#if defined(__SSE4_1__)
+#if ISOSHADE_SIMD && defined(__SSE4_1__)
   typedef float Floats __attribute__((vector_size(16)));
   constexpr int down_and_quiet = 9;
   const Floats lanes = {x, 0, 0, 0};
@@ -123,3 +148,5 @@ ISOSHADE_INLINE bool unsigned_less(int a, int b) {
 }
 
 }  // namespace isoshade::lanes
+
+#endif

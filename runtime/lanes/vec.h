@@ -4,9 +4,10 @@
 // vector (vec<float, N>) converts to one of lanes.
 // (The definitions say `requires` so that a type of your own can have vectors of its own: vec<Mine, N> is
 // then the more special one.)
-#pragma once
+#ifndef ISOSHADE_LANES_VEC_H
+#define ISOSHADE_LANES_VEC_H
 
-#include "runtime/lanes/vector.h"
+#include "vector.h"
 
 namespace isoshade::lanes {
 
@@ -159,3 +160,5 @@ ISOSHADE_INLINE vec<Float<W, R>, N> select(Bool<W, R> c, vec<float, N> a, vec<fl
 }
 
 }  // namespace isoshade::lanes
+
+#endif

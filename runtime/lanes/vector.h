@@ -2,11 +2,12 @@
 //
 // Float, Int and Bool of one register, and of two. Every function takes uniform values for lanes, for they
 // convert implicitly; the overloads that take a bool condition test it once and not in every lane.
-#pragma once
+#ifndef ISOSHADE_LANES_VECTOR_H
+#define ISOSHADE_LANES_VECTOR_H
 
-#include "runtime/lanes/register.h"
-#include "runtime/lanes/register_avx2.h"
-#include "runtime/lanes/register_avx512.h"
+#include "register.h"
+#include "register_avx2.h"
+#include "register_avx512.h"
 
 namespace isoshade::lanes {
 
@@ -23,6 +24,8 @@ template <int W, int R>
 struct traits<Int<W, R>> : traits<Float<W, R>> {};
 template <int W, int R>
 struct traits<Bool<W, R>> : traits<Float<W, R>> {};
+
+#if ISOSHADE_SIMD
 
 // ---- One register.
 
@@ -331,4 +334,8 @@ ISOSHADE_INLINE Float<W, R> from_bits(Int<W, R> x) {
   return from_bits_normal(select((x & exponent_bits) == 0, x & sign_bit, x));
 }
 
+#endif
+
 }  // namespace isoshade::lanes
+
+#endif

@@ -127,7 +127,7 @@ TEST(Text, CppCompilesWithoutWarningsInBothCompilers) {
     const std::string path = folder.write(texts.name + ".cpp", texts.cpp).string();
     for (const char* compiler : {"g++", "clang++"})
       expect_success(std::string(compiler) +
-                     " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + path);
+                     " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT "/include " + path);
   }
 }
 
@@ -157,7 +157,7 @@ TEST(Text, CompilesForProgramsWithoutInputs) {
     for (const char* compiler : {"g++", "clang++"})
       for (const char* lanes : {"", " -DISOSHADE_LANES=4"})
         expect_success(std::string(compiler) + lanes +
-                       " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + path);
+                       " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT "/include " + path);
   }
 }
 
@@ -223,7 +223,7 @@ TEST(Text, CompilesWithReservedWordsAsNames) {
   const std::string cpp = folder.write("odd.cpp", driver::cpp(*program)).string();
   for (const char* compiler : {"g++", "clang++"})
     expect_success(std::string(compiler) +
-                   " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + cpp);
+                   " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT "/include " + cpp);
 }
 
 TEST(Text, DocumentTextCannotInjectCode) {
@@ -255,7 +255,7 @@ TEST(Text, DocumentTextCannotInjectCode) {
   const std::string header = folder.write("evil.cpp", cpp).string();
   for (const char* compiler : {"g++ -trigraphs", "clang++ -trigraphs"})
     expect_success(std::string(compiler) +
-                   " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT " " + header);
+                   " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " ISOSHADE_ROOT "/include " + header);
   for (const std::string& written : {glsl, cpp}) {
     std::istringstream lines(written);
     for (std::string line; std::getline(lines, line);) {

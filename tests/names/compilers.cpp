@@ -91,7 +91,7 @@ void Texts::compile() {
     size_t count = 0;
     for (size_t i = 0; i < cpp_.size();) {
       // Each text in a namespace of its own, where its function is not exported.
-      std::string file = "#include \"runtime/lanes/lanes.h\"\n" + includes();
+      std::string file = "#include \"isoshade/lanes/lanes.h\"\n" + includes();
       for (; i < cpp_.size() && file.size() < most_bytes; i += every, ++count) {
         std::string text = cpp_[i];
         replace(text, "extern \"C\" __attribute__((visibility(\"default\"))) void", "void");
@@ -102,7 +102,7 @@ void Texts::compile() {
       EXPECT_EQ(
           said(compiler +
                " -std=gnu++20 -Wall -Wextra -Werror -Wno-unused-function -fsyntax-only -I " ISOSHADE_ROOT
-               " " +
+               "/include " +
                path),
           "")
           << compiler;

@@ -41,7 +41,7 @@ TEST_F(Cli, CompiledFilesNeedNoSourceTree) {
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
   for (const char* name :
        {"cook_torrance.base.pixel.frag", "cook_torrance.base.pixel.frag.spv", "cook_torrance.base.pixel.cpp",
-        "cook_torrance.base.vertex.vert", "cook_torrance.json", "runtime/lanes/lanes.h"})
+        "cook_torrance.base.vertex.vert", "cook_torrance.json", "isoshade/lanes/lanes.h"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   const std::string compiler = "c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " + file("out") + " ";
   EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);

@@ -172,8 +172,8 @@ TEST(LanesHeaders, MatchTheSourceTree) {
   ASSERT_FALSE(lanes_headers().empty());
   bool main_header = false;
   for (const Header& header : lanes_headers()) {
-    EXPECT_EQ(read_text(std::string(ISOSHADE_SOURCE_DIR) + "/" + std::string(header.path)), header.text);
-    main_header |= header.path == "runtime/lanes/lanes.h";
+    EXPECT_EQ(read_text(std::string(ISOSHADE_SOURCE_DIR) + "/include/" + std::string(header.path)), header.text);
+    main_header |= header.path == "isoshade/lanes/lanes.h";
   }
   EXPECT_TRUE(main_header);
 }

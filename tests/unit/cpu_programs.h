@@ -9,7 +9,7 @@
 namespace isoshade::cpu {
 
 inline const std::string program_head = R"(
-#include "runtime/lanes/lanes.h"
+#include "isoshade/lanes/lanes.h"
 namespace program {
 using namespace isoshade::lanes;
 #if ISOSHADE_LANES == 1
