@@ -24,7 +24,7 @@ struct CpuOptions {
   support::Seconds build_timeout = support::default_time_limit;
   /// A folder that receives the generated C++; empty: none does.
   std::string keep;
-  /// The text of a program; see emit/stages.h for its exports.
+  /// The text of a program; see targets/cpp/stages.h for its exports.
   CppText cpp = driver::cpp;
 };
 

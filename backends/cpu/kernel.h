@@ -16,7 +16,7 @@
 
 namespace isoshade::cpu {
 
-// The exports of generated code, see emit/stages.h. Callers hold an FpGuard.
+// The exports of generated code, see targets/cpp/stages.h. Callers hold an FpGuard.
 extern "C" {
 /// An array; its index is its number in lower::FrameBuffer. It has at least one element.
 struct BufferView {
@@ -51,7 +51,7 @@ class Kernel {
   void* library_;
 };
 
-/// The text of a program; see emit/stages.h for what it must export.
+/// The text of a program; see targets/cpp/stages.h for what it must export.
 using CppText = std::function<std::string(const driver::Program&)>;
 
 /// Compiles programs, or finds them in the cache, and keeps them loaded.

@@ -45,7 +45,7 @@ void compute(Opcode op, const Cell& a, const Cell& b, const Cell& c, Cell& to) {
 #define COMPUTE_icompare(text) COMPUTE_integer(text)
 #define COMPUTE_logic(text) COMPUTE_integer(text)
   switch (op) {
-#define OP(name, arity, rule, glsl, cpp, ...) \
+#define OP(name, arity, rule, cpp, ...) \
   case Opcode::name: COMPUTE_##rule(TEXT_##arity##_##cpp) return;
 #define FORM(name, ...) case Opcode::name:
 #include "compiler/ir/ops.def"

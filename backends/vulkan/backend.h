@@ -52,7 +52,7 @@ struct VulkanOptions {
   /// one record after another, to `layout(std430, set = 0, binding = N) writeonly buffer { int words[]; }` with
   /// N = output_binding of limits.h.
   EvalStage eval_stage = EvalStage::fragment;
-  /// The text of a program's stage; see emit/stages.h for the interface it must have. Empty: the driver's.
+  /// The text of a program's stage; see targets/glsl/stages.h for the interface it must have. Empty: the driver's.
   std::function<std::string(const driver::Program&, driver::Division)> glsl;
 };
 

@@ -20,7 +20,7 @@ namespace isoshade::vulkan {
 
 using backends::Window;
 
-/// The push constants of every shader; emit/stages.h says how each stage uses them.
+/// The push constants of every shader; targets/glsl/stages.h says how each stage uses them.
 struct Push {
   int32_t object = 0;
   int32_t light_count = 0;

@@ -4,9 +4,9 @@
 
 #include "backends/shared.h"
 #include "backends/vulkan/device_impl.h"
-#include "compiler/emit/glsl.h"
-#include "compiler/emit/spirv.h"
 #include "compiler/support/assert.h"
+#include "compiler/targets/glsl/glsl.h"
+#include "compiler/targets/glsl/spirv.h"
 
 namespace isoshade::vulkan {
 
@@ -74,7 +74,7 @@ std::string key(const PipelineSource& source) {
 
 const std::string& full_screen_vertex() {
   // Half of clip space is the image (see limits.h): from pixel 0 to the edge of the guard band.
-  static const std::string text = emit::glsl_head() + R"(
+  static const std::string text = glsl::head() + R"(
 void main() {
   vec2 corner = vec2(gl_VertexIndex == 1 ? 2.0 : 0.0, gl_VertexIndex == 2 ? 2.0 : 0.0);
   gl_Position = vec4(corner, 0.0, 1.0);
@@ -86,7 +86,7 @@ void main() {
 const std::string& triangle_vertex() {
   static_assert(guard_band * 256 == 2097152);
   using namespace lower;
-  static const std::string text = emit::glsl_head() + "layout(std430, set = 0, binding = " +
+  static const std::string text = glsl::head() + "layout(std430, set = 0, binding = " +
                                   std::to_string(static_cast<int>(FrameBuffer::triangles)) +
                                   ") readonly buffer triangles_block { int triangles[]; };" + R"(
 layout(location = 0) flat out int triangle;
@@ -185,12 +185,12 @@ std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
     return found->second;
 
   const auto vertex =
-      emit::compile_spirv(source.vertex_glsl, emit::ShaderKind::vertex, diagnostics, source.what);
+      glsl::compile_spirv(source.vertex_glsl, glsl::ShaderKind::vertex, diagnostics, source.what);
   if (!vertex) return std::nullopt;
   std::optional<std::vector<uint32_t>> fragment{std::in_place};
   if (source.output != Output::buffer)
     fragment =
-        emit::compile_spirv(source.fragment_glsl, emit::ShaderKind::fragment, diagnostics, source.what);
+        glsl::compile_spirv(source.fragment_glsl, glsl::ShaderKind::fragment, diagnostics, source.what);
   if (!fragment) return std::nullopt;
 
   impl_->pipelines.push_back(impl_->make_pipeline(source, *vertex, *fragment));

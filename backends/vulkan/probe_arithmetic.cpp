@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/limits.h"
 #include "backends/vulkan/probe_parts.h"
-#include "compiler/emit/glsl.h"
 #include "compiler/support/assert.h"
+#include "compiler/targets/glsl/glsl.h"
 #include "runtime/lanes/scalar.h"
 
 namespace isoshade::vulkan {
@@ -62,7 +62,7 @@ std::string compute_row() {
 }
 
 std::string head() {
-  return emit::glsl_head() +
+  return glsl::head() +
          "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(lower::FrameBuffer::inputs)) +
          ") readonly buffer inputs_block { int inputs[]; };\n"
          "layout(push_constant) uniform Push {\n"

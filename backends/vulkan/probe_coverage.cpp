@@ -6,7 +6,7 @@
 
 #include "backends/vulkan/limits.h"
 #include "backends/vulkan/probe_parts.h"
-#include "compiler/emit/glsl.h"
+#include "compiler/targets/glsl/glsl.h"
 #include "runtime/raster/clip.h"
 
 namespace isoshade::vulkan {
@@ -199,7 +199,7 @@ backends::Image expected_image(const CoverageScene& scene, const float (&backgro
 namespace {
 
 std::string head() {
-  return emit::glsl_head() +
+  return glsl::head() +
          "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(FrameBuffer::inputs)) +
          ") readonly buffer inputs_block { int inputs[]; };\n"
          "layout(push_constant) uniform Push {\n"

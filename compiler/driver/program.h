@@ -48,11 +48,11 @@ enum class Division : uint8_t { native, exact };
 /// For messages: `the pixel stage of "fur" (fur.json)`.
 std::string description(const Program& program);
 
-/// The program as a Vulkan shader of its stage; see emit/stages.h for its interface.
+/// The program as a Vulkan shader of its stage; see targets/glsl/stages.h for its interface.
 std::string glsl(const Program& program, Division division);
 /// The same, but an eval program becomes a vertex shader.
 std::string glsl_with_vertex_eval(const Program& program, Division division);
-/// The program as C++ that exports its entry point; see emit/stages.h. Not for Stage::depth.
+/// The program as C++ that exports its entry point; see targets/cpp/stages.h. Not for Stage::depth.
 std::string cpp(const Program& program);
 
 }  // namespace isoshade::driver

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "compiler/emit/cpp.h"
 #include "compiler/ir/expansion.h"
 #include "compiler/support/visible.h"
+#include "compiler/targets/cpp/cpp.h"
 
 namespace isoshade::driver {
 
@@ -102,7 +102,7 @@ bool within_limits(const Program& program, Target target, Division division,
       ir::expanded_operations(program.module, program.entry, of_division);
   const uint64_t operations = of_functions[program.entry];
   const Limit limit = limit_of(target);
-  const uint64_t in_text = target == Target::cpu ? emit::cpp_operations(program.module, program.entry) : 0;
+  const uint64_t in_text = target == Target::cpu ? cpp::operations(program.module, program.entry) : 0;
   if (operations <= limit.most && in_text <= most_operations_in_cpp) return true;
 
   const ir::Function* function = authored(program, of_functions);

@@ -20,7 +20,7 @@ enum class Target : uint8_t { vulkan, cpu, interpreter };
 inline constexpr uint64_t most_operations_on_vulkan = 24'576;
 inline constexpr uint64_t most_operations_on_cpu = 4'194'304;
 inline constexpr uint64_t most_operations_on_interpreter = 262'144;
-/// Operations in the C++ text of a program: g++ 12 takes 0.3 ms for each (emit/cpp.h), so at most 10 s.
+/// Operations in the C++ text of a program: g++ 12 takes 0.3 ms for each (targets/cpp/cpp.h), so at most 10 s.
 inline constexpr uint64_t most_operations_in_cpp = 32'768;
 
 /// Whether a program is within the limits of a target; if not, reports the node with the most operations. An exact

@@ -23,33 +23,6 @@ constexpr int literal_columns = 6;
 constexpr int most_joined = 42;
 constexpr int most_joined_node = 25;
 
-/// What is common to the texts of an op in all languages, so that they nest alike.
-struct OpShape {
-  bool is_statement, repeats;
-  int columns;
-  std::string_view noun;
-  std::vector<std::string_view> suffixes;  ///< of the names that a text declares beside the result
-};
-
-const OpShape& shape_of(Opcode op) {
-  static const auto shapes = [] {
-    std::vector<OpShape> all;
-    for (int i = 0; i < ir::primitive_count; ++i) {
-      const auto op = static_cast<Opcode>(i);
-      const OpText glsl = parse_op_text(ir::info(op).glsl), cpp = parse_op_text(ir::info(op).cpp);
-      OpShape& shape = all.emplace_back(OpShape{
-          glsl.is_statement || cpp.is_statement, glsl.repeats || cpp.repeats, glsl.columns, noun(op), {}});
-      for (const OpText* text : {&glsl, &cpp})
-        for (const OpText::Piece& piece : text->pieces)
-          if (!piece.suffix.empty() &&
-              std::ranges::find(shape.suffixes, piece.suffix) == shape.suffixes.end())
-            shape.suffixes.push_back(piece.suffix);
-    }
-    return all;
-  }();
-  return shapes[static_cast<size_t>(op)];
-}
-
 /// Whether a compiler may contract it, or do it otherwise than written.
 bool is_float_arithmetic(Opcode op) {
   return ir::is_primitive(op) && ir::info(op).rule == ir::Rule::same && op != Opcode::fneg &&
@@ -61,7 +34,7 @@ bool combines_bits(Opcode op) { return op == Opcode::iand || op == Opcode::ior |
 }  // namespace
 
 std::string_view ExpressionPrinter::noun_of(const ir::Instruction& made) const {
-  if (ir::is_primitive(made.op)) return shape_of(made.op).noun;
+  if (ir::is_primitive(made.op)) return op_shape(made.op).noun;
   if (made.op == Opcode::construct) return "vector";
   if (made.op == Opcode::call) {
     std::string_view name = context_.texts[made.imm].name;
@@ -317,7 +290,7 @@ std::string ExpressionPrinter::print_index(uint32_t buffer, const Index& index, 
 void ExpressionPrinter::print_primitive(const ir::Instruction& instruction) {
   const ValueId result = instruction.first_result;
   const auto operands = function_.operands_of(instruction);
-  const OpShape& shape = shape_of(instruction.op);
+  const OpShape& shape = op_shape(instruction.op);
   if (nesting_[result].shape == Shape::offset) need_name(operands[0]);
   if (shape.repeats)
     for (const ValueId value : operands) need_name(value);
@@ -339,7 +312,7 @@ void ExpressionPrinter::print_statement(const ir::Instruction& instruction) {
   const OpText& text = language_.op_text(instruction.op);
   const std::string name = name_value(result, instruction);
   temporaries_.clear();
-  for (const std::string_view suffix : shape_of(instruction.op).suffixes)
+  for (const std::string_view suffix : op_shape(instruction.op).suffixes)
     temporaries_.emplace_back(suffix, names_.take(name + std::string(suffix)));
   set_name(result, name);
   if (!text.is_statement) {

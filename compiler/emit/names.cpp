@@ -12,7 +12,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// What GLSL keeps for itself in every scope. A word with an underscore behind it would still begin so.
 bool has_taken_prefix(std::string_view name) {
-  for (const std::string_view prefix : {"gl_", "GL_", "ISOSHADE_", "spirv_"})
+  for (const std::string_view prefix : {"gl_", "GL_", "ISOSHADE_", "spirv_", "webgl_"})
     if (name.starts_with(prefix)) return true;
   return false;
 }

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <tuple>
 #include <utility>
+
+#include "compiler/support/assert.h"
 
 namespace isoshade::emit {
 
@@ -87,8 +90,6 @@ std::string_view suffix_of(std::string_view text) {
   return text.starts_with('_') ? text.substr(0, end) : std::string_view();
 }
 
-}  // namespace
-
 OpText parse_op_text(std::string_view text) {
   OpText op;
   op.is_statement = text.starts_with(';');
@@ -120,13 +121,52 @@ OpText parse_op_text(std::string_view text) {
   return op;
 }
 
-std::vector<OpText> parse_op_texts(std::string_view ir::OpInfo::*column) {
-  std::vector<OpText> texts;
-  for (int op = 0; op < ir::primitive_count; ++op)
-    texts.push_back(parse_op_text(ir::info(static_cast<ir::Opcode>(op)).*column));
-  return texts;
+/// All rows of all languages, one after another; a row that begins a language has no op.
+struct Row {
+  std::optional<ir::Opcode> op;
+  std::string_view text = {};  ///< empty: the language does not have the op
+};
+constexpr Row rows[] = {
+#define TARGET(name) Row{std::nullopt},
+#define TEXT(op, text) Row{ir::Opcode::op, text},
+#define ABSENT(op) Row{ir::Opcode::op},
+#include "compiler/targets/targets.def"
+};
+
+consteval bool each_language_lists_each_op_once() {
+  std::array<std::array<int, ir::primitive_count>, target_count> listed{};
+  size_t language = 0;
+  for (const Row& row : rows) {
+    if (!row.op)
+      ++language;
+    else
+      ++listed[language - 1][static_cast<size_t>(*row.op)];
+  }
+  for (const auto& ops : listed)
+    for (const int count : ops)
+      if (count != 1) return false;
+  return true;
+}
+static_assert(each_language_lists_each_op_once(), "an ops.def forgets an op of ir/ops.def, or has it twice");
+
+using Texts = std::array<OpText, ir::primitive_count>;
+
+const std::array<Texts, target_count>& all_texts() {
+  static const auto all = [] {
+    std::array<Texts, target_count> texts;
+    size_t language = 0;
+    for (const Row& row : rows) {
+      if (!row.op)
+        ++language;
+      else
+        texts[language - 1][static_cast<size_t>(*row.op)] = parse_op_text(row.text);
+    }
+    return texts;
+  }();
+  return all;
 }
 
+/// A noun for what an op computes.
 std::string_view noun(ir::Opcode op) {
   struct Noun {
     std::string_view what, noun;
@@ -165,11 +205,44 @@ std::string_view noun(ir::Opcode op) {
       {"shift_right_signed", "shifted"},
       {"unsigned_less", "is_less"},
   };
-  const ir::OpInfo& row = ir::info(op);
-  const std::string_view what = parse_op_text(row.cpp).what;
-  if (row.rule == ir::Rule::logic && what != "!") return "holds";
+  const std::string_view what = all_texts()[static_cast<size_t>(TargetId::cpp)][static_cast<size_t>(op)].what;
+  if (ir::info(op).rule == ir::Rule::logic && what != "!") return "holds";
   const auto found = std::ranges::find(nouns, what, &Noun::what);
   return found != std::end(nouns) ? found->noun : "value";
+}
+
+OpShape make_shape(ir::Opcode op) {
+  OpShape shape{false, false, 0, noun(op), {}};
+  for (const Texts& texts : all_texts()) {
+    const OpText& text = texts[static_cast<size_t>(op)];
+    shape.is_statement |= text.is_statement;
+    shape.repeats |= text.repeats;
+    if (shape.columns == 0) shape.columns = text.columns;
+    for (const OpText::Piece& piece : text.pieces)
+      if (!piece.suffix.empty() && std::ranges::find(shape.suffixes, piece.suffix) == shape.suffixes.end())
+        shape.suffixes.push_back(piece.suffix);
+  }
+  return shape;
+}
+
+}  // namespace
+
+bool has_op(TargetId target, ir::Opcode op) {
+  return !all_texts()[static_cast<size_t>(target)][static_cast<size_t>(op)].pieces.empty();
+}
+
+const OpText& op_text(TargetId target, ir::Opcode op) {
+  support::assert_that(has_op(target, op), "a language prints an op that it does not have");
+  return all_texts()[static_cast<size_t>(target)][static_cast<size_t>(op)];
+}
+
+const OpShape& op_shape(ir::Opcode op) {
+  static const auto shapes = [] {
+    std::vector<OpShape> all;
+    for (int i = 0; i < ir::primitive_count; ++i) all.push_back(make_shape(static_cast<ir::Opcode>(i)));
+    return all;
+  }();
+  return shapes[static_cast<size_t>(op)];
 }
 
 }  // namespace isoshade::emit

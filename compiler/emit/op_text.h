@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texts of ops.def, taken apart once: where the operands stand, and which of them need brackets.
+// The texts of ops in all languages (targets/*/ops.def), taken apart once: where the operands stand, and which of them need
+// brackets.
 #pragma once
 
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
+#include "compiler/emit/target_id.h"
 #include "compiler/ir/op.h"
 
 namespace isoshade::emit {
@@ -55,11 +57,19 @@ struct OpText {
   std::string_view what;  ///< the operator or the function called
 };
 
-OpText parse_op_text(std::string_view text);
-/// The texts of one column of ops.def, by op.
-std::vector<OpText> parse_op_texts(std::string_view ir::OpInfo::*column);
+/// The text of an op in a language that has it.
+const OpText& op_text(TargetId target, ir::Opcode op);
+/// Whether the language has the op. If not, a pass must replace it.
+bool has_op(TargetId target, ir::Opcode op);
 
-/// A noun for what an op computes, for names of values that have none: "sum", "product".
-std::string_view noun(ir::Opcode op);
+/// What is common to the texts of an op in all languages, so that they nest alike.
+struct OpShape {
+  bool is_statement, repeats;
+  int columns;
+  std::string_view noun;  ///< for what the op computes, for names of values that have none: "sum", "product"
+  std::vector<std::string_view> suffixes;  ///< of the names that a text declares beside the result
+};
+
+const OpShape& op_shape(ir::Opcode op);
 
 }  // namespace isoshade::emit

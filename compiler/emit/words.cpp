@@ -19,79 +19,30 @@ enum class Rest : uint8_t {
   capitals,  ///< capitals, digits and underscores alone
 };
 
-struct Words {
+/// A row of a table; `kind` says which of the three macros it was.
+struct Row {
+  enum class Kind : uint8_t { words, family, ending } kind;
   Where where;
-  std::string_view words;  ///< with spaces between them
-};
-struct Family {
-  Where where;
-  std::string_view prefix;
-  Rest rest;
-  std::string_view example;
-};
-struct Ending {
-  Where where;
-  std::string_view suffix;
-  std::string_view example;
+  std::string_view text;  ///< words with spaces between them, a prefix or a suffix
+  Rest rest = Rest::any;
+  std::string_view example = {};  ///< of a family or an ending
 };
 
-struct Table {
-  std::span<const Words> words;
-  std::span<const Family> families;
-  std::span<const Ending> endings;
-};
-
-// Each table is read three times, for what the macro of each kind takes of it.
-#define WORDS(where, words) {where, words},
-#define FAMILY(where, prefix, rest, example)
-#define ENDING(where, suffix, example)
-constexpr Words glsl_words[] = {
-#include "compiler/emit/glsl_words.def"
-};
-constexpr Words cpp_words[] = {
-#include "compiler/emit/cpp_words.def"
-};
-constexpr Words own_words[] = {
+#define WORDS(where, text) Row{Row::Kind::words, where, text},
+#define FAMILY(where, text, rest, example) Row{Row::Kind::family, where, text, Rest::rest, example},
+#define ENDING(where, text, example) Row{Row::Kind::ending, where, text, Rest::any, example},
+constexpr Row own_rows[] = {
 #include "compiler/emit/own_words.def"
 };
-#undef WORDS
-#undef FAMILY
-#define WORDS(where, words)
-#define FAMILY(where, prefix, rest, example) {where, prefix, Rest::rest, example},
-constexpr Family glsl_families[] = {
-#include "compiler/emit/glsl_words.def"
+constexpr Row language_rows[] = {
+#include "compiler/targets/targets.def"
 };
-constexpr Family cpp_families[] = {
-#include "compiler/emit/cpp_words.def"
-};
-constexpr Family own_families[] = {
-#include "compiler/emit/own_words.def"
-};
-#undef FAMILY
-#undef ENDING
-#define FAMILY(where, prefix, rest, example)
-#define ENDING(where, suffix, example) {where, suffix, example},
-constexpr Ending glsl_endings[] = {
-#include "compiler/emit/glsl_words.def"
-};
-constexpr Ending cpp_endings[] = {
-#include "compiler/emit/cpp_words.def"
-};
-constexpr Ending own_endings[] = {
-#include "compiler/emit/own_words.def"
-};
-#undef WORDS
-#undef FAMILY
-#undef ENDING
-
-constexpr Table languages[] = {{glsl_words, glsl_families, glsl_endings},
-                               {cpp_words, cpp_families, cpp_endings}};
-constexpr Table own = {own_words, own_families, own_endings};
 
 template <class Take>
-void for_each_word(const Table& table, const Take& take) {
-  for (const Words& row : table.words) {
-    std::string_view rest = row.words;
+void for_each_word(std::span<const Row> rows, const Take& take) {
+  for (const Row& row : rows) {
+    if (row.kind != Row::Kind::words) continue;
+    std::string_view rest = row.text;
     while (!rest.empty()) {
       const size_t end = std::min(rest.find(' '), rest.size());
       if (end > 0) take(rest.substr(0, end), row.where);
@@ -104,9 +55,8 @@ void for_each_word(const Table& table, const Take& take) {
 const std::unordered_map<std::string_view, uint8_t>& listed() {
   static const auto all = [] {
     std::unordered_map<std::string_view, uint8_t> map;
-    for (const Table& table : languages)
-      for_each_word(table, [&](std::string_view word, Where where) { map[word] |= where; });
-    for_each_word(own,
+    for_each_word(language_rows, [&](std::string_view word, Where where) { map[word] |= where; });
+    for_each_word(own_rows,
                   [&](std::string_view word, Where where) { map[word] |= static_cast<uint8_t>(where << 3); });
     return map;
   }();
@@ -124,16 +74,22 @@ bool follows(std::string_view rest, Rest rule) {
   return !rest.empty() && std::ranges::all_of(rest, [](char c) { return is_capital(c) || c == '_'; });
 }
 
-bool is_of_family(std::string_view name, uint8_t scope, const Table& table) {
+bool is_of_family(std::string_view name, uint8_t scope, std::span<const Row> rows) {
   if (name.empty()) return false;
-  // Most names differ in their first or last letter already.
-  for (const Family& family : table.families)
-    if (family.prefix.front() == name.front() && (family.where & scope) != 0 && name.starts_with(family.prefix) &&
-        follows(name.substr(family.prefix.size()), family.rest))
-      return true;
-  for (const Ending& ending : table.endings)
-    if (ending.suffix.back() == name.back() && (ending.where & scope) != 0 && name.ends_with(ending.suffix))
-      return true;
+  for (const Row& row : rows) {
+    if ((row.where & scope) == 0) continue;
+    // Most names differ in their first or last letter already.
+    switch (row.kind) {
+      case Row::Kind::words: break;
+      case Row::Kind::family:
+        if (row.text.front() == name.front() && name.starts_with(row.text) &&
+            follows(name.substr(row.text.size()), row.rest))
+          return true;
+        break;
+      case Row::Kind::ending:
+        if (row.text.back() == name.back() && name.ends_with(row.text)) return true;
+    }
+  }
   return false;
 }
 
@@ -147,18 +103,15 @@ bool is_word(std::string_view name, Scope scope, Avoid avoid) {
     if ((found->second & bit) != 0) return true;
     if (avoids_own && (found->second >> 3 & bit) != 0) return true;
   }
-  for (const Table& table : languages)
-    if (is_of_family(name, bit, table)) return true;
-  return avoids_own && is_of_family(name, bit, own);
+  return is_of_family(name, bit, language_rows) || (avoids_own && is_of_family(name, bit, own_rows));
 }
 
 std::vector<std::string_view> all_words() {
   std::vector<std::string_view> words;
   for (const auto& [word, where] : listed()) words.push_back(word);
-  for (const Table* table : {&languages[0], &languages[1], &own}) {
-    for (const Family& family : table->families) words.push_back(family.example);
-    for (const Ending& ending : table->endings) words.push_back(ending.example);
-  }
+  for (const std::span<const Row> rows : {std::span<const Row>(language_rows), std::span<const Row>(own_rows)})
+    for (const Row& row : rows)
+      if (row.kind != Row::Kind::words) words.push_back(row.example);
   std::ranges::sort(words);
   words.erase(std::unique(words.begin(), words.end()), words.end());
   return words;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words that names in emitted text must not be. Each target has a table of its own (glsl_words.def, cpp_words.def);
-// own_words.def has what our texts say themselves. Both texts have the same names, so a name avoids all of them.
+// The words that names in emitted text must not be. Each language has a table of its own
+// (targets/*/words.def); own_words.def has what our texts say themselves. The texts of all languages have the same names, so
+// a name avoids the words of all.
 #pragma once
 
 #include <cstdint>

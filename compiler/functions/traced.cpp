@@ -9,7 +9,7 @@ namespace isoshade::functions::traced {
   result function(type a, type b) { return record<result>(ir::Opcode::op, a, b); }
 #define TRACE_3(result, function, type, op) \
   result function(Bool condition, type a, type b) { return record<result>(ir::Opcode::op, condition, a, b); }
-#define OP(name, arity, rule, glsl, cpp, ...) TRACE_##rule(arity, SPELLED_##cpp, name)
+#define OP(name, arity, rule, cpp, ...) TRACE_##rule(arity, SPELLED_##cpp, name)
 #include "compiler/ir/ops.def"
 
 ir::ValueId construct(ir::Builder& builder, std::span<const Float> components) {

@@ -55,7 +55,7 @@ struct Float : Scalar<float> {
 #define TRACE_1(result, function, type, op) result function(type a);
 #define TRACE_2(result, function, type, op) result function(type a, type b);
 #define TRACE_3(result, function, type, op) result function(Bool condition, type a, type b);
-#define OP(name, arity, rule, glsl, cpp, ...) TRACE_##rule(arity, SPELLED_##cpp, name)
+#define OP(name, arity, rule, cpp, ...) TRACE_##rule(arity, SPELLED_##cpp, name)
 #include "compiler/ir/ops.def"
 #undef TRACE_1
 #undef TRACE_2
@@ -134,7 +134,7 @@ using V = lanes::vec<Float, N>;
 #define TRACE_VECTOR_logic(arity, function, op)
 #define TRACE_VECTOR_to_int(arity, function, op)
 #define TRACE_VECTOR_to_float(arity, function, op)
-#define OP(name, arity, rule, glsl, cpp, ...) TRACE_VECTOR_##rule(arity, SPELLED_##cpp, name)
+#define OP(name, arity, rule, cpp, ...) TRACE_VECTOR_##rule(arity, SPELLED_##cpp, name)
 #include "compiler/ir/ops.def"
 // clang-format on
 

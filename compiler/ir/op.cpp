@@ -7,17 +7,9 @@ namespace isoshade::ir {
 
 namespace {
 
-// The column `cpp` as text, by arity.
-#define CPP_1_prefix(sign) #sign "$0"
-#define CPP_2_infix(sign) "$0 " #sign " $1"
-#define CPP_1_call(function) #function "($0)"
-#define CPP_2_call(function) #function "($0, $1)"
-#define CPP_3_call(function) #function "($0, $1, $2)"
-
 constexpr OpInfo rows[] = {
-#define OP(name, arity, rule, glsl, cpp, precondition, range, change)           \
-  {#name, arity, Rule::rule, glsl, CPP_##arity##_##cpp, Precondition::precondition, \
-   RangeRule::range, ChangeRule::change},
+#define OP(name, arity, rule, cpp, precondition, range, change) \
+  {#name, arity, Rule::rule, Precondition::precondition, RangeRule::range, ChangeRule::change},
 #include "compiler/ir/ops.def"
 };
 

@@ -70,8 +70,6 @@ struct OpInfo {
   std::string_view name;
   int arity;
   Rule rule;
-  std::string_view glsl;
-  std::string_view cpp;
   Precondition precondition;
   RangeRule range;
   ChangeRule change;

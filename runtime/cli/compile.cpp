@@ -9,8 +9,8 @@
 #include "backends/cpu/compiler.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
-#include "compiler/emit/spirv.h"
 #include "compiler/support/visible.h"
+#include "compiler/targets/glsl/spirv.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -88,8 +88,8 @@ class Writer {
 
   bool spirv(const std::string& name, const std::string& text, const driver::Program& program) {
     const bool vertex = program.stage == driver::Stage::vertex;
-    const auto kind = vertex ? emit::ShaderKind::vertex : emit::ShaderKind::fragment;
-    const auto words = emit::compile_spirv(text, kind, diagnostics_, driver::description(program));
+    const auto kind = vertex ? glsl::ShaderKind::vertex : glsl::ShaderKind::fragment;
+    const auto words = glsl::compile_spirv(text, kind, diagnostics_, driver::description(program));
     if (!words) return false;
     return write(name + ".spv", {reinterpret_cast<const char*>(words->data()), 4 * words->size()});
   }

@@ -11,10 +11,10 @@
 #include "backends/cpu/backend.h"
 #include "backends/interpreter/backend.h"
 #include "compiler/driver/driver.h"
-#include "compiler/emit/cpp.h"
 #include "compiler/ir/builder.h"
 #include "compiler/ir/validator.h"
 #include "compiler/lower/stages.h"
+#include "compiler/targets/cpp/cpp.h"
 #include "tests/conformance/cases.h"
 #include "tests/unit/random_module.h"
 #ifdef ISOSHADE_VULKAN
@@ -196,7 +196,7 @@ TEST(RandomPrograms, AreIdenticalInVertexShaders) {
 }
 #endif
 
-/// More operations than emit::large_program, of which late ones read early ones: a loop and a branch among them.
+/// More operations than cpp::large_program, of which late ones read early ones: a loop and a branch among them.
 driver::Program large_program() {
   ir::RandomModule random(1);
   ir::Module module = lower::frame_module();
@@ -212,7 +212,7 @@ driver::Program large_program() {
   constexpr std::array operations{ir::Opcode::fadd, ir::Opcode::fsub, ir::Opcode::fmul};
   const auto operate = [&](ValueId x, ValueId y) { return b.op(operations[random.below(3)], {x, y}); };
   ValueId count = b.constant(1);
-  while (made.size() < emit::large_program / 2 + 300) {
+  while (made.size() < cpp::large_program / 2 + 300) {
     made.push_back(operate(any(), made[made.size() - 1 - random.below(3)]));
     if (made.size() % 1000 == 0) count = b.op(ir::Opcode::iadd, {count, b.constant(1)});
     if (made.size() % 1000 == 500)

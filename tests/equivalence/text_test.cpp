@@ -10,7 +10,7 @@
 
 #include "compiler/check/library.h"
 #include "compiler/driver/driver.h"
-#include "compiler/emit/spirv.h"
+#include "compiler/targets/glsl/spirv.h"
 
 namespace isoshade::equivalence {
 namespace {
@@ -312,10 +312,10 @@ TEST(Text, PreciseReachesEveryOperation) {
   for (const Texts& texts : shipped()) {
     SCOPED_TRACE(texts.name);
     const auto kind =
-        texts.stage == driver::Stage::vertex ? emit::ShaderKind::vertex : emit::ShaderKind::fragment;
+        texts.stage == driver::Stage::vertex ? glsl::ShaderKind::vertex : glsl::ShaderKind::fragment;
     for (const std::string* text : {&texts.glsl, &texts.exact}) {
       support::Diagnostics diagnostics;
-      EXPECT_EQ(emit::count_contractible(*text, kind, diagnostics), 0u) << diagnostics.text();
+      EXPECT_EQ(glsl::count_contractible(*text, kind, diagnostics), 0u) << diagnostics.text();
     }
   }
 }

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "compiler/emit/spirv.h"
 #include "compiler/graph/graph.h"
+#include "compiler/targets/glsl/spirv.h"
 
 namespace isoshade::names {
 namespace {
@@ -73,12 +73,12 @@ void Texts::add(const driver::Program& program) {
   support::Diagnostics diagnostics;
   const std::string glsl = driver::glsl(program, driver::Division::native);
   EXPECT_TRUE(
-      emit::compile_spirv(glsl, vertex ? emit::ShaderKind::vertex : emit::ShaderKind::fragment, diagnostics))
+      glsl::compile_spirv(glsl, vertex ? glsl::ShaderKind::vertex : glsl::ShaderKind::fragment, diagnostics))
       << diagnostics.text() << glsl.substr(0, 20000);
   ++glsl_;
   if (program.stage == driver::Stage::eval) {
     const std::string other = driver::glsl_with_vertex_eval(program, driver::Division::exact);
-    EXPECT_TRUE(emit::compile_spirv(other, emit::ShaderKind::vertex, diagnostics)) << diagnostics.text();
+    EXPECT_TRUE(glsl::compile_spirv(other, glsl::ShaderKind::vertex, diagnostics)) << diagnostics.text();
     ++glsl_;
   }
   cpp_.push_back(driver::cpp(program));

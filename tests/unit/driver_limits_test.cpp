@@ -5,7 +5,7 @@
 
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
-#include "compiler/emit/spirv.h"
+#include "compiler/targets/glsl/spirv.h"
 
 namespace isoshade::driver {
 namespace {
@@ -144,7 +144,7 @@ TEST_F(Limits, ManyInputsArePassedInStructs) {
               R"(}, "outputs": {"out": "a)" + std::to_string(many - 1) + "\"}}");
   const std::string text = glsl(program, Division::native);
   EXPECT_EQ(count(text, "struct Inputs"), 10u);
-  EXPECT_TRUE(emit::compile_spirv(text, emit::ShaderKind::fragment, diagnostics)) << diagnostics.text();
+  EXPECT_TRUE(glsl::compile_spirv(text, glsl::ShaderKind::fragment, diagnostics)) << diagnostics.text();
 }
 
 }  // namespace

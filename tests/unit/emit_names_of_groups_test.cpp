@@ -2,9 +2,9 @@
 // Parameter groups, and functions that would take a name of the language's own.
 #include <gtest/gtest.h>
 
-#include "compiler/emit/cpp.h"
-#include "compiler/emit/spirv.h"
-#include "compiler/emit/stages.h"
+#include "compiler/targets/cpp/cpp.h"
+#include "compiler/targets/glsl/spirv.h"
+#include "compiler/targets/glsl/stages.h"
 #include "tests/unit/ir_text.h"
 
 namespace isoshade::emit {
@@ -12,9 +12,9 @@ namespace {
 
 /// The eval shader of a module, which must compile.
 std::string shader(const ir::Module& module) {
-  const std::string text = glsl_stage(module, module.find("eval"), lower::Stage::eval, {"", "test"});
+  const std::string text = glsl::stage(module, module.find("eval"), lower::Stage::eval, {"", "test"});
   support::Diagnostics diagnostics;
-  EXPECT_TRUE(compile_spirv(text, ShaderKind::fragment, diagnostics)) << diagnostics.text() << text;
+  EXPECT_TRUE(glsl::compile_spirv(text, glsl::ShaderKind::fragment, diagnostics)) << diagnostics.text() << text;
   return text;
 }
 
@@ -70,7 +70,7 @@ func @eval(%row: int) -> (out: float) {
   return %out
 })");
   EXPECT_NE(shader(module).find("float main_(float x)"), std::string::npos);
-  EXPECT_NE(cpp_functions(module, module.find("eval")).find("F main_(F x)"), std::string::npos);
+  EXPECT_NE(cpp::functions(module, module.find("eval")).find("F main_(F x)"), std::string::npos);
 }
 
 TEST(HiddenZero, IsDefinedOnlyWhereUsed) {
@@ -79,9 +79,9 @@ TEST(HiddenZero, IsDefinedOnlyWhereUsed) {
   const ir::Module without =
       ir::valid("func @eval(%row: int) -> (out: float) {\n  %out = itof %row\n  return %out\n}");
   EXPECT_NE(shader(with).find("#define ISO_ZERO iso_zero"), std::string::npos);
-  EXPECT_NE(cpp_functions(with, 0).find("constexpr float ISO_ZERO"), std::string::npos);
+  EXPECT_NE(cpp::functions(with, 0).find("constexpr float ISO_ZERO"), std::string::npos);
   EXPECT_EQ(shader(without).find("ISO_ZERO"), std::string::npos);
-  EXPECT_EQ(cpp_functions(without, 0).find("ISO_ZERO"), std::string::npos);
+  EXPECT_EQ(cpp::functions(without, 0).find("ISO_ZERO"), std::string::npos);
 }
 
 }  // namespace

@@ -5,11 +5,12 @@
 #include <random>
 #include <set>
 
-#include "compiler/emit/cpp.h"
 #include "compiler/emit/names.h"
-#include "compiler/emit/spirv.h"
-#include "compiler/emit/stages.h"
 #include "compiler/graph/graph.h"
+#include "compiler/targets/cpp/cpp.h"
+#include "compiler/targets/cpp/stages.h"
+#include "compiler/targets/glsl/spirv.h"
+#include "compiler/targets/glsl/stages.h"
 #include "tests/unit/ir_text.h"
 
 namespace isoshade::emit {
@@ -113,9 +114,9 @@ std::pair<std::string, std::string> texts(const char* text) {
   const ir::Module module = ir::valid(text);
   const uint32_t entry = module.find("eval");
   support::Diagnostics diagnostics;
-  const std::string glsl = glsl_stage(module, entry, lower::Stage::eval, {"", "test"});
-  EXPECT_TRUE(compile_spirv(glsl, ShaderKind::fragment, diagnostics)) << diagnostics.text() << glsl;
-  return {glsl, cpp_stage(module, entry, lower::Stage::eval, {"", "test"})};
+  const std::string glsl = glsl::stage(module, entry, lower::Stage::eval, {"", "test"});
+  EXPECT_TRUE(glsl::compile_spirv(glsl, glsl::ShaderKind::fragment, diagnostics)) << diagnostics.text() << glsl;
+  return {glsl, cpp::stage(module, entry, lower::Stage::eval, {"", "test"})};
 }
 
 TEST(Names, HighProductsReserveTheNamesOfBothWords) {

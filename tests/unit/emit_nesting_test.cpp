@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "compiler/emit/cpp.h"
-#include "compiler/emit/glsl.h"
-#include "compiler/emit/spirv.h"
+#include "compiler/targets/cpp/cpp.h"
+#include "compiler/targets/glsl/glsl.h"
+#include "compiler/targets/glsl/spirv.h"
 #include "tests/unit/ir_text.h"
 #include "tests/unit/random_module.h"
 
@@ -17,7 +17,7 @@ namespace {
 struct Texts {
   std::string glsl, cpp;
   explicit Texts(const ir::Module& module, uint32_t entry = 0)
-      : glsl(glsl_functions(module, entry)), cpp(cpp_functions(module, entry)) {}
+      : glsl(glsl::functions(module, entry)), cpp(cpp::functions(module, entry)) {}
 };
 
 void expect_both(const Texts& texts, const std::string& in_glsl, const std::string& in_cpp) {
@@ -28,16 +28,16 @@ void expect_both(const Texts& texts, const std::string& text) { expect_both(text
 
 /// How many operations of the functions `precise` does not reach.
 size_t contractible(const ir::Module& module, uint32_t entry) {
-  std::string text = glsl_head();
+  std::string text = glsl::head();
   for (size_t i = 0; i < module.buffers.size(); ++i) {
     const std::string& name = module.buffers[i].name;
     const bool floats = module.buffers[i].element == ir::Scalar::floating;
     text += "layout(std430, set = 0, binding = " + std::to_string(i) + ") readonly buffer " + name +
             "_block { " + (floats ? "float " : "int ") + name + "[]; };\n";
   }
-  text += glsl_functions(module, entry) + "\nvoid main() {}\n";
+  text += glsl::functions(module, entry) + "\nvoid main() {}\n";
   support::Diagnostics diagnostics;
-  const auto count = count_contractible(text, ShaderKind::fragment, diagnostics);
+  const auto count = glsl::count_contractible(text, glsl::ShaderKind::fragment, diagnostics);
   EXPECT_TRUE(count) << diagnostics.text() << text;
   EXPECT_EQ(count.value_or(0), 0u) << text;
   return count.value_or(0);

@@ -4,25 +4,25 @@
 #include <set>
 #include <thread>
 
-#include "compiler/emit/glsl.h"
-#include "compiler/emit/spirv.h"
-#include "compiler/emit/stages.h"
+#include "compiler/targets/glsl/glsl.h"
+#include "compiler/targets/glsl/spirv.h"
+#include "compiler/targets/glsl/stages.h"
 #include "tests/unit/ir_text.h"
 
 namespace isoshade::emit {
 namespace {
 
 std::string fragment(const std::string& statements) {
-  return glsl_head() +
+  return glsl::head() +
          "layout(std430, set = 0, binding = 0) readonly buffer inputs_block { float inputs[]; };\n"
          "layout(location = 0) out vec4 color;\n"
          "void main() {\n  float a = inputs[0];\n  float b = inputs[1];\n" +
          statements + "}\n";
 }
 
-std::vector<uint32_t> compile(const std::string& glsl, ShaderKind kind = ShaderKind::fragment) {
+std::vector<uint32_t> compile(const std::string& glsl, glsl::ShaderKind kind = glsl::ShaderKind::fragment) {
   support::Diagnostics diagnostics;
-  const auto spirv = compile_spirv(glsl, kind, diagnostics);
+  const auto spirv = glsl::compile_spirv(glsl, kind, diagnostics);
   EXPECT_TRUE(spirv) << diagnostics.text();
   return spirv.value_or(std::vector<uint32_t>{});
 }
@@ -87,7 +87,7 @@ TEST(CompileSpirv, CompilesLongChainsOfMultiResultFunctions) {
       ir::valid(text + "  %out = fadd %a" + last + ", %b" + last + "\n  return %out\n}");
   constexpr uint32_t op_fadd = 129, op_function_call = 57;
   const std::vector<uint32_t> spirv =
-      compile(glsl_stage(module, module.find("eval"), lower::Stage::eval, {"", "test"}));
+      compile(glsl::stage(module, module.find("eval"), lower::Stage::eval, {"", "test"}));
   EXPECT_GE(Operations(spirv, op_function_call).results.size(), size_t{depth});
   EXPECT_EQ(Operations(spirv, op_fadd).results.size(), 2u);
   EXPECT_TRUE(Operations(spirv, op_fadd).all_exact());
@@ -96,7 +96,7 @@ TEST(CompileSpirv, CompilesLongChainsOfMultiResultFunctions) {
 TEST(CompileSpirv, ReportsTheFirstCompileError) {
   support::Diagnostics diagnostics;
   const std::string text = fragment("  color = vec4(roughnes);\n  color = 1;\n");
-  EXPECT_FALSE(compile_spirv(text, ShaderKind::fragment, diagnostics));
+  EXPECT_FALSE(glsl::compile_spirv(text, glsl::ShaderKind::fragment, diagnostics));
   ASSERT_EQ(diagnostics.all().size(), 1u);
   EXPECT_EQ(diagnostics.all()[0].id, support::Id::bad_shader);
   EXPECT_NE(diagnostics.text().find("roughnes"), std::string::npos) << diagnostics.text();
@@ -104,7 +104,7 @@ TEST(CompileSpirv, ReportsTheFirstCompileError) {
 
 TEST(CompileSpirv, ErrorsNameTheProgram) {
   support::Diagnostics diagnostics;
-  EXPECT_FALSE(compile_spirv(fragment("  color = length;\n"), ShaderKind::fragment, diagnostics,
+  EXPECT_FALSE(glsl::compile_spirv(fragment("  color = length;\n"), glsl::ShaderKind::fragment, diagnostics,
                              "the pixel stage of \"fur\" (fur.json)"));
   EXPECT_NE(diagnostics.text().find("the pixel stage of \"fur\" (fur.json) does not compile"),
             std::string::npos)
@@ -113,13 +113,13 @@ TEST(CompileSpirv, ErrorsNameTheProgram) {
 
 TEST(CompileSpirv, ReportsShadersOfTheWrongKind) {
   support::Diagnostics diagnostics;
-  EXPECT_FALSE(compile_spirv(fragment("  gl_FragDepth = a;\n"), ShaderKind::vertex, diagnostics));
+  EXPECT_FALSE(glsl::compile_spirv(fragment("  gl_FragDepth = a;\n"), glsl::ShaderKind::vertex, diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());
 }
 
 TEST(CompileSpirvDeathTest, AbortsWithoutSignedZeroInfNanPreserve) {
   support::Diagnostics diagnostics;
-  EXPECT_DEATH(compile_spirv("#version 450\nvoid main() {}\n", ShaderKind::vertex, diagnostics),
+  EXPECT_DEATH(glsl::compile_spirv("#version 450\nvoid main() {}\n", glsl::ShaderKind::vertex, diagnostics),
                "SignedZeroInfNanPreserve");
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/lanes_kernels.h"
+
 //
 // Compiled once for each table, with LANES_TABLE its name and LANES_FLOAT its float type.
-#include "tests/unit/lanes_kernels.h"
 
 #include "runtime/lanes/lanes.h"
 
@@ -53,7 +54,7 @@ ISOSHADE_INLINE void for_all_rows(const Inputs& in, int* results, Body body) {
 #define KERNEL(...) KERNEL_WITH(#__VA_ARGS__, , __VA_ARGS__)
 
 // An op as the column `cpp` of ops.def spells it, of x0, x1 and x2: TAKE_rule_precondition says what these are.
-#define OP(name, arity, rule, glsl, cpp, precondition, ...) \
+#define OP(name, arity, rule, cpp, precondition, ...) \
   KERNEL_WITH(#name, TAKE_##rule##_##precondition, TEXT_##arity##_##cpp),
 #define TEXT_1_prefix(sign) sign x0
 #define TEXT_2_infix(sign) x0 sign x1

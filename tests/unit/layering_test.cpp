@@ -96,6 +96,7 @@ TEST(Layering, FoldersIncludeOnlyWhatTheyLink) {
         const std::string folder = fs::path(header).parent_path().string();
         if (folder.empty() && header.ends_with(".inc")) continue;  // made beside the folder's objects
         if (name == "lanes" && folder.empty()) continue;           // a folder that is copied as a whole
+        if (header == "compiler/targets/targets.def") continue;  // data of languages, whose code links what reads it
         EXPECT_TRUE(allowed.count(folder))
             << entry.path() << " includes " << header << ", which isoshade_" << name << " does not link";
       }

@@ -5,7 +5,7 @@ isoshade_test(emit_spirv_test
     unit/emit_nesting_test.cpp
     unit/emit_spirv_test.cpp
     unit/random_module.cpp
-  LINKS isoshade_emit)
+  LINKS isoshade_targets)
 
 if(ISOSHADE_VULKAN)
   isoshade_test(vulkan_test

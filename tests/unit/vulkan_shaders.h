@@ -9,13 +9,13 @@
 #include <string>
 
 #include "backends/vulkan/backend.h"
-#include "compiler/emit/glsl.h"
+#include "compiler/targets/glsl/glsl.h"
 
 namespace isoshade::vulkan {
 
-/// What generated shaders declare; see emit/stages.h.
+/// What generated shaders declare; see targets/glsl/stages.h.
 inline std::string interface_glsl() {
-  return emit::glsl_head() + R"(
+  return glsl::head() + R"(
 layout(std430, set = 0, binding = 0) readonly buffer vertices_block { float vertices[]; };
 layout(std430, set = 0, binding = 1) readonly buffer triangles_block { int triangles[]; };
 layout(std430, set = 0, binding = 2) readonly buffer objects_block { float objects[]; };

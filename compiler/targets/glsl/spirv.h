@@ -9,7 +9,7 @@
 
 #include "compiler/support/diagnostics.h"
 
-namespace isoshade::emit {
+namespace isoshade::glsl {
 
 enum class ShaderKind : uint8_t { vertex, fragment };
 
@@ -17,7 +17,7 @@ enum class ShaderKind : uint8_t { vertex, fragment };
 /// those on floats are NoContraction, whether the text says `precise` or not. The same text gives the same words on
 /// every machine, in time linear in its length. Thread-safe.
 ///
-/// `glsl` begins with glsl_head(); a module without SignedZeroInfNanPreserve 32 would be a bug of ours, so it
+/// `glsl` begins with head(); a module without SignedZeroInfNanPreserve 32 would be a bug of ours, so it
 /// aborts. A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.
 /// `what` names the text in that report: `the pixel stage of "fur" (fur.json)`.
 std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
@@ -29,4 +29,4 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
 std::optional<size_t> count_contractible(const std::string& glsl, ShaderKind kind,
                                          support::Diagnostics& diagnostics);
 
-}  // namespace isoshade::emit
+}  // namespace isoshade::glsl

@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "compiler/emit/printer.h"
+#include "compiler/emit/target.h"
 #include "compiler/ir/module.h"
 
-namespace isoshade::emit {
+namespace isoshade::cpp {
+
+const emit::Target& target();
 
 /// A program of more operations than this with all its calls expanded (ir/expansion.h) is large. All functions of others
 /// are inlined, so a compiler sees one function of that length, for which g++ 12 -O2 takes time that grows with the
@@ -22,15 +25,15 @@ inline constexpr uint64_t most_inlined_in_large = 32;
 inline constexpr uint64_t longest_in_large = 50;
 
 /// How many operations a compiler sees in a program's C++: what is called stands there once.
-uint64_t cpp_operations(const ir::Module& module, uint32_t entry);
+uint64_t operations(const ir::Module& module, uint32_t entry);
 
 /// The entry function and all that it calls as templates over the float type F, for use inside a namespace
 /// that says `using namespace isoshade::lanes`: engine-neutral text.
-std::string cpp_functions(const ir::Module& module, uint32_t entry);
+std::string functions(const ir::Module& module, uint32_t entry);
 /// `texts` receives what print_functions (printer.h) gives.
-std::string cpp_functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts);
+std::string functions(const ir::Module& module, uint32_t entry, std::vector<emit::FunctionText>& texts);
 
 /// `struct Buffers` with a member for each buffer of the module.
-std::string cpp_buffers(const ir::Module& module);
+std::string buffers(const ir::Module& module);
 
-}  // namespace isoshade::emit
+}  // namespace isoshade::cpp

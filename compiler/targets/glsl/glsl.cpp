@@ -1,30 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/emit/glsl.h"
+#include "compiler/targets/glsl/glsl.h"
 
 #include "compiler/emit/literal.h"
 #include "compiler/emit/printer.h"
+#include "compiler/targets/glsl/spirv.h"
+#include "compiler/targets/glsl/stages.h"
 
-namespace isoshade::emit {
+namespace isoshade::glsl {
+
+using namespace emit;
 
 namespace {
 
 class Glsl final : public Language {
  public:
+  explicit Glsl(const Dialect& dialect)
+      : target_(dialect.target), precise_(dialect.has_precise ? "precise " : "") {}
+
   std::string_view type(ir::Type type, bool) const override { return ir::name(type); }
   // `precise` reaches all that is nested in what the declaration is given, but not other functions, and of what is not
   // float only what is declared so: an index or a condition whose arithmetic has no name would be lost.
   void local_type(std::string& out, ir::Type type, bool, bool exact) const override {
-    out.append(exact || type.is_float() ? "precise " : "").append(ir::name(type));
+    out.append(exact || type.is_float() ? precise_ : "").append(ir::name(type));
   }
   std::string literal(ir::Type type, uint32_t bits) const override {
     if (!type.is_float()) return bits != 0 ? "true" : "false";
     if (!is_finite(bits) || bits == 0x80000000u) return "intBitsToFloat(int(" + hexadecimal(bits) + "u))";
     return decimal(bits);
   }
-  const OpText& op_text(ir::Opcode op) const override {
-    static const std::vector<OpText> texts = parse_op_texts(&ir::OpInfo::glsl);
-    return texts[static_cast<size_t>(op)];
-  }
+  const OpText& op_text(ir::Opcode op) const override { return emit::op_text(target_, op); }
   void exactly(std::string& out, const Operand& operand, bool) const override { out += operand.text; }
   void load(std::string& out, std::string_view buffer, std::string_view index) const override {
     out.append(buffer).append("[").append(index).append("]");
@@ -37,7 +41,7 @@ class Glsl final : public Language {
   void callee(std::string& out, const FunctionText& function, bool) const override { out += function.name; }
   bool passes_buffers() const override { return false; }
   void local_record(std::string& out, std::string_view record, bool, bool exact) const override {
-    out.append(exact ? "precise " : "").append(record);
+    out.append(exact ? precise_ : "").append(record);
   }
   void parameter(std::string& out, ir::Type type, bool, std::string_view name, bool) const override {
     out.append(ir::name(type)).append(" ").append(name);
@@ -79,12 +83,46 @@ class Glsl final : public Language {
   }
   void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
                      bool exact) const override {
-    out.append(exact ? "precise " : "");
+    out.append(exact ? precise_ : "");
     out.append(text.result_type.empty() ? ir::name(function.results[0].type) : text.result_type);
     out.append(" ").append(text.name).append("(");
   }
   void group_value(std::string& out, std::string_view record, bool, bool) const override { out += record; }
   void group_type(std::string& out, std::string_view record, bool) const override { out += record; }
+
+ private:
+  TargetId target_;
+  std::string_view precise_;  ///< with a space behind it, or nothing
+};
+
+constexpr Dialect vulkan{TargetId::glsl, true};
+
+std::optional<std::string> compile_words(const std::string& text, lower::Stage stage,
+                                         support::Diagnostics& diagnostics, const std::string& what) {
+  const auto kind = stage == lower::Stage::vertex ? ShaderKind::vertex : ShaderKind::fragment;
+  const auto words = compile_spirv(text, kind, diagnostics, what);
+  if (!words) return std::nullopt;
+  return std::string(reinterpret_cast<const char*>(words->data()), 4 * words->size());
+}
+
+constexpr Binary spirv{"spirv", "SPIR-V of the GLSL", ".spv", compile_words};
+
+constexpr Target glsl_target{
+    .id = TargetId::glsl,
+    .name = "glsl",
+    .doc = "GLSL 4.50 for Vulkan",
+    .extension = ".glsl",
+    .head = "",
+    .has_precise = vulkan.has_precise,
+    .has_storage_buffers = true,
+    .keeps_calls = false,
+    .language = [](const ir::Module&, uint32_t) { return language(vulkan); },
+    .kernel = [](const ir::Module& module, uint32_t entry, lower::Stage stage,
+                 const Heading& heading) { return glsl::stage(module, entry, stage, heading); },
+    .kernel_extension = [](lower::Stage stage) -> std::string_view {
+      return stage == lower::Stage::vertex ? ".vert" : ".frag";
+    },
+    .binary = &spirv,
 };
 
 constexpr std::string_view zero_head =
@@ -97,13 +135,17 @@ constexpr std::string_view zero_head =
 
 }  // namespace
 
-std::string glsl_functions(const ir::Module& module, uint32_t entry) {
+std::unique_ptr<Language> language(const Dialect& dialect) { return std::make_unique<Glsl>(dialect); }
+
+const Target& target() { return glsl_target; }
+
+std::string functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
-  return std::string(uses_hidden_zero(module, entry) ? zero_head : "") + glsl_functions(module, entry, texts);
+  return std::string(uses_hidden_zero(module, entry) ? zero_head : "") + functions(module, entry, texts);
 }
 
-std::string glsl_functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
-  return print_functions(module, entry, Glsl(), texts);
+std::string functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
+  return print_functions(module, entry, Glsl(vulkan), texts);
 }
 
-}  // namespace isoshade::emit
+}  // namespace isoshade::glsl

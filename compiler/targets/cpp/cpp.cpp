@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/emit/cpp.h"
+#include "compiler/targets/cpp/cpp.h"
 
 #include <array>
 
@@ -7,8 +7,11 @@
 #include "compiler/emit/printer.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/ir/expansion.h"
+#include "compiler/targets/cpp/stages.h"
 
-namespace isoshade::emit {
+namespace isoshade::cpp {
+
+using namespace emit;
 
 namespace {
 
@@ -65,10 +68,7 @@ class Cpp final : public Language {
     if (bits == 0x7f800000u) return "__builtin_inff()";
     return bits == 0xff800000u ? "(-__builtin_inff())" : "__builtin_nanf(\"\")";
   }
-  const OpText& op_text(ir::Opcode op) const override {
-    static const std::vector<OpText> texts = parse_op_texts(&ir::OpInfo::cpp);
-    return texts[static_cast<size_t>(op)];
-  }
+  const OpText& op_text(ir::Opcode op) const override { return emit::op_text(TargetId::cpp, op); }
   void exactly(std::string& out, const Operand& operand, bool uniform) const override {
     if (uniform || (!operand.uniform && !operand.literal))
       out += operand.text;
@@ -168,27 +168,46 @@ class Cpp final : public Language {
   std::vector<bool> called_;  ///< by function
 };
 
+constexpr Target cpp_target{
+    .id = TargetId::cpp,
+    .name = "cpp",
+    .doc = "C++20",
+    .extension = ".h",
+    .head = "",
+    .has_precise = true,  // every operation is, by the flags of the compiler
+    .has_storage_buffers = true,
+    .keeps_calls = true,
+    .language = [](const ir::Module& module, uint32_t entry) -> std::unique_ptr<Language> {
+      return std::make_unique<Cpp>(module, entry);
+    },
+    .kernel = stage,
+    .kernel_extension = [](lower::Stage) -> std::string_view { return ".cpp"; },
+    .binary = nullptr,
+};
+
 constexpr std::string_view zero_head =
     "// The GLSL of this hides zeros from drivers, which would fold arithmetic with them.\n"
     "constexpr float ISO_ZERO = 0.0f;\n\n";
 
 }  // namespace
 
-uint64_t cpp_operations(const ir::Module& module, uint32_t entry) {
+const Target& target() { return cpp_target; }
+
+uint64_t operations(const ir::Module& module, uint32_t entry) {
   return code_of(module, entry).operations;
 }
 
-std::string cpp_functions(const ir::Module& module, uint32_t entry) {
+std::string functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
-  return cpp_functions(module, entry, texts);
+  return functions(module, entry, texts);
 }
 
-std::string cpp_functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
+std::string functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
   return std::string(uses_hidden_zero(module, entry) ? zero_head : "") +
          print_functions(module, entry, Cpp(module, entry), texts);
 }
 
-std::string cpp_buffers(const ir::Module& module) {
+std::string buffers(const ir::Module& module) {
   std::string text = "/// The arrays that stages load from.\nstruct Buffers {\n";
   for (const ir::Buffer& buffer : module.buffers)
     text +=
@@ -196,4 +215,4 @@ std::string cpp_buffers(const ir::Module& module) {
   return text + "};\n";
 }
 
-}  // namespace isoshade::emit
+}  // namespace isoshade::cpp

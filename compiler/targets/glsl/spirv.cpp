@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/emit/spirv.h"
+#include "compiler/targets/glsl/spirv.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
 
-namespace isoshade::emit {
+namespace isoshade::glsl {
 
 namespace {
 
@@ -171,4 +171,4 @@ std::optional<size_t> count_contractible(const std::string& glsl, ShaderKind kin
   return static_cast<size_t>(std::ranges::count_if(computed, [&](uint32_t id) { return !exact.contains(id); }));
 }
 
-}  // namespace isoshade::emit
+}  // namespace isoshade::glsl

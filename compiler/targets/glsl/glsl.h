@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// GLSL 4.50 for Vulkan, and what its dialects share.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/emit/printer.h"
+#include "compiler/emit/target.h"
+#include "compiler/ir/module.h"
+
+namespace isoshade::glsl {
+
+/// The entry function and all that it calls, without a stage around them: engine-neutral text.
+std::string functions(const ir::Module& module, uint32_t entry);
+/// The same for a text that defines ISO_ZERO itself. `texts` receives what print_functions (printer.h) gives.
+std::string functions(const ir::Module& module, uint32_t entry, std::vector<emit::FunctionText>& texts);
+
+/// What GLSL and its dialects differ in, as far as functions show it.
+struct Dialect {
+  emit::TargetId target;
+  bool has_precise;
+};
+std::unique_ptr<emit::Language> language(const Dialect& dialect);
+
+const emit::Target& target();
+
+/// What every shader of ours begins with: the version, and the execution mode without which `a < b ? a : b`
+/// may swallow a NaN.
+std::string head();
+
+}  // namespace isoshade::glsl

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole shaders: a kernel with the stage around it.
+//
+// Set 0: bindings 0 to n - 1 are the buffers of lower/frame_layout.h (only those used are declared), n `clip`
+// (uvec4, written by vertex), n + 1 `ids` (isampler2D, read by pixel), n + 2 a word that is 0.0 (see ir::Opcode). Push
+// constants, nine ints:
+//   object, light_count, program, first, count, width, origin_x, origin_y, projected
+//   vertex  a vertex shader without rasterisation. gl_VertexIndex is the vertex; its position is stored as bits at
+//           clip[gl_VertexIndex - first + count].
+//   depth   a fragment shader: `flat in int triangle` at location 0; gl_FragDepth; out int at 0: triangle + 1. The
+//           target's first pixel is (origin_x, origin_y) of the frame, as it is of pixel.
+//   pixel   a fragment shader: the id at its pixel, 0 for none; discards pixels of other programs; out vec4 at 0.
+//   eval    a fragment shader: row = first + x + y * width; discards rows >= count; results as bits, four to an
+//           `out ivec4` at locations 0, 1, ...
+//   post    a fragment shader: out vec4 at 0
+#pragma once
+
+#include <string>
+
+#include "compiler/emit/target.h"
+#include "compiler/lower/stages.h"
+
+namespace isoshade::glsl {
+
+/// Which shader an eval program becomes. As a vertex shader it stores the words of row gl_VertexIndex, one
+/// record after another, at the binding of `clip` (ints).
+enum class EvalIn : uint8_t { fragment_shader, vertex_shader };
+
+std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const emit::Heading& heading,
+                  EvalIn eval_in = EvalIn::fragment_shader);
+
+}  // namespace isoshade::glsl
