@@ -15,6 +15,7 @@ packages=(
   graphviz gnuplot-nox
   # testing
   libgtest-dev libbenchmark-dev glslang-tools clang valgrind vulkan-validationlayers python3-jsonschema
+  g++-aarch64-linux-gnu qemu-user
 )
 
 missing=()

@@ -35,6 +35,7 @@ struct KernelTable {
   void (*count_branch_sides)(const int* conditions, int* then_count, int* other_count);
 };
 
+const KernelTable& kernels_portable();  ///< one lane, in standard C++: tests/portable
 const KernelTable& kernels_scalar_sse2();
 const KernelTable& kernels_scalar_sse4();
 const KernelTable& kernels_4x1_sse2();
