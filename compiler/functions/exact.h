@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ops fdiv and fsqrt for devices that do not round them correctly, built from ops that every device computes
-// exactly. Both approximate by Newton's method and then correct the last bit with the exact integer remainder,
-// which fits in 32 bits because only its low bits are unknown.
+// Ops that some devices and languages lack, built from ops that all compute exactly. fdiv and fsqrt, for devices that do not
+// round them correctly: both approximate by Newton's method and then correct the last bit with the exact integer remainder,
+// which fits in 32 bits because only its low bits are unknown. imulhi and umulhi, for languages without a product of 64 bits.
 #pragma once
 
 #include "compiler/functions/body.h"
@@ -101,6 +101,28 @@ F sqrt_exact(F a) {
   const Int positive = select(huge, a_bits, finite);
   const Int valid = select(negative, Int(canonical_nan), positive);
   return from_bits_normal(select(biased == 0, a_bits & sign_bit, valid));
+}
+
+/// The high word of the product of two unsigned words.
+/// Domain: all ints, read as unsigned.
+/// Error: exact.
+/// Source: Knuth, The Art of Computer Programming 2, 4.3.1, algorithm M, with digits of 16 bits: no sum exceeds 32 bits.
+template <class I>
+I unsigned_mul_hi_by_halves(I a, I b) {
+  const I a_low = a & 0xffff, a_high = shift_right(a, 16);
+  const I b_low = b & 0xffff, b_high = shift_right(b, 16);
+  const I middle = a_high * b_low + shift_right(a_low * b_low, 16);
+  const I carried = a_low * b_high + (middle & 0xffff);
+  return a_high * b_high + shift_right(middle, 16) + shift_right(carried, 16);
+}
+
+/// The high word of the product of two ints. As unsigned words, a negative operand is larger by 2^32, and the high word of the
+/// product larger by the other operand.
+/// Domain: all ints.
+/// Error: exact.
+template <class I>
+I mul_hi_by_halves(I a, I b) {
+  return unsigned_mul_hi_by_halves(a, b) - (shift_right_signed(a, 31) & b) - (shift_right_signed(b, 31) & a);
 }
 
 }  // namespace isoshade::functions

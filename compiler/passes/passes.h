@@ -104,9 +104,13 @@ void hide_foldables(ir::Module& module, std::span<const uint32_t> entries);
 /// Leaves: no fdiv and no fsqrt; declarations of the two functions if the module did not have them.
 void exact_division(ir::Module& module);
 
+/// Replaces imulhi and umulhi by calls of functions that multiply 16-bit halves, for languages without a product of 64 bits.
+/// Exact for all operands. Leaves: no imulhi and no umulhi, and the one or two functions behind the module's other functions.
+void multiply_by_halves(ir::Module& module);
+
 /// Moves runs of instructions from long blocks into functions of their own, `NAME_part_1` and so on. A part's
 /// parameters are the values that the run reads, its results the values that others read from it. The reason: the
-/// time that a C++ compiler takes grows with the square of a function's length (figures in emit/cpp.h). Uniform and
+/// time that a C++ compiler takes grows with the square of a function's length (figures in targets/cpp/cpp.h). Uniform and
 /// varying instructions go into separate runs, so that loop counts stay uniform. Bit-exact: no operation changes, nor
 /// do its operands.
 /// Needs: a valid module. Leaves: a valid module in which a block computes about `longest` values, unless it is one

@@ -25,6 +25,7 @@ void run_specialize(ir::Module& m, Entries&, Tier) { specialize(m); }
 void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries); }
 void run_hide(ir::Module& m, Entries& entries, Tier) { hide_foldables(m, entries); }
 void run_exact_division(ir::Module& m, Entries&, Tier) { exact_division(m); }
+void run_multiply_by_halves(ir::Module& m, Entries&, Tier) { multiply_by_halves(m); }
 
 constexpr ModulePass optimisation_table[] = {
     {"derivatives", run_derivatives,
@@ -57,6 +58,12 @@ constexpr ModulePass division_table[] = {
     {"dce", run_dce, "callees before callers"},
 };
 
+constexpr ModulePass multiplication_table[] = {
+    {"multiply_by_halves", run_multiply_by_halves, "calls instead of the two ops"},
+    {"renumber", run_renumber, "canonical order"},
+    {"dce", run_dce, "callees before callers"},
+};
+
 #ifdef NDEBUG
 constexpr bool always_check = false;
 #else
@@ -67,6 +74,7 @@ constexpr bool always_check = true;
 
 std::span<const ModulePass> optimisations() { return optimisation_table; }
 std::span<const ModulePass> division_lowering() { return division_table; }
+std::span<const ModulePass> multiplication_lowering() { return multiplication_table; }
 
 void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, Tier tier, const Dump& dump,
          bool check) {

@@ -26,6 +26,8 @@ struct ModulePass {
 std::span<const ModulePass> optimisations();
 /// After `optimisations`, for devices whose `/` and `sqrt` are not correctly rounded.
 std::span<const ModulePass> division_lowering();
+/// After `optimisations` (and `division_lowering`), for languages that have neither imulhi nor umulhi.
+std::span<const ModulePass> multiplication_lowering();
 
 /// Called after each pass with its name.
 using Dump = std::function<void(std::string_view pass, const ir::Module&)>;

@@ -133,6 +133,62 @@ TEST(PassesKeepEveryBit, CutLong) {
   EXPECT_GT(parts, 2000u);
 }
 
+size_t count_wide_products(const Module& module) {
+  size_t count = 0;
+  for (const ir::Function& function : module.functions)
+    count += static_cast<size_t>(std::ranges::count_if(function.instructions, [](const ir::Instruction& made) {
+      return made.op == ir::Opcode::imulhi || made.op == ir::Opcode::umulhi;
+    }));
+  return count;
+}
+
+TEST(PassesKeepEveryBit, MultiplyByHalves) {
+  size_t replaced = 0;
+  expect_same_bits(1000, false, [&](Module& m, uint64_t) {
+    replaced += count_wide_products(m);
+    Entries entries{m.find("main")};
+    run(multiplication_lowering(), m, entries, functions::Tier::standard);
+    EXPECT_EQ(count_wide_products(m), 0u);
+  });
+  EXPECT_GT(replaced, 300u);
+}
+
+// All pairs of words near a power of two or a carry, and random pairs.
+TEST(PassesKeepEveryBit, MultiplyByHalvesOnEdgesAndRandomWords) {
+  Module before;
+  const std::array ops{ir::Opcode::imulhi, ir::Opcode::umulhi};
+  ir::Function main;
+  main.name = "main";
+  for (const char* name : {"x", "y"}) main.parameters.push_back({name, ir::int_type, "", false});
+  for (const char* name : {"high", "unsigned_high"}) main.results.push_back({name, ir::int_type});
+  before.functions.push_back(main);
+  ir::Builder builder(before, 0);
+  std::vector<ir::ValueId> results;
+  for (const ir::Opcode op : ops) results.push_back(builder.op(op, {builder.parameter(0), builder.parameter(1)}));
+  builder.finish(results);
+  Module after = before;
+  Entries entries{0};
+  run(multiplication_lowering(), after, entries, functions::Tier::standard);
+  EXPECT_EQ(count_wide_products(after), 0u);
+
+  ir::Interpreter by_op(before, ir::Preconditions::report), by_halves(after, ir::Preconditions::report);
+  const auto expect_same = [&](uint32_t x, uint32_t y) {
+    const Words words{x, y};
+    Words expected(2), made(2);
+    ASSERT_TRUE(by_op.run(0, words, expected) && by_halves.run(entries[0], words, made));
+    ASSERT_EQ(made, expected) << std::hex << x << " " << y;
+  };
+  Words edges{0};
+  for (int bit = 0; bit < 32; ++bit)
+    for (const uint32_t near : {-1u, 0u, 1u})
+      for (const uint32_t sign : {0u, ~0u}) edges.push_back(((1u << bit) + near) ^ sign);
+  for (const uint32_t x : edges)
+    for (const uint32_t y : edges) expect_same(x, y);
+  RandomModule random(1);
+  const auto word = [&] { return static_cast<uint32_t>(random.below(1u << 16) << 16 | random.below(1u << 16)); };
+  for (int i = 0; i < 50'000; ++i) expect_same(word(), word());
+}
+
 TEST(PassesKeepEveryBit, AnySequence) {
   expect_same_bits(3000, false, [](Module& m, uint64_t seed) {
     RandomModule random(seed + 77);
