@@ -26,7 +26,7 @@ std::vector<std::string> adversaries() {
       "Length",  "float", "float_", "float_1", "M",       "M_",       "M_1",      "M_PI",      "M_PI_",
       "E",       "E_1",   "E1",     "E_",      "EDOM",    "EDOM_1",   "gl_a",     "n_gl_a",    "gl__a",
       "n_gl__a", "gl_",   "n_gl",   "_",       "__",      "_1",       "n_1",      "n_",        "n",
-      "n_1_",    "n__1",  "GL_x",   "spirv_x", "result",  "result_1", "result_2", "x_block",   "x_block_1",
+      "n_1_",    "n__1",  "GL_x",   "spirv_x", "webgl_x", "webgl", "webgl_", "result",  "result_1", "result_2", "x_block",   "x_block_1",
       "main",    "main_", "x_MAX",  "x_MAX_",  "x_MAX_1", "SIG",      "SIG_1",    "t",         "t_low"};
   for (const char* ending : {"", "_", "1", "_1", "_2", "b", "__"})
     for (const size_t size : {98, 99, 100, 101, 128}) {
@@ -42,7 +42,7 @@ void expect_good(const std::string& name, Scope scope) {
   EXPECT_FALSE(name.empty() || name.find("__") != std::string::npos || name.front() == '_') << name;
   EXPECT_TRUE(graph::is_id(name)) << name;
   EXPECT_FALSE(is_word(name, scope)) << name;
-  EXPECT_FALSE(name.starts_with("gl_")) << name;
+  EXPECT_FALSE(name.starts_with("gl_") || name.starts_with("webgl_")) << name;
 }
 
 TEST(Names, AreUniqueInAnyOrder) {
@@ -88,7 +88,8 @@ TEST(Names, AvoidReservedWordsInTheirScopes) {
                         Case{"float", true, true, true}, Case{"NULL", true, true, true},
                         Case{"errno", true, true, true}, Case{"linux", true, true, true},
                         Case{"M_PI", true, true, true}, Case{"sampler2DArray", true, true, true},
-                        Case{"color", true, false, false}, Case{"typeof", true, true, true}}) {
+                        Case{"color", true, false, false}, Case{"typeof", true, true, true},
+                        Case{"webgl_position", true, true, true}}) {
     const bool expected[] = {c.global, c.local, c.field};
     for (size_t i = 0; i < 3; ++i) {
       Names names(scopes[i]);

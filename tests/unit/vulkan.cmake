@@ -1,11 +1,12 @@
 isoshade_test(emit_spirv_test
   SOURCES
+    unit/emit_glsl_es_test.cpp
     unit/emit_names_of_groups_test.cpp
     unit/emit_names_test.cpp
     unit/emit_nesting_test.cpp
     unit/emit_spirv_test.cpp
     unit/random_module.cpp
-  LINKS isoshade_targets)
+  LINKS isoshade_passes isoshade_targets)
 
 if(ISOSHADE_VULKAN)
   isoshade_test(vulkan_test
