@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,18 +37,31 @@ class Kernel {
   Int integer(size_t parameter) { return Int(b, b.parameter(parameter)); }
   Vec3 vector3(size_t parameter) { return Vec3(b, b.parameter(parameter)); }
 
+  /// Where words of records come from that are in no buffer: gives so many, from `word` of a record on.
+  using Words = std::function<ir::ValueId(FrameBuffer buffer, int word, int width)>;
+  /// From here on, all that reads a word of a record asks `words` for it.
+  void read_words_from(Words words) { words_ = std::move(words); }
+
   Float load(FrameBuffer buffer, Int word) {
     return Float(b, b.load(static_cast<uint32_t>(buffer), word.id(b)));
   }
   Int load_int(FrameBuffer buffer, Int word) {
     return Int(b, b.load(static_cast<uint32_t>(buffer), word.id(b)));
   }
-  /// Three or four words of a record, from `record + word` on.
+  /// One, three or four words of a record, from `record + word` on.
+  Float load(FrameBuffer buffer, Int record, int word) {
+    return words_ ? Float(b, words_(buffer, word, 1)) : load(buffer, record + Int(word));
+  }
+  Int load_int(FrameBuffer buffer, Int record, int word) {
+    return words_ ? Int(b, words_(buffer, word, 1)) : load_int(buffer, record + Int(word));
+  }
   Vec3 load3(FrameBuffer buffer, Int record, int word) {
+    if (words_) return Vec3(b, words_(buffer, word, 3));
     const auto at = [&](int i) { return load(buffer, record + Int(word + i)); };
     return Vec3(at(0), at(1), at(2));
   }
   Vec4 load4(FrameBuffer buffer, Int record, int word) {
+    if (words_) return Vec4(b, words_(buffer, word, 4));
     const auto at = [&](int i) { return load(buffer, record + Int(word + i)); };
     return Vec4(at(0), at(1), at(2), at(3));
   }
@@ -83,6 +97,8 @@ class Kernel {
     module.functions.push_back(std::move(function));
     return static_cast<uint32_t>(module.functions.size() - 1);
   }
+
+  Words words_;
 };
 
 /// Where a column of an input begins in its record.

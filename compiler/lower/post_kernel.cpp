@@ -2,6 +2,7 @@
 // The kernel around `post_process`: what it reads, by frame_layout.h.
 #include <algorithm>
 
+#include "compiler/lower/forward.h"
 #include "compiler/lower/kernel.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/stages.h"
@@ -13,7 +14,7 @@ using interface::Axis;
 using interface::Screen;
 
 Int image_size(Kernel& k, int image, int word) {
-  return k.load_int(FrameBuffer::layer_records, k.constant(image * image_word::stride + word));
+  return k.load_int(FrameBuffer::layer_records, k.constant(0), image * image_word::stride + word);
 }
 
 /// under(at, made, read): of `read` pixels side by side, which lies under the centre of pixel `at` where there are
@@ -114,7 +115,7 @@ class ScreenPoint {
   }
 
   ir::ValueId view_vector2(int word) {
-    const auto load = [&](int at) { return k_.load(FrameBuffer::view, k_.constant(at)); };
+    const auto load = [&](int at) { return k_.load(FrameBuffer::view, k_.constant(0), at); };
     return Vec2(load(word), load(word + 1)).value;
   }
   ir::ValueId view_vector3(int word) { return k_.load3(FrameBuffer::view, k_.constant(0), word).value; }
@@ -164,6 +165,14 @@ class ScreenPoint {
 };
 
 }  // namespace
+
+std::vector<ir::ValueId> screen_values(Kernel& k, std::span<const interface::Binding> bindings) {
+  const interface::RecordLayout none;
+  ScreenPoint screen(k, none);
+  std::vector<ir::ValueId> values;
+  for (const interface::Binding& binding : bindings) values.push_back(screen.argument(binding));
+  return values;
+}
 
 uint32_t add_post_kernel(ir::Module& module, const interface::Interface& interface,
                          const interface::RecordLayout& record) {

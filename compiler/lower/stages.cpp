@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/lower/stages.h"
 
+#include "compiler/lower/forward.h"
 #include "compiler/lower/sampling.h"
 #include "compiler/lower/surface.h"
 
@@ -116,40 +117,40 @@ class SurfaceArguments {
 
 /// glTF KHR_lights_punctual: inverse square, windowed by the range if there is one.
 Float distance_falloff(Kernel& k, Int record, Float squared_distance) {
-  const Float inverse_range = k.load(FrameBuffer::lights, record + Int(light_word::range));
+  const Float inverse_range = k.load(FrameBuffer::lights, record, light_word::range);
   const Float ratio = squared_distance * inverse_range;
   const Float window = saturate(Float(1.0f) - ratio * ratio);
   return (window * window) / max(squared_distance, Float(1e-8f));
 }
 
-/// light_at(index, position): the unit direction towards a light and the radiance that arrives from it.
+/// light_at(index, position)
 void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
   Kernel k(module, function);
-  const Int record = k.integer(0) * Int(light_word::stride);
-  const auto at = [&](int word) { return record + Int(word); };
-  const auto finish = [&](Vec3 direction, Vec3 color) {
-    k.b.finish(std::array{direction.value, color.value});
-  };
+  k.b.finish(light_values(k, k.integer(0) * Int(light_word::stride), k.vector3(1), kinds));
+}
+
+}  // namespace
+
+std::array<ir::ValueId, 2> light_values(Kernel& k, Int record, Vec3 position, LightKinds kinds) {
+  const auto finish = [&](Vec3 direction, Vec3 color) { return std::array{direction.value, color.value}; };
   const Vec3 direction = k.load3(FrameBuffer::lights, record, light_word::direction);
   const Vec3 color = k.load3(FrameBuffer::lights, record, light_word::color);
   if (!kinds.point && !kinds.spot) return finish(direction, color);
 
-  const Vec3 towards = k.load3(FrameBuffer::lights, record, light_word::position) - k.vector3(1);
+  const Vec3 towards = k.load3(FrameBuffer::lights, record, light_word::position) - position;
   const Vec3 unit = normalize(towards);
   Float falloff = distance_falloff(k, record, dot(towards, towards));
   if (kinds.spot) {
-    const Float scale = k.load(FrameBuffer::lights, at(light_word::cone_scale));
-    const Float offset = k.load(FrameBuffer::lights, at(light_word::cone_offset));
+    const Float scale = k.load(FrameBuffer::lights, record, light_word::cone_scale);
+    const Float offset = k.load(FrameBuffer::lights, record, light_word::cone_offset);
     const Float cone = saturate(dot(unit, direction) * scale + offset);
     falloff = falloff * (cone * cone);  // a point light has scale 0 and offset 1
   }
   const Vec3 arriving = color * functions::splat<3>(falloff);
   if (!kinds.directional) return finish(unit, arriving);
-  const Bool far_away = k.load(FrameBuffer::lights, at(light_word::kind)) == Float(0.0f);
-  finish(select(far_away, direction, unit), select(far_away, color, arriving));
+  const Bool far_away = k.load(FrameBuffer::lights, record, light_word::kind) == Float(0.0f);
+  return finish(select(far_away, direction, unit), select(far_away, color, arriving));
 }
-
-}  // namespace
 
 int column_word(const interface::RecordLayout& record, const interface::source::Input& input, ir::Type column) {
   const int first = record.inputs[input.input];

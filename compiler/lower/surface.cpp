@@ -142,9 +142,9 @@ Vec3 SurfacePoint::to_view(Vec3 point) {
 }
 
 Float SurfacePoint::pixel_size() {
-  const Int view(k_.b, k_.b.constant(view_word::pixel_size));
-  const Float constant = k_.load(FrameBuffer::view, view);
-  const Float growth = k_.load(FrameBuffer::view, view + Int(1));
+  const Int view = k_.constant(0);
+  const Float constant = k_.load(FrameBuffer::view, view, view_word::pixel_size);
+  const Float growth = k_.load(FrameBuffer::view, view, view_word::pixel_size + 1);
   return constant - growth * to_view(position())[2];
 }
 
@@ -159,7 +159,7 @@ Vec3 SurfacePoint::bitangent() {
 
 // The eye is homogeneous: a point for perspective, a direction for orthographic projection.
 Vec3 SurfacePoint::towards_eye() {
-  const Vec4 eye = k_.load4(FrameBuffer::view, Int(k_.b, k_.b.constant(view_word::eye)), 0);
+  const Vec4 eye = k_.load4(FrameBuffer::view, k_.constant(0), view_word::eye);
   return Vec3(eye[0], eye[1], eye[2]) - position() * functions::splat<3>(eye[3]);
 }
 
