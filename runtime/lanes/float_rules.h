@@ -31,7 +31,7 @@
 #endif
 #endif
 #if !ISOSHADE_SIMD && defined(ISOSHADE_LANES) && ISOSHADE_LANES != 1
-#error "isoshade/lanes has only one lane on this processor or compiler: define ISOSHADE_LANES as 1 or not at all"
+#error "isoshade/lanes has one lane on this processor: define ISOSHADE_LANES as 1 or not at all"
 #endif
 
 // The flags in lanes.h are the contract. These repeat as much of it as a file can say, for one compiled
@@ -75,7 +75,7 @@ class FpGuard {
  private:
 #if defined(__SSE__) && defined(__GNUC__)
   using Mode = unsigned;
-  static constexpr Mode cleared = 0x6000;        // the rounding
+  static constexpr Mode cleared = 0x6000;         // the rounding
   static constexpr Mode flush = 0x8040 | 0x1f80;  // flush to zero, denormals are zeros; exceptions are masked
 
   ISOSHADE_INLINE static Mode get() { return __builtin_ia32_stmxcsr(); }

@@ -19,7 +19,8 @@
 //     isoshade::lanes::vec4<isoshade::lanes::float_of<I>> texel(I image, I x, I y) const;
 //   };
 //
-// Results of members must keep the rules of lanes.h: no float is a denormal.
+// What holds for lanes (lanes.h) holds for shaders and hosts: no float that a member returns or a struct holds is
+// a denormal, and an FpGuard is alive on the thread.
 #ifndef ISOSHADE_LANES_HOST_H
 #define ISOSHADE_LANES_HOST_H
 
@@ -44,7 +45,9 @@ struct ImageSize {
 
 /// A value that may be returned where Wanted is the type of the result.
 template <class Value, class Wanted>
-concept ConvertsTo = requires(Value (&value)(), void (&take)(Wanted)) { take(value()); };
+concept ConvertsTo = requires(Value (&value)(), void (&take)(Wanted)) {
+  take(value());
+};
 
 /// One concept a member. All take the host and the number type, also where the member does not depend on it.
 namespace gives {

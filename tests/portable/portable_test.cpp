@@ -33,7 +33,7 @@ struct Machine {
 };
 
 const Machine& x86() {
-  static const Machine machine = {"x86-64", {"g++", "-DISOSHADE_SIMD=0"}, {}, false};
+  static const Machine machine = {"x86-64", {"clang++", "-DISOSHADE_SIMD=0"}, {}, false};
   return machine;
 }
 const Machine& aarch64() {
@@ -67,8 +67,8 @@ class Portable : public testing::TestWithParam<const Machine& (*)()> {
   /// Compiles the files without the flags that make bits certain: the headers must suffice.
   void compile(const std::string& program, const std::vector<std::string>& words) const {
     std::vector<std::string> line = machine_.compiler;
-    line.insert(line.end(), {"-std=c++20", "-O2", "-Wall", "-Wextra", "-Werror", "-I" ISOSHADE_ROOT "/include",
-                             "-I" ISOSHADE_ROOT, "-o", path(program)});
+    line.insert(line.end(), {"-std=c++20", "-O2", "-Wall", "-Wextra", "-Werror",
+                             "-I" ISOSHADE_ROOT "/include", "-I" ISOSHADE_ROOT, "-o", path(program)});
     line.insert(line.end(), words.begin(), words.end());
     run(std::move(line));
   }
@@ -81,7 +81,8 @@ class Portable : public testing::TestWithParam<const Machine& (*)()> {
   }
 
   void write(const std::string& name, const void* bytes, size_t size) const {
-    std::ofstream(path(name), std::ios::binary).write(static_cast<const char*>(bytes), static_cast<long>(size));
+    std::ofstream(path(name), std::ios::binary)
+        .write(static_cast<const char*>(bytes), static_cast<long>(size));
   }
   void write(const std::string& name, const std::vector<int32_t>& words) const {
     write(name, words.data(), 4 * words.size());
@@ -111,8 +112,8 @@ struct Difference {
 };
 
 void PrintTo(const Difference& d, std::ostream* out) {
-  *out << std::hex << d.kernel << " at " << d.operands[0] << " " << d.operands[1] << " " << d.operands[2] << ": "
-       << d.aarch64 << ", on x86 " << d.x86;
+  *out << std::hex << d.kernel << " at " << d.operands[0] << " " << d.operands[1] << " " << d.operands[2]
+       << ": " << d.aarch64 << ", on x86 " << d.x86;
 }
 
 /// All of them: products just below the least normal float.
@@ -125,8 +126,9 @@ const std::set<Difference> differences = {
 
 TEST_P(Portable, KernelsOfLanesGiveTheBitsOfX86) {
   namespace test = lanes::test;
-  compile("kernels", {"-DLANES_TABLE=kernels_portable", "-DLANES_FLOAT=float",
-                      ISOSHADE_ROOT "/tests/unit/lanes_kernels.cpp", ISOSHADE_ROOT "/tests/portable/kernels.cpp"});
+  compile("kernels",
+          {"-DLANES_TABLE=kernels_portable", "-DLANES_FLOAT=float",
+           ISOSHADE_ROOT "/tests/unit/lanes_kernels.cpp", ISOSHADE_ROOT "/tests/portable/kernels.cpp"});
   constexpr int blocks = 64;
   std::vector<int32_t> operands;
   for (int i = 0; i < blocks; ++i) {
@@ -171,14 +173,17 @@ ir::ValueId product_flushed_early(ir::Builder& k, ir::ValueId a, ir::ValueId b) 
   using ir::Opcode;
   const auto constant = [&](int32_t value) { return k.constant(value); };
   const ir::ValueId product = k.op(Opcode::fmul, {a, b}), bits = k.op(Opcode::fbits, {product});
-  const ir::ValueId is_least = k.op(
-      Opcode::ieq, {k.op(Opcode::iand, {bits, constant(lanes::exponent_bits | 0x7fffff)}), constant(0x00800000)});
+  const ir::ValueId is_least =
+      k.op(Opcode::ieq,
+           {k.op(Opcode::iand, {bits, constant(lanes::exponent_bits | 0x7fffff)}), constant(0x00800000)});
   ir::ValueId exponents[2], significands[2];
   for (int i = 0; i < 2; ++i) {
     const ir::ValueId word = k.op(Opcode::fbits, {i == 0 ? a : b});
-    exponents[i] = k.op(Opcode::ishr, {k.op(Opcode::iand, {word, constant(lanes::exponent_bits)}), constant(23)});
+    exponents[i] =
+        k.op(Opcode::ishr, {k.op(Opcode::iand, {word, constant(lanes::exponent_bits)}), constant(23)});
     const ir::ValueId fraction = k.op(Opcode::iand, {word, constant(0x7fffff)});
-    significands[i] = k.op(Opcode::ishl, {k.op(Opcode::ior, {fraction, constant(0x800000)}), constant(8 - i)});
+    significands[i] =
+        k.op(Opcode::ishl, {k.op(Opcode::ior, {fraction, constant(0x800000)}), constant(8 - i)});
   }
   const ir::ValueId sum = k.op(Opcode::iadd, {exponents[0], exponents[1]});
   const ir::ValueId high = k.op(Opcode::umulhi, {significands[0], significands[1]});  // of the product * 2^15
@@ -202,7 +207,8 @@ driver::Program flushing_early(driver::Program program) {
     ir::Builder k(module, static_cast<uint32_t>(module.functions.size() - 1));
     std::vector<ir::ValueId> components;
     for (uint32_t i = 0; i < static_cast<uint32_t>(width); ++i)
-      components.push_back(product_flushed_early(k, k.extract(k.parameter(0), i), k.extract(k.parameter(1), i)));
+      components.push_back(
+          product_flushed_early(k, k.extract(k.parameter(0), i), k.extract(k.parameter(1), i)));
     const ir::ValueId result = width == 1 ? components[0] : k.construct(components);
     k.finish(std::span(&result, 1));
   }
@@ -292,8 +298,9 @@ TEST_P(Portable, GeneratedOpsAndFunctionsGiveTheBitsOfX86) {
       const size_t row = i / made.words.size(), word = i % made.words.size();
       differing += actual[i] != x86[i];
       const int32_t* in = table.data() + row * conformance::input_words;
-      ASSERT_EQ(actual[i], expected[i]) << made.words[word] << std::hex << " of " << in[0] << " " << in[1] << " "
-                                        << in[2] << " " << in[3] << " " << in[4] << "; on x86 " << x86[i];
+      ASSERT_EQ(actual[i], expected[i])
+          << made.words[word] << std::hex << " of " << in[0] << " " << in[1] << " " << in[2] << " " << in[3]
+          << " " << in[4] << "; on x86 " << x86[i];
     }
     actual += expected.size();
   }

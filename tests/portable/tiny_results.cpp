@@ -4,11 +4,11 @@
 // how many results were computed, how many of them are normal on x86, which flushes afterwards, and how many are not
 // those of x86. First come all pairs of significands whose product falls where the two orders differ; then random
 // operands whose results lie near the least normal float.
-#include "isoshade/lanes/lanes.h"
-
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+
+#include "isoshade/lanes/lanes.h"
 
 namespace {
 
@@ -30,7 +30,8 @@ uint64_t random_bits() {
 float random_float(int from, int to) {
   const uint64_t random = random_bits();
   const auto exponent = from + static_cast<int>((random >> 32) % static_cast<uint64_t>(to - from + 1));
-  const auto bits = (static_cast<uint32_t>(random) & 0x807fffffu) | static_cast<uint32_t>(exponent + 127) << 23;
+  const auto bits = (static_cast<uint32_t>(random) & 0x807fffffu) | static_cast<uint32_t>(exponent + 127)
+                                                                        << 23;
   return from_bits_normal(static_cast<int>(bits));
 }
 
@@ -58,7 +59,8 @@ struct Count {
 
 /// The float of a significand of 24 bits and the exponent of its first.
 float from_significand(uint64_t significand, int exponent) {
-  return from_bits_normal(static_cast<int>((significand & 0x7fffff) | static_cast<uint64_t>(exponent + 127) << 23));
+  return from_bits_normal(
+      static_cast<int>((significand & 0x7fffff) | static_cast<uint64_t>(exponent + 127) << 23));
 }
 
 /// Products of significands a and b in [2^47 - 2^22, 2^47), times the power of two that takes 2^47 to 2^-126.
@@ -98,10 +100,16 @@ void sample(const char* name, Result result, Operation operation, Exact exact) {
 int main() {
   const FpGuard guard;
   products_below_the_least_normal().print("products_below_the_least_normal");
-  sample("+", Result::sum, [](float a, float b) { return a + b; }, [](double a, double b) { return a + b; });
-  sample("-", Result::sum, [](float a, float b) { return a - b; }, [](double a, double b) { return a - b; });
-  sample("*", Result::product, [](float a, float b) { return a * b; }, [](double a, double b) { return a * b; });
-  sample("/", Result::quotient, [](float a, float b) { return a / b; }, [](double a, double b) { return a / b; });
-  sample("sqrt", Result::sum, [](float a, float) { return sqrt(abs(a)); },
-         [](double a, double) { return std::sqrt(std::fabs(a)); });
+  sample(
+      "+", Result::sum, [](float a, float b) { return a + b; }, [](double a, double b) { return a + b; });
+  sample(
+      "-", Result::sum, [](float a, float b) { return a - b; }, [](double a, double b) { return a - b; });
+  sample(
+      "*", Result::product, [](float a, float b) { return a * b; }, [](double a, double b) { return a * b; });
+  sample(
+      "/", Result::quotient, [](float a, float b) { return a / b; },
+      [](double a, double b) { return a / b; });
+  sample(
+      "sqrt", Result::sum, [](float a, float) { return sqrt(abs(a)); },
+      [](double a, double) { return std::sqrt(std::fabs(a)); });
 }

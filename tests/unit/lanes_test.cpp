@@ -223,15 +223,13 @@ TEST_F(OneLane, IntegerArithmeticWraps) {
   expect("iadd", [](uint32_t a, uint32_t b) { return a + b; });
   expect("isub", [](uint32_t a, uint32_t b) { return a - b; });
   expect("imul", [](uint32_t a, uint32_t b) { return a * b; });
-  expect("imulhi",
-         [&](uint32_t a, uint32_t b) { return static_cast<uint32_t>((wide(a) * wide(b)) >> 32); });
+  expect("imulhi", [&](uint32_t a, uint32_t b) { return static_cast<uint32_t>((wide(a) * wide(b)) >> 32); });
   expect("umulhi", [](uint32_t a, uint32_t b) {
     return static_cast<uint32_t>((static_cast<uint64_t>(a) * static_cast<uint64_t>(b)) >> 32);
   });
   expect("ishl", [](uint32_t a, uint32_t b) { return a << (b & 31); });
   expect("ishr", [](uint32_t a, uint32_t b) { return a >> (b & 31); });
-  expect("isar",
-         [&](uint32_t a, uint32_t b) { return static_cast<uint32_t>(wide(a) >> (b & 31)); });
+  expect("isar", [&](uint32_t a, uint32_t b) { return static_cast<uint32_t>(wide(a) >> (b & 31)); });
   expect("ilt", [&](uint32_t a, uint32_t b) { return wide(a) < wide(b); });
   expect("ult", [](uint32_t a, uint32_t b) { return a < b; });
 }
