@@ -64,9 +64,7 @@ class Cpp final : public Language {
   }
   std::string literal(ir::Type type, uint32_t bits) const override {
     if (!type.is_float()) return bits != 0 ? "true" : "false";
-    if (is_finite(bits)) return decimal(bits) + "f";
-    if (bits == 0x7f800000u) return "__builtin_inff()";
-    return bits == 0xff800000u ? "(-__builtin_inff())" : "__builtin_nanf(\"\")";
+    return is_finite(bits) ? decimal(bits) + "f" : "from_bits_normal(int(" + hexadecimal(bits) + "u))";
   }
   const OpText& op_text(ir::Opcode op) const override { return emit::op_text(TargetId::cpp, op); }
   void exactly(std::string& out, const Operand& operand, bool uniform) const override {
@@ -144,7 +142,7 @@ class Cpp final : public Language {
   void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
                      bool) const override {
     const auto index = static_cast<size_t>(&function - functions_);
-    out += called_[index] ? "template <class F>\n[[gnu::noinline]] static "
+    out += called_[index] ? "template <class F>\nISOSHADE_NOINLINE static "
                           : "template <class F>\nISOSHADE_INLINE ";
     if (text.result_type.empty())
       out += type(function.results[0].type, false);
