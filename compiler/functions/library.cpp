@@ -187,7 +187,8 @@ const Variant& variant_of(const ir::Function& declaration) {
 void expand(ir::Module& module, Tier tier) {
   // Bodies append declarations of the functions that they call.
   for (uint32_t i = 0; i < module.functions.size(); ++i) {
-    if (!module.functions[i].is_declaration()) continue;
+    // What has no body and is not of the library, the program defines that links the module.
+    if (!module.functions[i].is_declaration() || module.functions[i].library.empty()) continue;
     const Variant& variant = variant_of(module.functions[i]);
     ir::Builder builder(module, i);
     variant.body(tier)(builder);

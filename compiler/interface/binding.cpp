@@ -16,7 +16,7 @@ constexpr std::array<SurfaceRow, surface_count> surface_rows{{
 #include "compiler/interface/values.def"
 }};
 constexpr std::array<ScreenRow, screen_value_count> screen_rows{{
-#define SCREEN(name, group, parameter, width, assumed) {#group, #parameter, width, assumed},
+#define SCREEN(name, group, parameter, width, assumed, doc) {#group, #parameter, width, assumed, doc},
 #include "compiler/interface/values.def"
 }};
 constexpr std::array<std::string_view, space_matrix_count> matrix_names{{

@@ -41,7 +41,7 @@ enum class Surface : uint8_t {
 };
 /// Values for posts.
 enum class Screen : uint8_t {
-#define SCREEN(name, group, parameter, width, assumed) name,
+#define SCREEN(name, group, parameter, width, assumed, doc) name,
 #include "compiler/interface/values.def"
 };
 enum class SpaceMatrix : uint8_t {
@@ -53,7 +53,7 @@ enum class SpaceMatrix : uint8_t {
 inline constexpr size_t surface_count = 0
 #include "compiler/interface/values.def"
     ;
-#define SCREEN(name, group, parameter, width, assumed) +1
+#define SCREEN(name, group, parameter, width, assumed, doc) +1
 inline constexpr size_t screen_value_count = 0
 #include "compiler/interface/values.def"
     ;
@@ -102,13 +102,20 @@ struct ScreenRow {
   std::string_view group, parameter;
   int width;
   Assumption assumed;
+  std::string_view doc;
 };
 const ScreenRow& row(Screen value);
 
 enum class Axis : uint8_t { x, y };
 
-/// An image that a post reads, by its record in `layer_records` (frame_layout.h).
+/// An image that a post reads, by its record in `layer_records` (lower/frame_layout.h).
 using ImageNumber = uint32_t;
+
+/// The first records of layer_records: the image that is made; of a post, the depth of the picture, the image that the post
+/// goes over, and those that its document lists; of a view, the depth and the color of each target that it reads.
+namespace image_record {
+inline constexpr int made = 0, depth = 1, color = 2;
+}  // namespace image_record
 
 /// What a parameter is: one of these.
 namespace source {
@@ -194,6 +201,7 @@ Binding bind_taps(uint32_t node, std::string node_name, int count);
 /// for samplers, whose bodies call `texel_at`.
 enum class Host : uint8_t {
   light,         ///< light_at(index, position) -> (direction, color)
+  light_change,  ///< light_at_change(index, position, position_change) -> the change of both; passes::derivatives asks
   texel,         ///< texel_at(picture, x, y) -> texel
   texture_size,  ///< texture_size(picture) -> (width, height, smaller)
   image,         ///< NAME_at(x, y) -> color: of an image of a post

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "compiler/interface/binding.h"
 #include "compiler/ir/type.h"
 
 namespace isoshade::lower {
@@ -140,11 +141,7 @@ inline constexpr int stride = sizeof(Words);
 #undef ISOSHADE_WORDS
 #undef ISOSHADE_FIRST
 
-/// The first records of layer_records: the image that is made; of a post, the depth of the picture, the image that the post
-/// goes over, and those that its document lists; of a view, the depth and the color of each target that it reads.
-namespace image_record {
-inline constexpr int made = 0, depth = 1, color = 2;
-}  // namespace image_record
+namespace image_record = interface::image_record;
 
 /// Where textures of bytes are stored, `texels` begins with the floats that bytes decode to.
 namespace byte_table {

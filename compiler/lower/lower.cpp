@@ -112,10 +112,13 @@ class ModuleLowering {
  public:
   explicit ModuleLowering(NodesOfOrigins* nodes) : nodes_(nodes) {}
 
-  Lowered lower_function(const TypedGraph& graph);
-  /// `name`: of the function that returns `root`.
-  Lowered lower_pass(const TypedGraph& graph, const Operand& root, const char* name, ir::Result result);
-  Lowered lower_post(const TypedGraph& graph);
+  // Each adds the function of a document and what it calls. Its interface lists what the whole module asks its host for.
+  interface::Interface add_function_document(const TypedGraph& graph);
+  interface::Interface add_post(const TypedGraph& graph);
+  /// `prefix`: what the function's name begins with.
+  interface::Interface add_pass(const TypedGraph& graph, size_t pass, PassPart part, const std::string& prefix = "");
+
+  ir::Module take_module() { return std::move(module_); }
 
  private:
   using Bindings = std::vector<Binding>;
@@ -126,13 +129,15 @@ class ModuleLowering {
   /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are wanted.
   uint32_t build(const TypedGraph& graph, std::string name, const Bindings& bindings, const Needs& needs,
                  std::span<const Operand> roots, std::vector<ir::Result> results, const ImageSlots& images = {});
-  Lowered finish(uint32_t entry, Bindings bindings);
+  interface::Interface interface_of(uint32_t entry, Bindings bindings) const {
+    return {entry, std::move(bindings), host_.host};
+  }
   std::string unique_name(const std::string& wanted);
   void declare_light_at();
   void add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const;
 
-  Lowered made_;
-  ir::Module& module_ = made_.module;
+  ir::Module module_;
+  interface::Interface host_;  ///< only Interface::host: what the functions so far ask for
   NodesOfOrigins* nodes_;
   std::unordered_map<const TypedGraph*, uint32_t> functions_;
   std::unordered_set<std::string> names_;
@@ -164,7 +169,7 @@ uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const 
   for (const Binding& binding : bindings) function.parameters.push_back(binding.parameter);
 
   ir::Builder b(module_, index);
-  Environment environment(b, graph, bindings, made_.interface);
+  Environment environment(b, graph, bindings, host_);
   environment.images = &images;
   environment.function_of = [this](const TypedGraph& callee) { return functions_.at(&callee); };
   if (nodes_ != nullptr) {
@@ -202,22 +207,17 @@ uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name,
   return build(graph, std::move(name), bindings, needs, graph.outputs, std::move(results));
 }
 
-Lowered ModuleLowering::finish(uint32_t entry, Bindings bindings) {
-  made_.interface.entry = entry;
-  made_.interface.bindings = std::move(bindings);
-  return std::move(made_);
-}
-
-Lowered ModuleLowering::lower_function(const TypedGraph& graph) {
+interface::Interface ModuleLowering::add_function_document(const TypedGraph& graph) {
   const std::string name = authored_name(graph.graph.name);
   names_.insert(name);
   Bindings bindings;
   const uint32_t entry = add_function(graph, name, bindings);
-  return finish(entry, std::move(bindings));
+  return interface_of(entry, std::move(bindings));
 }
 
 void ModuleLowering::declare_light_at() {
-  made_.interface.host.push_back({interface::Host::light, static_cast<uint32_t>(module_.functions.size())});
+  if (host_.find(interface::Host::light) != ir::none) return;
+  host_.host.push_back({interface::Host::light, static_cast<uint32_t>(module_.functions.size())});
   ir::Function& function = module_.functions.emplace_back();
   function.name = names::light_at;
   function.parameters = {{"index", ir::int_type, "", true}, {"position", ir::vector_type(3), "", false}};
@@ -234,11 +234,15 @@ void ModuleLowering::add_parameters(const TypedGraph& graph, const Needs& needs,
   }
 }
 
-Lowered ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& root, const char* name,
-                                   ir::Result result) {
-  const std::span<const Operand> roots(&root, 1);
+interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pass, PassPart part,
+                                              const std::string& prefix) {
+  const bool is_color = part == PassPart::color;
+  const Operand* root = is_color ? &graph.outputs[pass] : graph.position_of(pass);
+  support::assert_that(root != nullptr, "the pass moves no vertices");
+  const ir::Result result = is_color ? ir::Result{"color", ir::vector_type(4)} : ir::Result{"position", ir::vector_type(3)};
+  const std::span<const Operand> roots(root, 1);
   const Needs needs(graph, roots);
-  names_.insert(name);
+  const std::string name = unique_name(prefix + (is_color ? names::shade : names::move_vertex));
   add_callees(graph, needs);
   if (needs.light_at) declare_light_at();
 
@@ -258,15 +262,15 @@ Lowered ModuleLowering::lower_pass(const TypedGraph& graph, const Operand& root,
   for (uint32_t i = 0; i < reads.size(); ++i)
     if (reads[i]) bindings.push_back(interface::bind_image(i, images.slots[i].name));
   if (needs.lights) bindings.push_back(interface::bind_light_count());
-  const uint32_t entry = build(graph, name, bindings, needs, roots, {std::move(result)}, images);
-  return finish(entry, std::move(bindings));
+  const uint32_t entry = build(graph, name, bindings, needs, roots, {result}, images);
+  return interface_of(entry, std::move(bindings));
 }
 
-Lowered ModuleLowering::lower_post(const TypedGraph& graph) {
+interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
   const Needs needs(graph, graph.outputs);
   names_.insert(names::post_process);
-  declare_reads(made_, graph, needs.screen);
-  for (const interface::HostFunction& read : made_.interface.host) names_.insert(module_.functions[read.function].name);
+  declare_reads(module_, host_, graph, needs.screen);
+  for (const interface::HostFunction& read : host_.host) names_.insert(module_.functions[read.function].name);
   add_callees(graph, needs);
 
   Bindings bindings = screen_bindings(graph, needs.screen);
@@ -275,7 +279,7 @@ Lowered ModuleLowering::lower_post(const TypedGraph& graph) {
   for (Binding& binding : tap_bindings(graph, needs.screen)) bindings.push_back(std::move(binding));
   const uint32_t entry = build(graph, names::post_process, bindings, needs, graph.outputs,
                                {{"color", ir::vector_type(4)}});
-  return finish(entry, std::move(bindings));
+  return interface_of(entry, std::move(bindings));
 }
 
 }  // namespace
@@ -288,14 +292,48 @@ std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
 
 Lowered lower(const TypedGraph& graph, const LowerOptions& options) {
   ModuleLowering lowering(options.nodes);
-  if (graph.graph.kind == DocumentKind::function) return lowering.lower_function(graph);
-  if (graph.graph.kind == DocumentKind::post) return lowering.lower_post(graph);
-  support::assert_that(options.pass < graph.graph.passes.size(), "the effect has no such pass");
-  if (options.part == PassPart::color)
-    return lowering.lower_pass(graph, graph.outputs[options.pass], names::shade, {"color", ir::vector_type(4)});
-  const Operand* position = graph.position_of(options.pass);
-  support::assert_that(position != nullptr, "the pass moves no vertices");
-  return lowering.lower_pass(graph, *position, names::move_vertex, {"position", ir::vector_type(3)});
+  interface::Interface made;
+  switch (graph.graph.kind) {
+    case DocumentKind::function: made = lowering.add_function_document(graph); break;
+    case DocumentKind::post: made = lowering.add_post(graph); break;
+    case DocumentKind::effect:
+    case DocumentKind::scene:
+      support::assert_that(options.pass < graph.graph.passes.size(), "the effect has no such pass");
+      made = lowering.add_pass(graph, options.pass, options.part);
+  }
+  return {lowering.take_module(), std::move(made)};
+}
+
+std::vector<Binding> parameter_bindings(const TypedGraph& graph) {
+  const std::vector<std::vector<std::string>> columns = parameter_names(graph);
+  std::vector<Binding> bindings;
+  for (uint32_t i = 0; i < columns.size(); ++i) {
+    if (graph.graph.inputs[i].type == Type::filename) continue;
+    for (Binding& binding : bind_input(graph, i, columns[i], "parameters", true)) bindings.push_back(std::move(binding));
+  }
+  const std::vector<ImageSlot> slots = image_slots(graph).slots;
+  for (uint32_t i = 0; i < slots.size(); ++i) bindings.push_back(interface::bind_image(i, slots[i].name));
+  return bindings;
+}
+
+LoweredShader lower_shader(const TypedGraph& graph) {
+  ModuleLowering lowering(nullptr);
+  LoweredShader made;
+  switch (graph.graph.kind) {
+    case DocumentKind::function: made.entries.push_back({.interface = lowering.add_function_document(graph)}); break;
+    case DocumentKind::post: made.entries.push_back({.interface = lowering.add_post(graph)}); break;
+    case DocumentKind::effect:
+    case DocumentKind::scene:
+      const std::vector<graph::Pass>& passes = graph.graph.passes;
+      for (size_t i = 0; i < passes.size(); ++i) {
+        const std::string prefix = passes.size() > 1 ? passes[i].name + "_" : "";
+        made.entries.push_back({PassPart::color, i, lowering.add_pass(graph, i, PassPart::color, prefix)});
+        if (graph.position_of(i) != nullptr)
+          made.entries.push_back({PassPart::position, i, lowering.add_pass(graph, i, PassPart::position, prefix)});
+      }
+  }
+  made.module = lowering.take_module();
+  return made;
 }
 
 }  // namespace isoshade::lower

@@ -66,6 +66,25 @@ struct LowerOptions {
 /// without bodies (see add_post_kernel), only called for pixels that the image has.
 Lowered lower(const check::TypedGraph& graph, const LowerOptions& options = {});
 
+/// One function of a shader that other programs link.
+struct ShaderEntry {
+  PassPart part = PassPart::color;  ///< of an effect
+  size_t pass = 0;                  ///< of an effect
+  interface::Interface interface;
+};
+
+struct LoweredShader {
+  ir::Module module;
+  std::vector<ShaderEntry> entries;
+};
+
+/// All functions of a document in one module: of an effect, each pass's `shade` and, where it moves vertices,
+/// `move_vertex`, with the pass's name in front ("base_shade") if there is more than one pass.
+LoweredShader lower_shader(const check::TypedGraph& graph);
+
+/// All parameters of an effect or a post, needed or not, and of an effect the numbers of its images.
+std::vector<interface::Binding> parameter_bindings(const check::TypedGraph& graph);
+
 /// What the parameters of each input are called, by Graph::inputs: one, or one a column of a matrix. No two are alike.
 std::vector<std::vector<std::string>> parameter_names(const check::TypedGraph& graph);
 

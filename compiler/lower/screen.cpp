@@ -135,13 +135,14 @@ std::vector<TapSum> tap_sums(const check::TypedGraph& graph) {
   return sums;
 }
 
-void declare_reads(Lowered& lowered, const check::TypedGraph& graph, const ScreenNeeds& needs) {
+void declare_reads(ir::Module& module, interface::Interface& host, const check::TypedGraph& graph,
+                   const ScreenNeeds& needs) {
   for (interface::ImageNumber image = 0; image < needs.images.size(); ++image) {
     if (!needs.images[image].read) continue;
     const bool is_depth = image == depth_image;
-    lowered.interface.host.push_back({is_depth ? interface::Host::depth : interface::Host::image,
-                                      static_cast<uint32_t>(lowered.module.functions.size()), image});
-    ir::Function& function = lowered.module.functions.emplace_back();
+    host.host.push_back({is_depth ? interface::Host::depth : interface::Host::image,
+                         static_cast<uint32_t>(module.functions.size()), image});
+    ir::Function& function = module.functions.emplace_back();
     function.name = prefix_of(graph, image) + "_at";
     function.parameters = {int_parameter("x"), int_parameter("y")};
     function.results = {{is_depth ? "depth" : "color", is_depth ? ir::float_type : ir::vector_type(4)}};

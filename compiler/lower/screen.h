@@ -15,7 +15,6 @@
 namespace isoshade::lower {
 
 struct Needs;
-struct Lowered;
 
 /// Of an image, what some nodes need.
 struct ImageNeeds {
@@ -58,8 +57,9 @@ constexpr interface::ImageNumber post_image(size_t number) {
   return static_cast<interface::ImageNumber>(image_record::color + number);
 }
 
-/// Declares the functions that read images, without bodies.
-void declare_reads(Lowered& lowered, const check::TypedGraph& graph, const ScreenNeeds& needs);
+/// Declares the functions that read images, without bodies; `host` receives them.
+void declare_reads(ir::Module& module, interface::Interface& host, const check::TypedGraph& graph,
+                   const ScreenNeeds& needs);
 /// The parameters that `needs` asks for, but for tap counts, which come last.
 std::vector<interface::Binding> screen_bindings(const check::TypedGraph& graph, const ScreenNeeds& needs);
 std::vector<interface::Binding> tap_bindings(const check::TypedGraph& graph, const ScreenNeeds& needs);

@@ -60,6 +60,11 @@ class Differentiation {
     return f.document.empty() && f.library.empty() ? module_.find(f.name + suffix) : none;
   }
 
+  /// Whether the program that links the module defines the function; then it defines the function's change, too.
+  bool is_hosts(uint32_t function) const {
+    const Function& f = module_.functions[function];
+    return f.is_declaration() && f.library.empty();
+  }
   bool is_source(uint32_t function) const { return source_of(function, std::string(ddx_suffix)) != none; }
 
   CallChanges call_changes() {
@@ -253,6 +258,8 @@ Values Differentiation::changes_of_call(Builder& b, const Instruction& made, con
     if (parameters.back()) all.push_back(way.change[operand]);
   }
   if (!any(parameters)) return changes;
+  // A host's function gives the changes of all its results.
+  if (is_hosts(made.imm)) results.assign(results.size(), true);
   const Values made_changes = b.call(change_function(made.imm, parameters, results), all);
   size_t next = 0;
   for (uint32_t k = 0; k < made.result_count; ++k)
@@ -281,6 +288,7 @@ uint32_t Differentiation::change_function(uint32_t function, const Marks& parame
   module_.functions.push_back(std::move(declared));
   change_functions_[key] = index;
 
+  if (is_hosts(function)) return index;
   const auto* rule = f.library.empty() ? nullptr : functions::find_derivative(functions::variant_of(f));
   if (rule != nullptr) {
     Builder b(module_, index);

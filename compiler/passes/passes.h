@@ -18,7 +18,8 @@ namespace isoshade::passes {
 /// ddx_suffix or ddy_suffix appended to the name: these return the derivatives of its results along x and y. From there
 /// they propagate by the change rules of ops (tangents.h) and of library functions (functions/functions.def). A
 /// function that needs the derivatives of its parameters gets them from its callers as further parameters, in the
-/// group "gradients". The derivatives of called functions are computed in functions of their own, `..._change`.
+/// group "gradients". The derivatives of called functions are computed in functions of their own, `..._change`; that of
+/// a function without a body is declared.
 ///
 /// Needs: a valid module without derivatives of derivatives, in which calls are not yet expanded (the rules are those
 /// of the functions, not of their bit operations). Leaves: no ddx and no ddy; a module without any is left as it is.

@@ -22,8 +22,10 @@ void run_cse(ir::Module& m, Entries&, Tier) { cse(m); }
 void run_expand(ir::Module& m, Entries&, Tier tier) { functions::expand(m, tier); }
 void run_decide(ir::Module& m, Entries&, Tier tier) { decide(m, tier); }
 void run_specialize(ir::Module& m, Entries&, Tier) { specialize(m); }
-void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries); }
-void run_hide(ir::Module& m, Entries& entries, Tier) { hide_foldables(m, entries); }
+void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries.functions); }
+void run_hide(ir::Module& m, Entries& entries, Tier) {
+  hide_foldables(m, entries.are_linked ? std::span<const uint32_t>() : entries.functions);
+}
 void run_exact_division(ir::Module& m, Entries&, Tier) { exact_division(m); }
 void run_multiply_by_halves(ir::Module& m, Entries&, Tier) { multiply_by_halves(m); }
 

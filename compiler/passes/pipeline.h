@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,14 @@
 namespace isoshade::passes {
 
 /// The functions that are called from outside the module; dce updates the indices.
-using Entries = std::vector<uint32_t>;
+struct Entries {
+  std::vector<uint32_t> functions;
+  /// Other programs call them, and compute with what they return.
+  bool are_linked = false;
+
+  Entries(std::initializer_list<uint32_t> list) : functions(list) {}
+  uint32_t operator[](size_t i) const { return functions[i]; }
+};
 
 /// One line of a pipeline.
 struct ModulePass {

@@ -107,6 +107,7 @@ class Specializer {
     // Instructions that fold replaced are in no block any more.
     for (const ir::InstructionId i : calls_in_blocks(module_.functions[f])) {
       const ir::Instruction call = module_.functions[f].instructions[i];
+      if (module_.functions[call.imm].is_declaration()) continue;  // the host's
       if (!has_arithmetic(call.imm) || cloned_instructions_ > max_cloned_instructions) continue;
       if (made.empty()) made = definitions(module_.functions[f]);
       const auto operands = module_.functions[f].operands_of(call);

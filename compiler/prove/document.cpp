@@ -26,6 +26,9 @@ std::vector<Given> answer_of(interface::Host host) {
   };
   switch (host) {
     case interface::Host::light: return {{"light.direction", -1, 1, true}, {"light.color", 0, most_light}};
+    case interface::Host::light_change:
+      return {{"change of light.direction", -default_limit, default_limit},
+              {"change of light.color", -default_limit, default_limit}};
     case interface::Host::depth: return {{"depth", 0, 1}};
     case interface::Host::image: return {{"image", 0, default_limit}};
     case interface::Host::texel: return texel(Answer::other, 1);
