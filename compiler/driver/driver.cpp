@@ -3,11 +3,14 @@
 
 #include "compiler/check/check.h"
 #include "compiler/driver/dumps.h"
+#include "compiler/driver/shader.h"
+#include "compiler/ir/expansion.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/screen.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/targets/cpp/cpp.h"
 
 namespace isoshade::driver {
 
@@ -78,15 +81,29 @@ std::vector<float> record_words(const graph::Literal& literal, int words) {
   return std::vector<float>(static_cast<size_t>(words), literal.number);
 }
 
-std::vector<Field> parameters_of(const check::TypedGraph& typed) {
+/// Without defaults.
+std::vector<Field> input_fields(const check::TypedGraph& typed) {
   std::vector<Field> fields;
   for (const graph::Input& input : typed.graph.inputs) {
     fields.push_back(field(input.name, input.type));
     fields.back().min = input.min;
     fields.back().max = input.max;
     fields.back().names = input.names;
-    fields.back().value = record_words(*input.value, fields.back().words);
   }
+  return fields;
+}
+
+std::vector<Field> output_fields(const check::TypedGraph& typed) {
+  std::vector<Field> fields;
+  for (size_t i = 0; i < typed.graph.outputs.size(); ++i)
+    fields.push_back(field(typed.graph.outputs[i].name, typed.outputs[i].type));
+  return fields;
+}
+
+std::vector<Field> parameters_of(const check::TypedGraph& typed) {
+  std::vector<Field> fields = input_fields(typed);
+  for (size_t i = 0; i < fields.size(); ++i)
+    fields[i].value = record_words(*typed.graph.inputs[i].value, fields[i].words);
   return fields;
 }
 
@@ -244,15 +261,88 @@ std::optional<Program> compile_function(const support::Source& source, const Com
   program.bindings = std::move(lowered.interface.bindings);
   finish(program, lower::add_eval_kernel(program.module, lowered.interface.entry), options,
          typed->graph.source);
-  for (const graph::Input& input : typed->graph.inputs) {
-    program.inputs.push_back(field(input.name, input.type));
-    program.inputs.back().min = input.min;
-    program.inputs.back().max = input.max;
-    program.inputs.back().names = input.names;
-  }
-  for (size_t i = 0; i < typed->graph.outputs.size(); ++i)
-    program.results.push_back(field(typed->graph.outputs[i].name, typed->outputs[i].type));
+  program.inputs = input_fields(*typed);
+  program.results = output_fields(*typed);
   return program;
+}
+
+std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
+                                     const ShaderOptions& shader_options, Diagnostics& diagnostics) {
+  const auto typed = read_graph(source, std::nullopt, options, diagnostics);
+  if (typed == nullptr) return std::nullopt;
+  const graph::Graph& graph = typed->graph;
+  Shader shader;
+  shader.typed = typed;
+  shader.kind = graph.kind;
+  emit::PureShader& pure = shader.pure;
+  pure.name = graph.name;
+  pure.document = typed->document;
+  pure.prefix = emit::Names(emit::Scope::global).take(shader_options.prefix.empty() ? graph.name : shader_options.prefix);
+  if (options.tier != functions::Tier::standard) pure.tier = functions::tier_name(options.tier);
+
+  lower::LoweredShader lowered = lower::lower_shader(*typed);
+  passes::Entries entries{};
+  entries.are_linked = true;
+  for (const lower::ShaderEntry& entry : lowered.entries) {
+    entries.functions.push_back(entry.interface.entry);
+    for (const interface::HostFunction& host : entry.interface.host)
+      pure.host[lowered.module.functions[host.function].name] = host;
+  }
+  pure.host[interface::names::light_at_change] = {interface::Host::light_change};
+  const auto dump = [&](std::string_view pass, const ir::Module& after) {
+    options.dump(pass, [&] { return dump_module(after); });
+  };
+  if (options.dump) dump("lower", lowered.module);
+  const passes::Dump dump_pass = options.dump ? passes::Dump(dump) : passes::Dump();
+  passes::run(passes::optimisations(), lowered.module, entries, options.tier, dump_pass);
+  if (shader_options.division == Division::exact)
+    passes::run(passes::division_lowering(), lowered.module, entries, options.tier, dump_pass);
+  pure.module = std::move(lowered.module);
+
+  for (size_t i = 0; i < lowered.entries.size(); ++i) {
+    const lower::ShaderEntry& entry = lowered.entries[i];
+    emit::PureKind kind{};
+    switch (graph.kind) {
+      case graph::DocumentKind::function: kind = emit::PureKind::function; break;
+      case graph::DocumentKind::post: kind = emit::PureKind::post_process; break;
+      case graph::DocumentKind::effect:
+      case graph::DocumentKind::scene:
+        const bool moves = entry.part == lower::PassPart::position;
+        kind = moves ? emit::PureKind::move_vertex : emit::PureKind::shade;
+        const graph::Pass& pass = graph.passes[entry.pass];
+        if (!moves) shader.passes.push_back({pass.name, pass.state, i, {}, pass.position_space, pass.enabled});
+        if (moves) shader.passes.back().move_vertex = i;
+    }
+    pure.functions.push_back({kind, entries[i], entry.interface.bindings});
+  }
+  if (graph.kind == graph::DocumentKind::function) {
+    shader.inputs = input_fields(*typed);
+    shader.outputs = output_fields(*typed);
+    return shader;
+  }
+  shader.parameters = {parameters_of(*typed), images_of(*typed), {}};
+  shader.enabled = graph.enabled;
+  for (const graph::InputImage& image : graph.images) shader.images.push_back(image.name);
+  emit::Names names(emit::Scope::field);
+  for (const interface::Binding& binding : lower::parameter_bindings(*typed))
+    pure.parameters.push_back({names.take(binding.parameter.name), binding.parameter});
+  return shader;
+}
+
+std::string text(const Shader& shader, const emit::Target& target) {
+  emit::PureShader pure = shader.pure;
+  passes::Entries entries{};
+  entries.are_linked = true;
+  uint64_t operations = 0;
+  for (const emit::PureFunction& function : pure.functions) {
+    entries.functions.push_back(function.entry);
+    operations += ir::expanded_operations(pure.module, function.entry)[function.entry];
+  }
+  if (!emit::has_op(target.id, ir::Opcode::imulhi))
+    passes::run(passes::multiplication_lowering(), pure.module, entries, functions::Tier::standard);
+  if (target.keeps_calls && operations > cpp::large_program) passes::cut_long(pure.module, cpp::longest_in_large);
+  for (size_t i = 0; i < pure.functions.size(); ++i) pure.functions[i].entry = entries[i];
+  return target.pure(pure);
 }
 
 const Program& depth_program() {

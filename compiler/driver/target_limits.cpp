@@ -68,8 +68,16 @@ const ir::Instruction* heaviest_call(const ir::Function& function,
   return most;
 }
 
+/// What is measured.
+struct Measured {
+  const ir::Module& module;
+  uint32_t entry;
+  std::string what;  ///< "pixel program of \"fur\""
+  const support::Source& source;
+};
+
 /// The document's own function, below the stages around it; null if there is none.
-const ir::Function* authored(const Program& program, const std::vector<uint64_t>& of_functions) {
+const ir::Function* authored(const Measured& program, const std::vector<uint64_t>& of_functions) {
   const ir::Function* function = &program.module.functions[program.entry];
   while (function->document.empty()) {
     const ir::Instruction* call = heaviest_call(*function, of_functions);
@@ -92,10 +100,7 @@ support::Span place_of(const support::Source& source, const ir::Origin& node) {
   return {source, begin, begin + static_cast<uint32_t>(found ? name.size() : line.size())};
 }
 
-}  // namespace
-
-bool within_limits(const Program& program, Target target, Division division,
-                   support::Diagnostics& diagnostics) {
+bool within_limits(const Measured& program, Target target, Division division, support::Diagnostics& diagnostics) {
   if (program.module.functions.empty()) return true;  // only text, no module to count
   const uint64_t of_division = division == Division::exact ? operations_of_exact_division : 1;
   const std::vector<uint64_t> of_functions =
@@ -114,17 +119,31 @@ bool within_limits(const Program& program, Target target, Division division,
               support::Id::too_large, known ? place_of(program.source, *heaviest.node) : support::Span{},
               operations <= limit.most
                   ? fmt::format(
-                        "the C++ of the {} program of {} has {} operations; the limit for a compiler is {}",
-                        name(program.stage), support::quote(program.name), in_text, most_operations_in_cpp)
-                  : fmt::format("with all calls expanded, the {} program of {} has {} operations; the limit for {} "
-                                "is {}",
-                                name(program.stage), support::quote(program.name), operations, limit.name,
-                                limit.most))
+                        "the C++ of the {} has {} operations; the limit for a compiler is {}", program.what,
+                        in_text, most_operations_in_cpp)
+                  : fmt::format("with all calls expanded, the {} has {} operations; the limit for {} is {}",
+                                program.what, operations, limit.name, limit.most))
           .suggest(operations <= limit.most ? "use --backend interpreter" : std::string(limit.fix));
   if (known)
     report.note(
         fmt::format("{} of them belong to node {}", heaviest.operations, support::quote(heaviest.node->node)));
   return false;
+}
+
+}  // namespace
+
+bool within_limits(const Program& program, Target target, Division division, support::Diagnostics& diagnostics) {
+  const std::string what = std::string(name(program.stage)) + " program of " + support::quote(program.name);
+  return within_limits(Measured{program.module, program.entry, what, program.source}, target, division, diagnostics);
+}
+
+bool within_limits(const Shader& shader, const emit::Target& target, Division division,
+                   support::Diagnostics& diagnostics) {
+  return std::ranges::all_of(shader.pure.functions, [&](const emit::PureFunction& function) {
+    const std::string what = "function " + emit::function_name(shader.pure, function, true);
+    return within_limits(Measured{shader.pure.module, function.entry, what, shader.typed->graph.source},
+                         target.keeps_calls ? Target::cpu : Target::vulkan, division, diagnostics);
+  });
 }
 
 }  // namespace isoshade::driver

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "compiler/driver/program.h"
+#include "compiler/driver/shader.h"
 #include "compiler/support/diagnostics.h"
 
 namespace isoshade::driver {
@@ -26,6 +27,10 @@ inline constexpr uint64_t most_operations_in_cpp = 32'768;
 /// Whether a program is within the limits of a target; if not, reports the node with the most operations. An exact
 /// `division` counts as about 40 operations.
 bool within_limits(const Program& program, Target target, Division division,
+                   support::Diagnostics& diagnostics);
+
+/// The same for each function of a pure shader.
+bool within_limits(const Shader& shader, const emit::Target& target, Division division,
                    support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::driver

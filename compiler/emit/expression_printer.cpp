@@ -37,7 +37,8 @@ std::string_view ExpressionPrinter::noun_of(const ir::Instruction& made) const {
   if (ir::is_primitive(made.op)) return op_shape(made.op).noun;
   if (made.op == Opcode::construct) return "vector";
   if (made.op == Opcode::call) {
-    std::string_view name = context_.texts[made.imm].name;
+    const FunctionText& called = context_.texts[made.imm];
+    std::string_view name = called.noun.empty() ? called.name : called.noun;
     if (name.starts_with("iso_")) name.remove_prefix(4);
     return name;
   }
@@ -254,7 +255,9 @@ void ExpressionPrinter::print_words(const ir::Instruction& instruction) {
   const std::string& reader = context_.readers[load.imm].take(operands.size());
   Written made;
   const std::string text = print_index(load.imm, index, static_cast<int>(reader.size()) + 2, made.columns);
-  made.text.append(reader).append(language_.passes_buffers() ? "(buffers, " : "(").append(text).append(")");
+  made.text.append(reader).append("(").append(language_.outside());
+  separate(made.text);
+  made.text.append(text).append(")");
   finish(instruction.first_result, std::move(made));
 }
 

@@ -58,6 +58,13 @@ class FunctionPrinter : private ExpressionPrinter {
   }
 
   void declare_parameters(std::string& out) {
+    if (text_.has_signature) {
+      for (const std::string& name : text_.local_names) names_.hold(name);
+      for (size_t i = 0; i < function_.parameters.size(); ++i) place(i);
+      out += text_.signature;
+      if (text_.loads && !language_.outside().empty() && !out.empty()) out.insert(0, ", ");
+      return;
+    }
     std::string group;
     for (size_t i = 0; i < function_.parameters.size(); ++i) {
       const ir::Parameter& parameter = function_.parameters[i];
@@ -79,7 +86,21 @@ class FunctionPrinter : private ExpressionPrinter {
       }
       if (!function_.is_declaration()) set_name(function_.blocks[0].parameters[i], std::move(name));
     }
-    if (text_.loads && language_.passes_buffers() && !out.empty()) out.insert(0, ", ");
+    if (text_.loads && !language_.outside().empty() && !out.empty()) out.insert(0, ", ");
+  }
+
+  /// A parameter that the signature does not declare.
+  void place(size_t i) {
+    const ParameterText& text = text_.parameters[i];
+    const ValueId value = function_.blocks[0].parameters[i];
+    if (!text.is_call) return set_name(value, text.text);
+    if (!used_[value]) return;
+    const ir::Parameter& parameter = function_.parameters[i];
+    std::string name = names_.take(parameter.name);
+    body_.append("  ");
+    language_.local_type(body_, parameter.type, parameter.uniform, false);
+    body_.append(" ").append(name).append(" = ").append(text.text).append(";\n");
+    set_name(value, std::move(name));
   }
 
   /// About as long as the function would be in one line, in all languages alike.
@@ -181,7 +202,12 @@ class FunctionPrinter : private ExpressionPrinter {
       if (callee.parameters[i].group.empty()) plain.push_back(operands[i]);
     made.columns = make_room(plain, static_cast<int>(called.name.size() + 2 + 2 * plain.size()));
     language_.callee(made.text, called, uniform_[first]);
-    made.text += called.loads && language_.passes_buffers() ? "(buffers" : "(";
+    made.text += "(";
+    if (called.loads) made.text += language_.outside();
+    if (!called.leading.empty()) {
+      separate(made.text);
+      made.text += called.leading;
+    }
     int column = static_cast<int>(called.name.size() + indent_) + 1;
     for (size_t i = 0; i < operands.size(); ++i) {
       const bool is_plain = callee.parameters[i].group.empty();

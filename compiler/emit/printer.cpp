@@ -31,20 +31,6 @@ std::string record_name(std::string_view group) {
   return name;
 }
 
-/// What is known of a parameter: its own words, and its range.
-std::string comment_of(const ir::Parameter& parameter) {
-  constexpr float unbounded = 1e30f;
-  std::string text = parameter.doc;
-  const auto number = [](float value) { return decimal(std::bit_cast<uint32_t>(value)); };
-  const bool from = parameter.least && *parameter.least > -unbounded;
-  const bool to = parameter.most && *parameter.most < unbounded;
-  if (!from && !to) return text;
-  text += text.empty() ? "" : "; ";
-  if (from) text += (to ? "" : "at least ") + number(*parameter.least);
-  if (to) text += (from ? " to " : "at most ") + number(*parameter.most);
-  return text;
-}
-
 void print_result_record(std::string& out, const ir::Function& function, const FunctionText& text,
                          const Language& language) {
   if (text.result_type.empty()) return;
@@ -111,13 +97,14 @@ class GroupRecords {
 /// the types select the function, in every language.
 class OwnNames {
  public:
-  explicit OwnNames(Names& globals) : globals_(globals) {}
+  /// `ending`: of the names of library functions.
+  explicit OwnNames(Names& globals, std::string ending = "") : globals_(globals), ending_(std::move(ending)) {}
 
   std::string take(const ir::Function& function) {
     if (function.library.empty()) return globals_.take_own(function.name);
     const auto is_float = [](const ir::Parameter& parameter) { return parameter.type.is_float(); };
-    if (!std::ranges::all_of(function.parameters, is_float)) return globals_.take_own(function.name);
-    std::string shared(without_types(function.name));
+    if (!std::ranges::all_of(function.parameters, is_float)) return globals_.take_own(function.name + ending_);
+    std::string shared = std::string(without_types(function.name)) + ending_;
     const auto [name, is_new] = names_.try_emplace(shared);
     if (is_new) name->second = globals_.take_own(shared);
     return name->second;
@@ -139,10 +126,24 @@ class OwnNames {
   }
 
   Names& globals_;
+  std::string ending_;
   std::unordered_map<std::string, std::string> names_;  ///< by the name that they share in the IR
 };
 
 }  // namespace
+
+std::string comment_of(const ir::Parameter& parameter) {
+  constexpr float unbounded = 1e30f;
+  std::string text = parameter.doc;
+  const auto number = [](float value) { return decimal(std::bit_cast<uint32_t>(value)); };
+  const bool from = parameter.least && *parameter.least > -unbounded;
+  const bool to = parameter.most && *parameter.most < unbounded;
+  if (!from && !to) return text;
+  text += text.empty() ? "" : "; ";
+  if (from) text += (to ? "" : "at least ") + number(*parameter.least);
+  if (to) text += (from ? " to " : "at most ") + number(*parameter.most);
+  return text;
+}
 
 bool fits_on_line(std::string_view name, std::span<const RecordField> fields) {
   size_t columns = name.size() + 12;
@@ -225,66 +226,152 @@ static void declare(const std::vector<RecordWords>& records, std::string& out) {
   if (!out.empty()) out += ";\n";
 }
 
-std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
-                            std::vector<FunctionText>& texts) {
-  const std::array entries{entry};
+namespace {
+
+/// Prints functions in an order, and what they share.
+class FunctionsPrinter {
+ public:
+  FunctionsPrinter(const ir::Module& module, const std::vector<uint32_t>& order, const Language& language,
+                   std::vector<FunctionText>& texts)
+      : module_(module), order_(order), language_(language), texts_(texts), groups_(language, globals_) {}
+
+  Names& globals() { return globals_; }
+
+  /// What loads, and what several results are called, once all functions have names. `prefix`: of names of structs.
+  void settle(const std::string& prefix) {
+    std::vector<bool> loaded(module_.buffers.size());
+    for (const uint32_t index : order_) {
+      const ir::Function& function = module_.functions[index];
+      FunctionText& text = texts_[index];
+      text.loads |= !text.host.empty() || std::ranges::any_of(text.parameters, &ParameterText::is_call);
+      for (const ir::Instruction& instruction : function.instructions) {
+        if (instruction.op == ir::Opcode::load) text.loads = loaded[instruction.imm] = true;
+        if (instruction.op == ir::Opcode::call) text.loads |= texts_[instruction.imm].loads;
+      }
+      if (function.results.size() <= 1 || !text.result_type.empty()) continue;
+      std::string_view name = text.name;
+      if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+      text.result_type = globals_.take(prefix + record_name(name) + "Result");
+      Names fields(Scope::field);
+      for (const ir::Result& result : function.results) text.result_fields.push_back(fields.take(result.name));
+    }
+    for (size_t i = 0; i < module_.buffers.size(); ++i) {
+      records_.emplace_back(loaded[i] ? module_.buffers[i] : unread_buffer, globals_);
+      readers_.emplace_back(loaded[i] ? module_.buffers[i] : unread_buffer, globals_);
+    }
+  }
+
+  /// Appends a function to a text, which ends with what was printed to it before.
+  void print(std::string& out, uint32_t index) {
+    const ir::Function& function = module_.functions[index];
+    const size_t before = out.size();
+    if (!out.empty()) out += "\n";
+    if (!function.document.empty()) out += "// " + comment_text(function.document) + "\n";
+    print_result_record(out, function, texts_[index], language_);
+    if (!texts_[index].has_signature) groups_.print(out, function, texts_[index]);
+    const size_t begin = out.size();
+    const bool is_line = print_function(out, function, texts_[index],
+                                        {module_, language_, texts_, globals_, records_, readers_});
+    // Functions of a line stand together.
+    if (is_line && follows_line_ && begin == before + 1) out.erase(before, 1);
+    follows_line_ = is_line;
+  }
+
+  /// Constants and functions for reading buffers, which stand in front.
+  std::string head() const {
+    std::string head;
+    declare(records_, head);
+    if (!head.empty()) head += "\n";
+    const size_t constants = head.size();
+    for (const WordReaders& reader : readers_) reader.define(head, language_);
+    if (head.size() != constants) head += "\n";
+    return head;
+  }
+
+ private:
+  const ir::Module& module_;
+  const std::vector<uint32_t>& order_;
+  const Language& language_;
+  std::vector<FunctionText>& texts_;
+  Names globals_{Scope::global};
+  std::vector<RecordWords> records_;
+  std::vector<WordReaders> readers_;
+  GroupRecords groups_;
+  bool follows_line_ = false;
+};
+
+std::vector<uint32_t> order_of(const ir::Module& module, std::span<const uint32_t> entries) {
   const auto order = ir::callees_first(module, entries);
   support::assert_that(order.has_value(), "calls are cyclic");
+  return *order;
+}
+
+/// A macro that tells whether a text has a function, and which: its value is a hash of the text.
+void add_guarded(std::string& out, std::string& checks, const std::string& function_name, const std::string& text) {
+  std::string macro = function_name;
+  for (char& c : macro)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  uint32_t hash = 2166136261u;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  const std::string value = std::to_string(hash & 0x7fffffffu);
+  out += "#ifndef " + macro + "\n#define " + macro + " " + value + "\n" + text + "#endif\n";
+  checks += (checks.empty() ? "#if " : " || \\\n    ") + macro + " != " + value;
+}
+
+}  // namespace
+
+std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
+                            std::vector<FunctionText>& texts) {
+  const std::vector<uint32_t> order = order_of(module, std::array{entry});
   texts.assign(module.functions.size(), {});
-  Names globals(Scope::global);
+  FunctionsPrinter printer(module, order, language, texts);
+  Names& globals = printer.globals();
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
   // Library functions and stages are named by us, and first.
   const auto is_ours = [](const ir::Function& function) {
     return function.document.empty() || interface::is_kernel_function(function.name);
   };
   OwnNames own(globals);
-  for (const uint32_t index : *order)
+  for (const uint32_t index : order)
     if (is_ours(module.functions[index])) texts[index].name = own.take(module.functions[index]);
-  for (const uint32_t index : *order)
+  for (const uint32_t index : order)
     if (!is_ours(module.functions[index])) texts[index].name = globals.take(module.functions[index].name);
-  std::vector<bool> loaded(module.buffers.size());
-  for (const uint32_t index : *order) {
-    const ir::Function& function = module.functions[index];
-    FunctionText& text = texts[index];
-    for (const ir::Instruction& instruction : function.instructions) {
-      if (instruction.op == ir::Opcode::load) text.loads = loaded[instruction.imm] = true;
-      if (instruction.op == ir::Opcode::call) text.loads |= texts[instruction.imm].loads;
-    }
-    if (function.results.size() <= 1) continue;
-    text.result_type = globals.take(record_name(text.name) + "Result");
-    Names fields(Scope::field);
-    for (const ir::Result& result : function.results) text.result_fields.push_back(fields.take(result.name));
-  }
-  std::vector<RecordWords> records;
-  std::vector<WordReaders> readers;
-  for (size_t i = 0; i < module.buffers.size(); ++i) {
-    records.emplace_back(loaded[i] ? module.buffers[i] : unread_buffer, globals);
-    readers.emplace_back(loaded[i] ? module.buffers[i] : unread_buffer, globals);
-  }
+  printer.settle("");
   std::string out;
-  GroupRecords groups(language, globals);
-  const TextContext context{module, language, texts, globals, records, readers};
-  bool follows_line = false;
-  for (uint32_t index : *order) {
-    const ir::Function& function = module.functions[index];
-    const size_t before = out.size();
-    if (!out.empty()) out += "\n";
-    if (!function.document.empty()) out += "// " + comment_text(function.document) + "\n";
-    print_result_record(out, function, texts[index], language);
-    groups.print(out, function, texts[index]);
-    const size_t begin = out.size();
-    const bool is_line = print_function(out, function, texts[index], context);
-    // Functions of a line stand together.
-    if (is_line && follows_line && begin == before + 1) out.erase(before, 1);
-    follows_line = is_line;
+  for (const uint32_t index : order) printer.print(out, index);
+  return printer.head() + out;
+}
+
+LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entries, const Language& language,
+                        const LinkedNames& names, std::vector<FunctionText>& texts) {
+  const std::vector<uint32_t> order = order_of(module, entries);
+  FunctionsPrinter printer(module, order, language, texts);
+  Names& globals = printer.globals();
+  for (const FunctionText& text : texts)
+    if (!text.name.empty()) globals.hold(text.name);
+  for (const std::string& record : names.records) globals.hold(record);
+  OwnNames library(globals, names.tier);
+  for (const uint32_t index : order)
+    if (!module.functions[index].library.empty()) texts[index].name = library.take(module.functions[index]);
+  for (const uint32_t index : order)
+    if (texts[index].name.empty() && texts[index].host.empty())
+      texts[index].name = globals.take_own(names.prefix + (texts[index].noun = module.functions[index].name));
+  printer.settle(names.prefix);
+  LinkedText made;
+  std::string checks;
+  for (const uint32_t index : order) {
+    if (!texts[index].host.empty()) continue;
+    if (module.functions[index].library.empty()) {
+      printer.print(made.own, index);
+      continue;
+    }
+    std::string text;
+    printer.print(text, index);
+    add_guarded(made.shared, checks, module.functions[index].name + names.tier, text);
   }
-  std::string head;
-  declare(records, head);
-  if (!head.empty()) head += "\n";
-  const size_t constants = head.size();
-  for (const WordReaders& reader : readers) reader.define(head, language);
-  if (head.size() != constants) head += "\n";
-  return head + out;
+  if (!checks.empty())
+    made.shared += checks + "\n#error \"Two files of one program come from different versions of isoshade\"\n#endif\n";
+  return made;
 }
 
 }  // namespace isoshade::emit

@@ -15,6 +15,12 @@
 
 namespace isoshade::emit {
 
+/// How a parameter of a pure shader's function is written where its function's signature does not declare it.
+struct ParameterText {
+  std::string text;      ///< an expression: "surface.normal"
+  bool is_call = false;  ///< a local of the parameter's name holds what the expression gives
+};
+
 /// How one function is seen from outside.
 struct FunctionText {
   std::string name;         ///< in emitted text
@@ -22,7 +28,15 @@ struct FunctionText {
   std::vector<std::string> result_fields;
   std::vector<std::string> groups;  ///< the name of the struct of each parameter; empty: a plain parameter
   std::vector<std::string> fields;  ///< the name of each parameter in its struct
-  bool loads = false;               ///< it, or one it calls, loads from a buffer
+  bool loads = false;               ///< it, or one it calls, loads from a buffer or asks the host
+  // Of a pure shader (pure.h):
+  std::string noun;       ///< what its result is called; empty: as the function
+  std::string host;       ///< the host's function that stands for it; empty: it is printed
+  std::string leading;    ///< what a call's arguments begin with
+  bool has_signature = false;  ///< the parameter list is `signature`; each parameter is written as `parameters` say
+  std::string signature;
+  std::vector<ParameterText> parameters;
+  std::vector<std::string> local_names;  ///< what the signature declares
 };
 
 /// A value as it is written: an expression and what decides how it fits into another.
@@ -40,6 +54,9 @@ struct RecordField {
   std::string name;
   std::string comment = {};
 };
+
+/// What is known of a parameter: its own words, and its range.
+std::string comment_of(const ir::Parameter& parameter);
 
 /// Whether a record is short enough for one line, the same in all languages.
 bool fits_on_line(std::string_view name, std::span<const RecordField> fields);
@@ -62,10 +79,15 @@ class Language {
   /// A function of WordReaders up to the words that it reads, and behind them.
   virtual void word_reader(std::string& out, std::string_view name, int width) const = 0;
   virtual void end_word_reader(std::string& out) const = 0;
-  /// What stands before the argument list: name, and in C++ the lanes of the instance.
+  /// What stands before the argument list: name, and in C++ the lanes of the instance; or the host's function.
   virtual void callee(std::string& out, const FunctionText& function, bool uniform) const = 0;
-  /// Whether functions that load are given the buffers, as their first argument.
-  virtual bool passes_buffers() const = 0;
+  /// The first argument of functions that load or ask the host; empty if there is none.
+  virtual std::string_view outside() const = 0;
+  /// A function of the host without what it is called on: "isoshade_time", "host.time"; and a struct that one returns.
+  virtual std::string host_function(std::string_view name) const = 0;
+  virtual std::string host_record(std::string_view name) const = 0;
+  /// A number of which compilers must not know what it is.
+  virtual std::string hidden_int(int value) const = 0;
   /// Begins the definition of a local that is a record: the result of a call.
   virtual void local_record(std::string& out, std::string_view record, bool uniform, bool exact) const = 0;
   virtual void parameter(std::string& out, ir::Type type, bool uniform, std::string_view name,
@@ -87,10 +109,15 @@ class Language {
   /// All before the first parameter; in C++ with the buffers, if the function loads.
   virtual void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
                              bool exact) const = 0;
+  /// The same as a reader needs it: result, name, and what stands before the first parameter.
+  virtual void declaration(std::string& out, const ir::Function& function, const FunctionText& text) const = 0;
   /// The type of a local, and of a parameter, that is a whole group. `uniform`: the group's parameters are; `one_lane`: the
   /// local is an argument of a function's instance for one value.
   virtual void group_value(std::string& out, std::string_view record, bool uniform, bool one_lane) const = 0;
   virtual void group_type(std::string& out, std::string_view record, bool uniform) const = 0;
+  /// A parameter that is a whole record.
+  virtual void record_parameter(std::string& out, std::string_view record, std::string_view name, bool uniform,
+                                bool used) const = 0;
 };
 
 /// Named constants for the words of a buffer's records: `objects[object + roughness]`.
@@ -137,11 +164,27 @@ struct TextContext {
   std::vector<WordReaders>& readers;  ///< by buffer
 };
 
-/// Prints the functions that `entry` needs, callees first, and the records they use. Needs: every function
-/// has a body, or is one that the text's user provides (printed as a prototype). `texts` receives a
-/// FunctionText for every function of the module.
+/// Prints the functions that `entry` needs, callees first, and the records they use. Needs: every function has a body, or
+/// is one that the text's user provides (printed as a prototype). `texts` receives a FunctionText for every function of
+/// the module.
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
                             std::vector<FunctionText>& texts);
+
+/// The functions of a pure shader.
+struct LinkedText {
+  std::string shared;  ///< functions of the library, each in a guard of its own
+  std::string own;
+};
+/// What all names begin with that are not of the library ("cook_torrance_"), and what those of the library end with.
+struct LinkedNames {
+  std::string prefix;
+  std::string tier;
+  std::vector<std::string> records;  ///< that the text has besides
+};
+/// The same for a text that is linked into other programs. `texts` has a FunctionText for every function of the module, in
+/// which those of the host and the signatures of entries are set.
+LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entries, const Language& language,
+                        const LinkedNames& names, std::vector<FunctionText>& texts);
 
 /// The name of ir::Opcode::hidden_zero in emitted text.
 inline constexpr std::string_view hidden_zero = "ISO_ZERO";

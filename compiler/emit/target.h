@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "compiler/emit/printer.h"
+#include "compiler/emit/pure.h"
 #include "compiler/emit/target_id.h"
 #include "compiler/ir/module.h"
 #include "compiler/lower/stages.h"
@@ -50,6 +51,7 @@ struct Target {
   std::string (*kernel)(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading);
   std::string_view (*kernel_extension)(lower::Stage stage);
   const Binary* binary;  ///< null: none
+  std::string (*pure)(const PureShader& shader);  ///< a text to include (pure.h)
 };
 
 }  // namespace isoshade::emit

@@ -42,6 +42,8 @@ struct ImageSize {
   I height;
   I smaller;  ///< how many smaller mip levels it has: the images image + 1, image + 2, ...
 };
+template <class F>
+using ImageSizeOf = ImageSize<lanes::int_of<F>>;
 
 /// A value that may be returned where Wanted is the type of the result.
 template <class Value, class Wanted>
@@ -186,6 +188,123 @@ concept depth_denominator = requires(const Host& host) {
 };
 
 }  // namespace gives
+
+// What generated code calls: the names are those of the GLSL. One value for all points stands for as many.
+namespace lanes {
+
+template <class Host>
+  requires gives::light_count<Host, float>
+ISOSHADE_INLINE int isoshade_light_count(const Host& host) {
+  return host.light_count();
+}
+template <class Host>
+  requires gives::time<Host, float>
+ISOSHADE_INLINE float isoshade_time(const Host& host) {
+  return host.time();
+}
+template <class Host>
+  requires gives::world_from_object<Host, float>
+ISOSHADE_INLINE vec3<float> isoshade_world_from_object(const Host& host, int column) {
+  return host.world_from_object(column);
+}
+template <class Host>
+  requires gives::object_from_world<Host, float>
+ISOSHADE_INLINE vec3<float> isoshade_object_from_world(const Host& host, int column) {
+  return host.object_from_world(column);
+}
+template <class Host>
+  requires gives::view_from_world<Host, float>
+ISOSHADE_INLINE vec3<float> isoshade_view_from_world(const Host& host, int column) {
+  return host.view_from_world(column);
+}
+template <class Host>
+  requires gives::world_from_view<Host, float>
+ISOSHADE_INLINE vec3<float> isoshade_world_from_view(const Host& host, int column) {
+  return host.world_from_view(column);
+}
+template <class Host>
+  requires gives::picture_width<Host, float>
+ISOSHADE_INLINE int isoshade_picture_width(const Host& host, int image) {
+  return host.picture_width(image);
+}
+template <class Host>
+  requires gives::picture_height<Host, float>
+ISOSHADE_INLINE int isoshade_picture_height(const Host& host, int image) {
+  return host.picture_height(image);
+}
+template <class Host>
+  requires gives::depth_width<Host, float>
+ISOSHADE_INLINE int isoshade_depth_width(const Host& host) {
+  return host.depth_width();
+}
+template <class Host>
+  requires gives::depth_height<Host, float>
+ISOSHADE_INLINE int isoshade_depth_height(const Host& host) {
+  return host.depth_height();
+}
+template <class Host>
+  requires gives::screen_size<Host, float>
+ISOSHADE_INLINE vec2<float> isoshade_screen_size(const Host& host) {
+  return host.screen_size();
+}
+template <class Host>
+  requires gives::camera_position<Host, float>
+ISOSHADE_INLINE vec3<float> isoshade_camera_position(const Host& host) {
+  return host.camera_position();
+}
+template <class Host>
+  requires gives::camera_direction<Host, float>
+ISOSHADE_INLINE vec3<float> isoshade_camera_direction(const Host& host) {
+  return host.camera_direction();
+}
+template <class Host>
+  requires gives::depth_numerator<Host, float>
+ISOSHADE_INLINE vec2<float> isoshade_depth_numerator(const Host& host) {
+  return host.depth_numerator();
+}
+template <class Host>
+  requires gives::depth_denominator<Host, float>
+ISOSHADE_INLINE vec2<float> isoshade_depth_denominator(const Host& host) {
+  return host.depth_denominator();
+}
+template <class F, class Host>
+  requires gives::light<Host, F>
+ISOSHADE_INLINE Light<F> isoshade_light(const Host& host, int index, vec3<F> position) {
+  return host.light(index, position);
+}
+template <class F, class Host>
+  requires gives::light_change<Host, F>
+ISOSHADE_INLINE Light<F> isoshade_light_change(const Host& host, int index, vec3<F> position, vec3<F> change) {
+  return host.light_change(index, position, change);
+}
+template <class F, class Host>
+  requires gives::texel<Host, F>
+ISOSHADE_INLINE vec4<F> isoshade_texel(const Host& host, int_of<F> image, int_of<F> x, int_of<F> y) {
+  return host.texel(image, x, y);
+}
+template <class F, class Host>
+  requires gives::image_size<Host, F>
+ISOSHADE_INLINE ImageSizeOf<F> isoshade_image_size(const Host& host, int_of<F> image) {
+  return host.image_size(image);
+}
+template <class F, class Host>
+  requires gives::picture<Host, F>
+ISOSHADE_INLINE vec4<F> isoshade_picture(const Host& host, int image, int_of<F> x, int_of<F> y) {
+  return host.picture(image, x, y);
+}
+template <class F, class Host>
+  requires gives::depth<Host, F>
+ISOSHADE_INLINE F isoshade_depth(const Host& host, int_of<F> x, int_of<F> y) {
+  return host.depth(x, y);
+}
+
+}  // namespace lanes
+
+namespace shared {
+/// Where GLSL hides a zero from drivers, which would fold arithmetic with it.
+inline constexpr float ISO_ZERO = 0.0f;
+}  // namespace shared
+
 }  // namespace isoshade
 
 #endif

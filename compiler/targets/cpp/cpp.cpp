@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/targets/cpp/cpp.h"
 
+#include <algorithm>
 #include <array>
 
 #include "compiler/emit/literal.h"
@@ -22,13 +23,14 @@ struct Code {
   uint64_t operations = 0;  ///< with those of inlined functions once for each call
 };
 
-Code code_of(const ir::Module& module, uint32_t entry) {
+Code code_of(const ir::Module& module, std::span<const uint32_t> entries) {
   std::vector<bool> called(module.functions.size());
-  const uint64_t expanded = ir::expanded_operations(module, entry)[entry];
+  uint64_t expanded = 0;
+  for (const uint32_t entry : entries) expanded += ir::expanded_operations(module, entry)[entry];
   if (expanded <= large_program) return {called, expanded};
   uint64_t sum = 0;
   std::vector<uint64_t> inlined(module.functions.size());
-  const auto order = ir::callees_first(module, std::array{entry});
+  const auto order = ir::callees_first(module, entries);
   for (const uint32_t f : *order) {
     const ir::Function& function = module.functions[f];
     for (const ir::Block& block : function.blocks)
@@ -38,16 +40,18 @@ Code code_of(const ir::Module& module, uint32_t entry) {
             ir::is_primitive(made.op) || made.op == ir::Opcode::load || made.op == ir::Opcode::call;
         inlined[f] += made.op == ir::Opcode::call && !called[made.imm] ? inlined[made.imm] : counts ? 1 : 0;
       }
-    called[f] = f != entry && inlined[f] > most_inlined_in_large;
-    if (called[f] || f == entry) sum += inlined[f];
+    const bool is_entry = std::ranges::find(entries, f) != entries.end();
+    called[f] = !is_entry && inlined[f] > most_inlined_in_large;
+    if (called[f] || is_entry) sum += inlined[f];
   }
   return {called, sum};
 }
 
 class Cpp final : public Language {
  public:
-  Cpp(const ir::Module& module, uint32_t entry)
-      : functions_(module.functions.data()), called_(code_of(module, entry).called) {}
+  /// `is_linked`: of a pure shader, whose functions get a host instead of buffers.
+  Cpp(const ir::Module& module, std::span<const uint32_t> entries, bool is_linked = false)
+      : functions_(module.functions.data()), called_(code_of(module, entries).called), is_linked_(is_linked) {}
 
   std::string_view type(ir::Type type, bool uniform) const override {
     constexpr std::string_view one[] = {"float", "vec2<float>", "vec3<float>", "vec4<float>"};
@@ -84,9 +88,15 @@ class Cpp final : public Language {
   }
   void end_word_reader(std::string& out) const override { out += ");\n}\n"; }
   void callee(std::string& out, const FunctionText& function, bool uniform) const override {
-    out.append(function.name).append(lanes_of(uniform));
+    out.append(function.host.empty() ? function.name : function.host).append(lanes_of(uniform));
   }
-  bool passes_buffers() const override { return true; }
+  std::string_view outside() const override { return is_linked_ ? "host" : "buffers"; }
+  std::string host_function(std::string_view name) const override { return "isoshade_" + std::string(name); }
+  // What holds ints is a template over them in host.h, with an alias over the float type.
+  std::string host_record(std::string_view name) const override {
+    return "isoshade::" + std::string(name) + (name == "ImageSize" ? "Of" : "");
+  }
+  std::string hidden_int(int value) const override { return std::to_string(value); }
   void local_record(std::string& out, std::string_view record, bool uniform, bool) const override {
     out.append("const ").append(record).append(lanes_of(uniform));
   }
@@ -142,13 +152,17 @@ class Cpp final : public Language {
   void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
                      bool) const override {
     const auto index = static_cast<size_t>(&function - functions_);
-    out += called_[index] ? "template <class F>\nISOSHADE_NOINLINE static "
-                          : "template <class F>\nISOSHADE_INLINE ";
+    out += asks_host(text) ? "template <class F, class Host>\n" : "template <class F>\n";
+    out += called_[index] ? "ISOSHADE_NOINLINE static " : "ISOSHADE_INLINE ";
+    declaration(out, function, text);
+  }
+  void declaration(std::string& out, const ir::Function& function, const FunctionText& text) const override {
     if (text.result_type.empty())
       out += type(function.results[0].type, false);
     else
       out.append(text.result_type).append("<F>");
-    out.append(" ").append(text.name).append(text.loads ? "(const Buffers& buffers" : "(");
+    out.append(" ").append(text.name).append("(");
+    if (text.loads) out += is_linked_ ? "const Host& host" : "const Buffers& buffers";
   }
   void group_value(std::string& out, std::string_view record, bool uniform, bool one_lane) const override {
     out.append(record).append(uniform ? "" : lanes_of(one_lane));
@@ -158,12 +172,21 @@ class Cpp final : public Language {
     group_value(out, record, uniform, false);
     out += "&";
   }
+  void record_parameter(std::string& out, std::string_view record, std::string_view name, bool uniform,
+                        bool used) const override {
+    if (!used) out += "[[maybe_unused]] ";
+    group_type(out, record, uniform);
+    out.append(" ").append(name);
+  }
 
  private:
   static std::string_view lanes_of(bool uniform) { return uniform ? "<float>" : "<F>"; }
 
+  bool asks_host(const FunctionText& text) const { return is_linked_ && text.loads; }
+
   const ir::Function* functions_;
   std::vector<bool> called_;  ///< by function
+  bool is_linked_;
 };
 
 constexpr Target cpp_target{
@@ -176,11 +199,12 @@ constexpr Target cpp_target{
     .has_storage_buffers = true,
     .keeps_calls = true,
     .language = [](const ir::Module& module, uint32_t entry) -> std::unique_ptr<Language> {
-      return std::make_unique<Cpp>(module, entry);
+      return std::make_unique<Cpp>(module, std::array{entry});
     },
     .kernel = stage,
     .kernel_extension = [](lower::Stage) -> std::string_view { return ".cpp"; },
     .binary = nullptr,
+    .pure = pure,
 };
 
 constexpr std::string_view zero_head =
@@ -191,8 +215,12 @@ constexpr std::string_view zero_head =
 
 const Target& target() { return cpp_target; }
 
+std::unique_ptr<Language> linked_language(const ir::Module& module, std::span<const uint32_t> entries) {
+  return std::make_unique<Cpp>(module, entries, true);
+}
+
 uint64_t operations(const ir::Module& module, uint32_t entry) {
-  return code_of(module, entry).operations;
+  return code_of(module, std::array{entry}).operations;
 }
 
 std::string functions(const ir::Module& module, uint32_t entry) {
@@ -202,7 +230,7 @@ std::string functions(const ir::Module& module, uint32_t entry) {
 
 std::string functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {
   return std::string(uses_hidden_zero(module, entry) ? zero_head : "") +
-         print_functions(module, entry, Cpp(module, entry), texts);
+         print_functions(module, entry, Cpp(module, std::array{entry}), texts);
 }
 
 std::string buffers(const ir::Module& module) {

@@ -3,16 +3,24 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "compiler/emit/printer.h"
+#include "compiler/emit/pure.h"
 #include "compiler/emit/target.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::cpp {
 
 const emit::Target& target();
+
+/// Spells the functions of a pure shader.
+std::unique_ptr<emit::Language> linked_language(const ir::Module& module, std::span<const uint32_t> entries);
+/// A pure shader, whole: a header.
+std::string pure(const emit::PureShader& shader);
 
 /// A program of more operations than this with all its calls expanded (ir/expansion.h) is large. All functions of others
 /// are inlined, so a compiler sees one function of that length, for which g++ 12 -O2 takes time that grows with the

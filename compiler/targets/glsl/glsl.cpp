@@ -38,8 +38,15 @@ class Glsl final : public Language {
     out.append(type).append(" ").append(name).append("(int word) { return ").append(type).append("(");
   }
   void end_word_reader(std::string& out) const override { out += "); }\n"; }
-  void callee(std::string& out, const FunctionText& function, bool) const override { out += function.name; }
-  bool passes_buffers() const override { return false; }
+  void callee(std::string& out, const FunctionText& function, bool) const override {
+    out += function.host.empty() ? function.name : function.host;
+  }
+  std::string_view outside() const override { return ""; }
+  std::string host_function(std::string_view name) const override { return "isoshade_" + std::string(name); }
+  std::string host_record(std::string_view name) const override { return "isoshade_" + std::string(name); }
+  std::string hidden_int(int value) const override {
+    return std::to_string(value) + " | floatBitsToInt(" + std::string(hidden_zero) + ")";
+  }
   void local_record(std::string& out, std::string_view record, bool, bool exact) const override {
     out.append(exact ? precise_ : "").append(record);
   }
@@ -84,11 +91,18 @@ class Glsl final : public Language {
   void function_head(std::string& out, const ir::Function& function, const FunctionText& text,
                      bool exact) const override {
     out.append(exact ? precise_ : "");
+    declaration(out, function, text);
+  }
+  void declaration(std::string& out, const ir::Function& function, const FunctionText& text) const override {
     out.append(text.result_type.empty() ? ir::name(function.results[0].type) : text.result_type);
     out.append(" ").append(text.name).append("(");
   }
   void group_value(std::string& out, std::string_view record, bool, bool) const override { out += record; }
   void group_type(std::string& out, std::string_view record, bool) const override { out += record; }
+  void record_parameter(std::string& out, std::string_view record, std::string_view name, bool,
+                        bool) const override {
+    out.append(record).append(" ").append(name);
+  }
 
  private:
   TargetId target_;
@@ -112,7 +126,11 @@ constexpr Target glsl_target{
     .name = "glsl",
     .doc = "GLSL 4.50 for Vulkan",
     .extension = ".glsl",
-    .head = "",
+    .head =
+        "// The same bits on every device that isoshade's probe passes, given these two lines behind #version, without which\n"
+        "// some devices let a select swallow a NaN:\n"
+        "//   #extension GL_EXT_spirv_intrinsics : require\n"
+        "//   spirv_execution_mode(extensions = [\"SPV_KHR_float_controls\"], capabilities = [4466], 4461, 32);\n",
     .has_precise = vulkan.has_precise,
     .has_storage_buffers = true,
     .keeps_calls = false,
@@ -123,15 +141,8 @@ constexpr Target glsl_target{
       return stage == lower::Stage::vertex ? ".vert" : ".frag";
     },
     .binary = &spirv,
+    .pure = [](const PureShader& shader) { return pure(shader, vulkan, target().head); },
 };
-
-constexpr std::string_view zero_head =
-    "// 0.0 where a driver would fold arithmetic with a literal, by rules of its own (x * 0.0 is not always "
-    "0.0).\n"
-    "// With the literal in its place bits may differ in rare cases. For the same bits on every device "
-    "define it as\n"
-    "// something that the compiler cannot see through, which is always 0.0: a word of a storage buffer.\n"
-    "#ifndef ISO_ZERO\n#define ISO_ZERO 0.0\n#endif\n\n";
 
 }  // namespace
 
@@ -141,7 +152,7 @@ const Target& target() { return glsl_target; }
 
 std::string functions(const ir::Module& module, uint32_t entry) {
   std::vector<FunctionText> texts;
-  return std::string(uses_hidden_zero(module, entry) ? zero_head : "") + functions(module, entry, texts);
+  return std::string(uses_hidden_zero(module, entry) ? hidden_zero_head : "") + functions(module, entry, texts);
 }
 
 std::string functions(const ir::Module& module, uint32_t entry, std::vector<FunctionText>& texts) {

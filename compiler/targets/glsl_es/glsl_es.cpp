@@ -28,6 +28,7 @@ constexpr Target es_target{
     .kernel = nullptr,
     .kernel_extension = nullptr,
     .binary = nullptr,
+    .pure = [](const PureShader& shader) { return glsl::pure(shader, dialect, target().head); },
 };
 
 }  // namespace

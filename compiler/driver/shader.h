@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// A document as a pure shader: functions that other programs link (emit/pure.h).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/driver/driver.h"
+#include "compiler/emit/target.h"
+
+namespace isoshade::driver {
+
+/// A pass of an effect, by its functions in Shader::pure.
+struct ShaderPass {
+  std::string name;
+  interface::PassState state;
+  size_t shade = 0;
+  std::optional<size_t> move_vertex;
+  graph::PositionSpace position_space{};  ///< of what move_vertex returns
+  std::optional<size_t> enabled;          ///< index of a parameter field; the pass is drawn if it is not 0
+};
+
+/// A document that is compiled to be linked.
+struct Shader {
+  graph::DocumentKind kind{};
+  emit::PureShader pure;
+  ParameterBlock parameters;              ///< of an effect or a post; the words are those of Program's records
+  std::vector<ShaderPass> passes;         ///< of an effect
+  std::vector<std::string> images;        ///< of a post: the names of further input images
+  std::optional<size_t> enabled;          ///< of a post: index of a parameter field
+  std::vector<Field> inputs, outputs;     ///< of a function
+  std::shared_ptr<const check::TypedGraph> typed;
+};
+
+struct ShaderOptions {
+  std::string prefix;  ///< of names; empty: the document's name
+  Division division = Division::native;
+};
+
+/// `source` is a function, effect or post document.
+std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
+                                     const ShaderOptions& shader_options, support::Diagnostics& diagnostics);
+
+/// The shader in a language.
+std::string text(const Shader& shader, const emit::Target& target);
+
+}  // namespace isoshade::driver
