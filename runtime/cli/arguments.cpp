@@ -201,8 +201,16 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                           "Folder to write to; optional with --dump-after");
   compile_app->add_option("--target", compile.targets, "Languages to write: glsl, cpp, spirv, separated by commas")
       ->delimiter(',')
-      ->check(CLI::IsMember({"glsl", "cpp", "spirv"}))
+      ->check(CLI::IsMember({"glsl", "cpp", "spirv", "glsl-es"}))
       ->capture_default_str();
+  compile_app
+      ->add_option("--wrapper", compile.wrapper,
+                   "What stands around the functions: none (for programs of your own), or isoshade (the stages that "
+                   "`render` runs)")
+      ->check(CLI::IsMember({"none", "isoshade"}))
+      ->capture_default_str();
+  compile_app->add_option("--prefix", compile.prefix,
+                          "What names begin with, the namespace in C++; the document's name if not given");
   compile_app->add_option("--division", compile.division, "Division in the GLSL: native or exact")
       ->check(division_names)
       ->capture_default_str();

@@ -45,6 +45,8 @@ struct CompileArguments {
   std::string graph;
   std::string output;
   std::vector<std::string> targets{"glsl", "cpp"};
+  std::string wrapper = "none";
+  std::string prefix;
   std::string division = "native";
   functions::Tier precision = functions::Tier::standard;
   std::string dump_after;

@@ -8,9 +8,11 @@
 
 #include "backends/cpu/compiler.h"
 #include "compiler/driver/driver.h"
+#include "compiler/driver/shader.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/support/visible.h"
 #include "compiler/targets/glsl/spirv.h"
+#include "compiler/targets/targets.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -26,21 +28,40 @@ class Writer {
   Writer(const CompileArguments& arguments, support::Diagnostics& diagnostics)
       : arguments_(arguments), diagnostics_(diagnostics) {}
 
+  driver::Division division() const {
+    return arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
+  }
+
   bool program(const std::string& stem, const driver::Program& program) {
     const bool vertex = program.stage == driver::Stage::vertex;
-    const auto division = arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
     const auto fits = [&](driver::Target target) {
-      return driver::within_limits(program, target, division, diagnostics_);
+      return driver::within_limits(program, target, division(), diagnostics_);
     };
     if (wants("cpp") && !fits(driver::Target::cpu)) return false;
     if (wants("glsl") || wants("spirv")) {
       if (!fits(driver::Target::vulkan)) return false;
-      const std::string text = driver::glsl(program, division);
+      const std::string text = driver::glsl(program, division());
       const std::string name = stem + (vertex ? ".vert" : ".frag");
       if (wants("glsl") && !write(name, text)) return false;
       if (wants("spirv") && !spirv(name, text, program)) return false;
     }
     return !wants("cpp") || write(stem + ".cpp", driver::cpp(program));
+  }
+
+  /// A pure shader in each language.
+  bool shader(const driver::Shader& shader) {
+    for (const std::string& name : arguments_.targets) {
+      const emit::Target* target = targets::find(name);
+      if (target == nullptr) {
+        diagnostics_
+            .report(support::Id::unsupported, "functions without a stage around them have no form in " + name)
+            .suggest("add --wrapper isoshade, or leave out " + name);
+        return false;
+      }
+      if (!driver::within_limits(shader, *target, division(), diagnostics_)) return false;
+      if (!write(shader.pure.name + std::string(target->extension), driver::text(shader, *target))) return false;
+    }
+    return true;
   }
 
   bool headers() {
@@ -217,7 +238,11 @@ int compile(const CompileArguments& arguments, const Common& common) {
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
   const auto kind = source != nullptr ? driver::kind_of(source, diagnostics) : std::nullopt;
   bool done = false;
-  if (kind == graph::DocumentKind::function) {
+  if (kind && arguments.wrapper == "none") {
+    const driver::ShaderOptions shader_options{arguments.prefix, writer.division()};
+    const auto shader = driver::compile_shader(source, options, shader_options, diagnostics);
+    done = shader && writer.shader(*shader);
+  } else if (kind == graph::DocumentKind::function) {
     const auto program = driver::compile_function(source, options, diagnostics);
     done = program && write_function(*program, functions::tier_name(options.tier), writer);
   } else if (kind == graph::DocumentKind::post) {
