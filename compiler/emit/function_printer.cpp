@@ -62,7 +62,7 @@ class FunctionPrinter : private ExpressionPrinter {
       for (const std::string& name : text_.local_names) names_.hold(name);
       for (size_t i = 0; i < function_.parameters.size(); ++i) place(i);
       out += text_.signature;
-      if (text_.loads && !language_.outside().empty() && !out.empty()) out.insert(0, ", ");
+      if (text_.is_given_host && !language_.outside().empty() && !out.empty()) out.insert(0, ", ");
       return;
     }
     std::string group;

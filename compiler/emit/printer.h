@@ -29,6 +29,7 @@ struct FunctionText {
   std::vector<std::string> groups;  ///< the name of the struct of each parameter; empty: a plain parameter
   std::vector<std::string> fields;  ///< the name of each parameter in its struct
   bool loads = false;               ///< it, or one it calls, loads from a buffer or asks the host
+  bool is_given_host = false;       ///< it takes the host, even if it does not ask it
   // Of a pure shader (pure.h):
   std::string noun;       ///< what its result is called; empty: as the function
   std::string host;       ///< the host's function that stands for it; empty: it is printed

@@ -188,6 +188,7 @@ class PurePrinter {
     if (!point(function.kind).empty()) declare(point_name(function.kind), point_record(function.kind), false);
     if (!shader_.parameters.empty()) declare("parameters", parameters_record, true);
     text.has_signature = true;
+    text.is_given_host = true;
   }
 
   /// "vec4 cook_torrance_shade(cook_torrance_Surface surface, cook_torrance_Parameters parameters)"

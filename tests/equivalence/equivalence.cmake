@@ -21,6 +21,7 @@ equivalence_test(posts_test 300)
 equivalence_test(textures_test 300)
 equivalence_test(samples_test 300)
 equivalence_test(views_test 300)
+equivalence_test(pure_test 900)
 
 isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
 target_compile_definitions(text_test PRIVATE ${equivalence_definitions})

@@ -199,7 +199,7 @@ TEST(PassesKeepEveryBit, AnySequence) {
         case 1: cse(m); break;
         case 2: fold(m); break;
         case 3: hide_foldables(m, {}); break;
-        default: renumber(m), dce(m, entries);
+        default: renumber(m), dce(m, entries.functions);
       }
       ASSERT_EQ(ir::validate(m), "");
     }

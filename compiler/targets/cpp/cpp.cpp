@@ -162,7 +162,8 @@ class Cpp final : public Language {
     else
       out.append(text.result_type).append("<F>");
     out.append(" ").append(text.name).append("(");
-    if (text.loads) out += is_linked_ ? "const Host& host" : "const Buffers& buffers";
+    if (text.is_given_host && !text.loads) out += "[[maybe_unused]] ";
+    if (text.loads || text.is_given_host) out += is_linked_ ? "const Host& host" : "const Buffers& buffers";
   }
   void group_value(std::string& out, std::string_view record, bool uniform, bool one_lane) const override {
     out.append(record).append(uniform ? "" : lanes_of(one_lane));
@@ -182,7 +183,7 @@ class Cpp final : public Language {
  private:
   static std::string_view lanes_of(bool uniform) { return uniform ? "<float>" : "<F>"; }
 
-  bool asks_host(const FunctionText& text) const { return is_linked_ && text.loads; }
+  bool asks_host(const FunctionText& text) const { return is_linked_ && (text.loads || text.is_given_host); }
 
   const ir::Function* functions_;
   std::vector<bool> called_;  ///< by function
