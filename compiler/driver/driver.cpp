@@ -274,6 +274,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   Shader shader;
   shader.typed = typed;
   shader.kind = graph.kind;
+  shader.tier = options.tier;
   emit::PureShader& pure = shader.pure;
   pure.name = graph.name;
   pure.document = typed->document;
@@ -329,7 +330,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   return shader;
 }
 
-std::string text(const Shader& shader, const emit::Target& target) {
+emit::PureShader prepared(const Shader& shader, const emit::Target& target) {
   emit::PureShader pure = shader.pure;
   passes::Entries entries{};
   entries.are_linked = true;
@@ -342,8 +343,10 @@ std::string text(const Shader& shader, const emit::Target& target) {
     passes::run(passes::multiplication_lowering(), pure.module, entries, functions::Tier::standard);
   if (target.keeps_calls && operations > cpp::large_program) passes::cut_long(pure.module, cpp::longest_in_large);
   for (size_t i = 0; i < pure.functions.size(); ++i) pure.functions[i].entry = entries[i];
-  return target.pure(pure);
+  return pure;
 }
+
+std::string text(const Shader& shader, const emit::Target& target) { return target.pure(prepared(shader, target)); }
 
 const Program& depth_program() {
   static const Program program = [] {

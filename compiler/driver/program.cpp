@@ -1,50 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/program.h"
 
+#include "compiler/driver/shader.h"
 #include "compiler/ir/expansion.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/visible.h"
 #include "compiler/targets/cpp/cpp.h"
-#include "compiler/targets/cpp/stages.h"
+#include "compiler/targets/glsl/glsl.h"
 #include "compiler/targets/glsl/stages.h"
 
 namespace isoshade::driver {
 
 namespace {
 
-std::string glsl_of(const Program& program, Division division, glsl::EvalIn eval_in) {
-  const emit::Heading heading{program.document, program.name};
-  if (division == Division::native)
-    return glsl::stage(program.module, program.entry, program.stage, heading, eval_in);
-  ir::Module module = program.module;
+/// The program without ops that the language lacks, and with functions that its compilers can take.
+struct Prepared {
+  ir::Module module;
+  uint32_t entry;
+};
+
+Prepared prepared(const Program& program, const emit::Target& target, Division division) {
+  Prepared made{program.module, program.entry};
   passes::Entries entries{program.entry};
-  passes::run(passes::division_lowering(), module, entries, program.tier);
-  return glsl::stage(module, entries[0], program.stage, heading, eval_in);
+  if (division == Division::exact && !target.rounds_division)
+    passes::run(passes::division_lowering(), made.module, entries, program.tier);
+  if (!emit::has_op(target.id, ir::Opcode::imulhi))
+    passes::run(passes::multiplication_lowering(), made.module, entries, program.tier);
+  made.entry = entries[0];
+  if (target.keeps_calls && ir::expanded_operations(made.module, made.entry)[made.entry] > cpp::large_program)
+    passes::cut_long(made.module, cpp::longest_in_large);
+  return made;
 }
 
+emit::Heading heading_of(const Program& program) { return {program.document, program.name}; }
+
 }  // namespace
+
+std::string text(const Program& program, const emit::Target& target, Division division) {
+  const Prepared made = prepared(program, target, division);
+  return target.kernel(made.module, made.entry, program.stage, heading_of(program));
+}
 
 std::string description(const Program& program) {
   return "the " + std::string(lower::name(program.stage)) + " stage of " + support::quote(program.name) +
          (program.document.empty() ? "" : " (" + support::visible(program.document) + ")");
 }
 
-std::string glsl(const Program& program, Division division) {
-  return glsl_of(program, division, glsl::EvalIn::fragment_shader);
-}
+std::string glsl(const Program& program, Division division) { return text(program, glsl::target(), division); }
 
 std::string glsl_with_vertex_eval(const Program& program, Division division) {
-  return glsl_of(program, division, glsl::EvalIn::vertex_shader);
+  const Prepared made = prepared(program, glsl::target(), division);
+  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), glsl::EvalIn::vertex_shader);
 }
 
-std::string cpp(const Program& program) {
-  const emit::Heading heading{program.document, program.name};
-  if (ir::expanded_operations(program.module, program.entry)[program.entry] <= cpp::large_program)
-    return cpp::stage(program.module, program.entry, program.stage, heading);
-  ir::Module module = program.module;
-  passes::cut_long(module, cpp::longest_in_large);
-  return cpp::stage(module, program.entry, program.stage, heading);
-}
+std::string cpp(const Program& program) { return text(program, cpp::target(), Division::native); }
 
 }  // namespace isoshade::driver

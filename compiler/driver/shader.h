@@ -31,6 +31,7 @@ struct Shader {
   std::optional<size_t> enabled;          ///< of a post: index of a parameter field
   std::vector<Field> inputs, outputs;     ///< of a function
   std::shared_ptr<const check::TypedGraph> typed;
+  functions::Tier tier = functions::Tier::standard;
 };
 
 struct ShaderOptions {
@@ -42,6 +43,11 @@ struct ShaderOptions {
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, support::Diagnostics& diagnostics);
 
+/// The shader without ops that the language lacks, and with functions that its compilers can take.
+emit::PureShader prepared(const Shader& shader, const emit::Target& target);
+
+/// A program with the stage around it in a language that has kernels.
+std::string text(const Program& program, const emit::Target& target, Division division);
 /// The shader in a language.
 std::string text(const Shader& shader, const emit::Target& target);
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/emit/forward.h"
 #include "compiler/emit/printer.h"
 #include "compiler/emit/pure.h"
 #include "compiler/emit/target_id.h"
@@ -44,6 +45,7 @@ struct Target {
   bool has_precise;          ///< a declaration can forbid to contract what computes it
   bool has_storage_buffers;  ///< functions can load from arrays of any length
   bool keeps_calls;          ///< its compilers keep large functions as calls; otherwise they expand all calls
+  bool rounds_division;      ///< / and sqrt are correctly rounded wherever it runs
 
   /// Spells the functions that `entry` needs; for print_functions (printer.h).
   std::unique_ptr<Language> (*language)(const ir::Module& module, uint32_t entry);
@@ -52,6 +54,10 @@ struct Target {
   std::string_view (*kernel_extension)(lower::Stage stage);
   const Binary* binary;  ///< null: none
   std::string (*pure)(const PureShader& shader);  ///< a text to include (pure.h)
+  /// A forward pair around a pure shader, and what stands before ".vert" and ".frag" in the names of its files. Null: the
+  /// target has none.
+  ForwardText (*forward)(const ForwardProgram& program);
+  std::string_view forward_infix;
 };
 
 }  // namespace isoshade::emit

@@ -86,8 +86,9 @@ std::vector<ir::Result> results_of(std::span<const interface::Binding> bindings)
 
 }  // namespace
 
-ForwardFunction add_forward_surface(ir::Module& module, std::span<const interface::Binding> bindings) {
-  return add(module, "surface_at", {}, results_of(bindings), [&](Kernel& k, Inputs& inputs) {
+ForwardFunction add_forward_surface(ir::Module& module, std::span<const interface::Binding> bindings,
+                                    const char* name) {
+  return add(module, name, {}, results_of(bindings), [&](Kernel& k, Inputs& inputs) {
     SurfacePoint surface(k, k.constant(0), [&](int width, int word) {
       return inputs.of({Kind::attribute, FrameBuffer::vertices, word, width});
     });

@@ -32,7 +32,8 @@ struct ForwardFunction {
 };
 
 /// Adds a function with the values of these bindings, which are surface attributes, as its results.
-ForwardFunction add_forward_surface(ir::Module& module, std::span<const interface::Binding> bindings);
+ForwardFunction add_forward_surface(ir::Module& module, std::span<const interface::Binding> bindings,
+                                    const char* name = "surface_at");
 /// The same for a post, of bindings that vary by pixel.
 ForwardFunction add_forward_screen(ir::Module& module, std::span<const interface::Binding> bindings);
 /// Adds a function with the direction towards a light of any kind and what arrives from it.

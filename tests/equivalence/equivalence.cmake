@@ -23,6 +23,8 @@ equivalence_test(samples_test 300)
 equivalence_test(views_test 300)
 equivalence_test(pure_test 900)
 
+isoshade_test(forward_test SOURCES equivalence/forward_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
+target_compile_definitions(forward_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 isoshade_test(text_test SOURCES equivalence/text_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
 target_compile_definitions(text_test PRIVATE ${equivalence_definitions})
 

@@ -199,6 +199,7 @@ constexpr Target cpp_target{
     .has_precise = true,  // every operation is, by the flags of the compiler
     .has_storage_buffers = true,
     .keeps_calls = true,
+    .rounds_division = true,
     .language = [](const ir::Module& module, uint32_t entry) -> std::unique_ptr<Language> {
       return std::make_unique<Cpp>(module, std::array{entry});
     },
@@ -206,6 +207,8 @@ constexpr Target cpp_target{
     .kernel_extension = [](lower::Stage) -> std::string_view { return ".cpp"; },
     .binary = nullptr,
     .pure = pure,
+    .forward = nullptr,
+    .forward_infix = "",
 };
 
 constexpr std::string_view zero_head =

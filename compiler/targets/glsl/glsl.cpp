@@ -134,6 +134,7 @@ constexpr Target glsl_target{
     .has_precise = vulkan.has_precise,
     .has_storage_buffers = true,
     .keeps_calls = false,
+    .rounds_division = false,
     .language = [](const ir::Module&, uint32_t) { return language(vulkan); },
     .kernel = [](const ir::Module& module, uint32_t entry, lower::Stage stage,
                  const Heading& heading) { return glsl::stage(module, entry, stage, heading); },
@@ -142,6 +143,8 @@ constexpr Target glsl_target{
     },
     .binary = &spirv,
     .pure = [](const PureShader& shader) { return pure(shader, vulkan, target().head); },
+    .forward = [](const ForwardProgram& program) { return forward(program, vulkan); },
+    .forward_infix = "",
 };
 
 }  // namespace

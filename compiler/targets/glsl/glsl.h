@@ -29,6 +29,8 @@ const emit::Target& target();
 
 /// A pure shader, whole. `head`: Target::head.
 std::string pure(const emit::PureShader& shader, const Dialect& dialect, std::string_view head);
+/// A forward pair, whole.
+emit::ForwardText forward(const emit::ForwardProgram& program, const Dialect& dialect);
 
 /// Defines ISO_ZERO for a text that is not a stage of ours.
 inline constexpr std::string_view hidden_zero_head =

@@ -24,11 +24,14 @@ constexpr Target es_target{
     .has_precise = dialect.has_precise,
     .has_storage_buffers = false,
     .keeps_calls = false,
+    .rounds_division = false,
     .language = [](const ir::Module&, uint32_t) { return glsl::language(dialect); },
     .kernel = nullptr,
     .kernel_extension = nullptr,
     .binary = nullptr,
     .pure = [](const PureShader& shader) { return glsl::pure(shader, dialect, target().head); },
+    .forward = [](const ForwardProgram& program) { return glsl::forward(program, dialect); },
+    .forward_infix = ".es",
 };
 
 }  // namespace
