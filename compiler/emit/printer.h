@@ -34,6 +34,7 @@ struct FunctionText {
   std::string noun;       ///< what its result is called; empty: as the function
   std::string host;       ///< the host's function that stands for it; empty: it is printed
   std::string leading;    ///< what a call's arguments begin with
+  std::vector<std::string_view> asks;  ///< of an entry: the functions of the host that it needs ("light_count")
   bool has_signature = false;  ///< the parameter list is `signature`; each parameter is written as `parameters` say
   std::string signature;
   std::vector<ParameterText> parameters;

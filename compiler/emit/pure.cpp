@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/ir/call_graph.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::emit {
@@ -109,7 +110,7 @@ class PurePrinter {
     std::vector<std::string> signatures;
     for (const PureFunction& function : shader_.functions)
       signatures.push_back(signature_of(function, texts[function.entry]));
-    return pure_.head(shader_, signatures, host_calls(shader_), zero) + pure_.shared(shader_, text.shared) + structs() +
+    return pure_.head(shader_, signatures, host_calls(shader_, shader_.functions), zero) + pure_.shared(shader_, text.shared) + structs() +
            text.own + pure_.tail(shader_);
   }
 
@@ -169,6 +170,8 @@ class PurePrinter {
 
   void write_entry(const PureFunction& function, FunctionText& text) const {
     text.name = function_name(shader_, function, pure_.has_prefix());
+    for (const HostCall call : host_calls(shader_, std::span(&function, 1)))
+      text.asks.push_back(interface::row(call).name);
     if (function.kind == PureKind::function) return;
     const std::vector<ir::Parameter>& parameters = shader_.module.functions[function.entry].parameters;
     for (size_t i = 0; i < parameters.size(); ++i) {
@@ -271,16 +274,21 @@ std::string function_name(const PureShader& shader, const PureFunction& function
   return with_prefix ? shader.prefix + "_" + name : name;
 }
 
-std::vector<HostCall> host_calls(const PureShader& shader) {
+std::vector<HostCall> host_calls(const PureShader& shader, std::span<const PureFunction> functions) {
   std::vector<bool> asked(interface::host_call_count);
   const auto ask = [&](HostCall call) { asked[static_cast<size_t>(call)] = true; };
-  for (const PureFunction& function : shader.functions)
+  std::vector<uint32_t> entries;
+  for (const PureFunction& function : functions) {
+    entries.push_back(function.entry);
     for (const interface::Binding& binding : function.bindings) {
       const interface::Place at = place_of(binding, function.kind == PureKind::function);
       if (const auto* host = std::get_if<place::Host>(&at)) ask(host->call);
     }
-  for (const ir::Function& function : shader.module.functions)
-    if (const auto found = shader.host.find(function.name); found != shader.host.end())
+  }
+  const auto reached = ir::callees_first(shader.module, entries);
+  support::assert_that(reached.has_value(), "a function of a pure shader reaches itself");
+  for (const uint32_t index : *reached)
+    if (const auto found = shader.host.find(shader.module.functions[index].name); found != shader.host.end())
       if (const auto answer = answer_of(found->second)) ask(answer->call);
   std::vector<HostCall> calls;
   for (size_t i = 0; i < asked.size(); ++i)

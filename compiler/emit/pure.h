@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,8 @@ std::string_view point_record(PureKind kind);
 std::vector<PureField> point_fields(const PureShader& shader, PureKind kind);
 /// The name of a function in GLSL. In C++ it is the same in the namespace, without the prefix.
 std::string function_name(const PureShader& shader, const PureFunction& function, bool with_prefix);
-/// What the shader asks its host for, in the order of host.def.
-std::vector<interface::HostCall> host_calls(const PureShader& shader);
+/// What functions of the shader ask their host for, in the order of host.def.
+std::vector<interface::HostCall> host_calls(const PureShader& shader, std::span<const PureFunction> functions);
 
 /// How a language writes what stands around the functions of a pure shader.
 class PureLanguage {

@@ -153,6 +153,12 @@ class Cpp final : public Language {
                      bool) const override {
     const auto index = static_cast<size_t>(&function - functions_);
     out += asks_host(text) ? "template <class F, class Host>\n" : "template <class F>\n";
+    for (size_t i = 0; i < text.asks.size(); ++i)
+      out.append(i == 0 ? "  requires " : " &&\n           ")
+          .append("isoshade::gives::")
+          .append(text.asks[i])
+          .append("<Host, F>")
+          .append(i + 1 == text.asks.size() ? "\n" : "");
     out += called_[index] ? "ISOSHADE_NOINLINE static " : "ISOSHADE_INLINE ";
     declaration(out, function, text);
   }
