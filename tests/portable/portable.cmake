@@ -5,3 +5,11 @@ isoshade_test(portable_test
   LABEL conformance
   TIMEOUT 600)
 target_compile_definitions(portable_test PRIVATE ISOSHADE_ROOT="${PROJECT_SOURCE_DIR}")
+
+# Links three effects, as `isoshade compile` writes them, into one program.
+isoshade_test(effects_test SOURCES portable/effects_test.cpp LABEL conformance TIMEOUT 300)
+add_dependencies(effects_test isoshade)
+target_compile_definitions(effects_test PRIVATE
+  ISOSHADE_COMMAND="$<TARGET_FILE:isoshade>"
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
+  ISOSHADE_ROOT="${PROJECT_SOURCE_DIR}")

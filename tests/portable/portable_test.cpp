@@ -17,6 +17,7 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/process.h"
 #include "compiler/support/temporary.h"
+#include "runtime/lanes/host.h"
 #include "runtime/lanes/lanes.h"
 #include "tests/conformance/cases.h"
 #include "tests/unit/lanes_operands.h"
@@ -329,6 +330,51 @@ TEST_P(Portable, OnlyProductsJustBelowTheLeastNormalTellWhereFlushingHappens) {
     }
   }
   EXPECT_EQ(operations, 6) << text;
+}
+
+/// A host with every member of host.def, as host.h documents them.
+struct WholeHost {
+  template <class F>
+  using vec3 = lanes::vec3<F>;
+  template <class I>
+  using texel_of = lanes::vec4<lanes::float_of<I>>;
+
+  int light_count() const { return 0; }
+  template <class F>
+  Light<F> light(int, vec3<F>) const;
+  template <class F>
+  Light<F> light_change(int, vec3<F>, vec3<F>) const;
+  template <class I>
+  texel_of<I> texel(I, I, I) const;
+  template <class I>
+  ImageSize<I> image_size(I) const;
+  float time() const;
+  vec3<float> world_from_object(int) const;
+  vec3<float> object_from_world(int) const;
+  vec3<float> view_from_world(int) const;
+  vec3<float> world_from_view(int) const;
+  template <class I>
+  texel_of<I> picture(int, I, I) const;
+  int picture_width(int) const;
+  int picture_height(int) const;
+  template <class I>
+  lanes::float_of<I> depth(I, I) const;
+  int depth_width() const;
+  int depth_height() const;
+  lanes::vec2<float> screen_size() const;
+  vec3<float> camera_position() const;
+  vec3<float> camera_direction() const;
+  lanes::vec2<float> depth_numerator() const;
+  lanes::vec2<float> depth_denominator() const;
+};
+struct EmptyHost {};
+
+TEST(HostHeader, HasAConceptForEveryRowOfHostDef) {
+#define HOST(name, result, parameters, doc)                           \
+  EXPECT_TRUE((gives::name<WholeHost, float>)) << #name;              \
+  EXPECT_TRUE((gives::name<WholeHost, lanes::Float<4, 2>>)) << #name; \
+  EXPECT_FALSE((gives::name<EmptyHost, float>)) << #name;
+#include "compiler/interface/host.def"
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, Portable, testing::Values(x86, aarch64),
