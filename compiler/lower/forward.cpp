@@ -24,6 +24,27 @@ ir::Type type_of(const ForwardInput& input) {
   support::bug("no such input");
 }
 
+/// Which value of its record it is: "object_normal_0".
+std::string name_of(const ForwardInput& input) {
+  const auto inside = [&](const ir::RecordField& field) {
+    return static_cast<uint32_t>(input.word) >= field.first && static_cast<uint32_t>(input.word) < field.first + field.words;
+  };
+  switch (input.kind) {
+    case Kind::attribute: return "attribute";
+    case Kind::pixel: return input.word == 0 ? "x" : "y";
+    case Kind::index: return "index";
+    case Kind::position: return "position";
+    case Kind::words: break;
+  }
+  for (const ir::RecordField& field : fields_of(input.buffer))
+    if (inside(field))
+      return field.name + (field.words == static_cast<uint32_t>(input.width)
+                               ? ""
+                               : "_" + std::to_string((static_cast<uint32_t>(input.word) - field.first) /
+                                                      static_cast<uint32_t>(input.width)));
+  return "size";
+}
+
 /// Lights are chosen by an index; all else that is not of a point is the same for a whole draw.
 bool is_uniform(const ForwardInput& input) {
   return input.kind == Kind::words && input.buffer != FrameBuffer::lights;
@@ -60,7 +81,7 @@ ForwardFunction add(ir::Module& module, const char* name, std::vector<ForwardInp
   const auto build = [&](ir::Module& into, bool records) {
     std::vector<ir::Parameter> parameters;
     for (size_t i = 0; i < inputs.size(); ++i)
-      parameters.push_back({"input" + std::to_string(i), type_of(inputs[i]), "", is_uniform(inputs[i])});
+      parameters.push_back({name_of(inputs[i]), type_of(inputs[i]), "", is_uniform(inputs[i])});
     Kernel k(into, name, std::move(parameters), results);
     Inputs given(k, inputs, records);
     k.read_words_from([&](FrameBuffer buffer, int word, int width) {

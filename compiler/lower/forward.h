@@ -41,6 +41,10 @@ ForwardFunction add_forward_light(ir::Module& module);
 
 // In the files of the kernels that these are parts of:
 
+/// The words of a buffer's records that emitted text names. Records of vertices are read through functions that get the
+/// first word of an attribute; `objects` of a post and `layers` have no such records.
+std::vector<ir::RecordField> fields_of(FrameBuffer buffer);
+
 /// The unit direction towards the light whose record begins at `record`, and the radiance that arrives from it.
 std::array<ir::ValueId, 2> light_values(Kernel& kernel, Int record, Vec3 position, LightKinds kinds);
 /// The value of each binding, in a kernel whose first parameters are x and y.

@@ -172,8 +172,6 @@ std::string_view name(Stage stage) {
   return names[static_cast<size_t>(stage)];
 }
 
-/// The words of a buffer's records that emitted text names. Records of vertices are read through functions that get the
-/// first word of an attribute; `objects` of a post and `layers` have no such records.
 std::vector<ir::RecordField> fields_of(FrameBuffer buffer) {
   switch (buffer) {
     case FrameBuffer::triangles:

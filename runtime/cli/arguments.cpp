@@ -3,9 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/parse_number.h"
+#include "compiler/targets/targets.h"
 #include "runtime/cli/places.h"
 
 namespace isoshade::cli {
@@ -159,6 +161,21 @@ std::string near_subcommand(const CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
+/// The names of all targets, and each with what it is.
+static std::pair<std::vector<std::string>, std::string> target_texts() {
+  std::vector<std::string> names;
+  std::string docs;
+  const auto add = [&](std::string_view name, std::string_view doc) {
+    names.emplace_back(name);
+    docs.append(docs.empty() ? "" : ", ").append(name).append(" (").append(doc).append(")");
+  };
+  for (const emit::Target* target : targets::all()) {
+    add(target->name, target->doc);
+    if (target->binary != nullptr) add(target->binary->name, target->binary->doc);
+  }
+  return {names, docs};
+}
+
 std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   CLI::App app(
       "Compiles shader graphs to GLSL and C++, renders scenes with both, and proves the images identical.",
@@ -199,16 +216,27 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   compile_app->add_option("GRAPH", compile.graph, "A function, effect or post document")->required();
   compile_app->add_option("-o,--output", compile.output,
                           "Folder to write to; optional with --dump-after");
-  compile_app->add_option("--target", compile.targets, "Languages to write: glsl, cpp, spirv, separated by commas")
+  const auto [target_names, target_docs] = target_texts();
+  compile_app->add_option("--target", compile.targets, "Languages to write, separated by commas: " + target_docs)
       ->delimiter(',')
-      ->check(CLI::IsMember({"glsl", "cpp", "spirv", "glsl-es"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember(target_names))
+      ->default_str("glsl,cpp");
+  static const std::map<std::string, Wrapper> wrappers{
+      {"none", Wrapper::none}, {"isoshade", Wrapper::isoshade}, {"forward", Wrapper::forward}};
   compile_app
       ->add_option("--wrapper", compile.wrapper,
-                   "What stands around the functions: none (for programs of your own), or isoshade (the stages that "
-                   "`render` runs)")
-      ->check(CLI::IsMember({"none", "isoshade"}))
-      ->capture_default_str();
+                   "What stands around the functions: none (for programs of your own), isoshade (the stages that "
+                   "`render` runs) or forward (an ordinary vertex and fragment shader, outside the contract)")
+      ->transform(CLI::CheckedTransformer(wrappers).description("{none,isoshade,forward}"))
+      ->type_name("TEXT")
+      ->default_str("none");
+  static const std::map<std::string, bool> samplings{{"fetch", false}, {"samplers", true}};
+  compile_app
+      ->add_option("--sampling", compile.hardware_samplers,
+                   "How a forward shader reads images: fetch (isoshade's own filters) or samplers (the hardware's)")
+      ->transform(CLI::CheckedTransformer(samplings).description("{fetch,samplers}"))
+      ->type_name("TEXT")
+      ->default_str("fetch");
   compile_app->add_option("--prefix", compile.prefix,
                           "What names begin with, the namespace in C++; the document's name if not given");
   compile_app->add_option("--division", compile.division, "Division in the GLSL: native or exact")

@@ -2,6 +2,7 @@
 // The parsed command line. Only arguments.cpp includes CLI11, which takes longer to compile than the rest together.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,11 +42,15 @@ struct SceneChanges {
   std::optional<int> samples;         ///< per pixel
 };
 
+/// What `compile` writes around the functions of a document.
+enum class Wrapper : uint8_t { none, isoshade, forward };
+
 struct CompileArguments {
   std::string graph;
   std::string output;
-  std::vector<std::string> targets{"glsl", "cpp"};
-  std::string wrapper = "none";
+  std::vector<std::string> targets;  ///< empty: all usual ones that have such a wrapper, glsl and cpp
+  Wrapper wrapper = Wrapper::none;
+  bool hardware_samplers = false;  ///< of a forward pair
   std::string prefix;
   std::string division = "native";
   functions::Tier precision = functions::Tier::standard;

@@ -8,10 +8,10 @@
 
 #include "backends/cpu/compiler.h"
 #include "compiler/driver/driver.h"
+#include "compiler/driver/forward.h"
 #include "compiler/driver/shader.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/support/visible.h"
-#include "compiler/targets/glsl/spirv.h"
 #include "compiler/targets/targets.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
@@ -32,36 +32,48 @@ class Writer {
     return arguments_.division == "exact" ? driver::Division::exact : driver::Division::native;
   }
 
+  /// A kernel in each language.
   bool program(const std::string& stem, const driver::Program& program) {
-    const bool vertex = program.stage == driver::Stage::vertex;
-    const auto fits = [&](driver::Target target) {
-      return driver::within_limits(program, target, division(), diagnostics_);
-    };
-    if (wants("cpp") && !fits(driver::Target::cpu)) return false;
-    if (wants("glsl") || wants("spirv")) {
-      if (!fits(driver::Target::vulkan)) return false;
-      const std::string text = driver::glsl(program, division());
-      const std::string name = stem + (vertex ? ".vert" : ".frag");
-      if (wants("glsl") && !write(name, text)) return false;
-      if (wants("spirv") && !spirv(name, text, program)) return false;
-    }
-    return !wants("cpp") || write(stem + ".cpp", driver::cpp(program));
+    return for_each_target([&](const emit::Target& target, bool is_text, const emit::Binary* binary) {
+      if (target.kernel == nullptr) return cannot(target.name, "stages for isoshade's own renderer");
+      const auto backend = target.keeps_calls ? driver::Target::cpu : driver::Target::vulkan;
+      if (!driver::within_limits(program, backend, division(), diagnostics_)) return false;
+      const std::string text = driver::text(program, target, division());
+      const std::string name = stem + std::string(target.kernel_extension(program.stage));
+      if (is_text && !write(name, text)) return false;
+      if (binary == nullptr) return true;
+      const auto bytes = binary->compile(text, program.stage, diagnostics_, driver::description(program));
+      return bytes && write(name + std::string(binary->extension), *bytes);
+    });
   }
 
   /// A pure shader in each language.
   bool shader(const driver::Shader& shader) {
-    for (const std::string& name : arguments_.targets) {
-      const emit::Target* target = targets::find(name);
-      if (target == nullptr) {
-        diagnostics_
-            .report(support::Id::unsupported, "functions without a stage around them have no form in " + name)
-            .suggest("add --wrapper isoshade, or leave out " + name);
-        return false;
-      }
-      if (!driver::within_limits(shader, *target, division(), diagnostics_)) return false;
-      if (!write(shader.pure.name + std::string(target->extension), driver::text(shader, *target))) return false;
+    return for_each_target([&](const emit::Target& target, bool, const emit::Binary* binary) {
+      if (binary != nullptr) return cannot(binary->name, "functions to include", "; or add --wrapper isoshade");
+      return driver::within_limits(shader, target, division(), diagnostics_) &&
+             write(shader.pure.name + std::string(target.extension), driver::text(shader, target));
+    });
+  }
+
+  /// The forward pairs in each language.
+  bool forward(const driver::Shader& shader) {
+    if (shader.kind == graph::DocumentKind::function) {
+      diagnostics_.report(support::Id::unsupported, "a function has no vertices and pixels to stand around it")
+          .suggest("leave out --wrapper forward");
+      return false;
     }
-    return true;
+    return for_each_target([&](const emit::Target& target, bool, const emit::Binary* binary) {
+      if (binary != nullptr || target.forward == nullptr)
+        return cannot(binary != nullptr ? binary->name : target.name, "forward shaders");
+      if (!driver::within_limits(shader, target, division(), diagnostics_)) return false;
+      const auto sampling = arguments_.hardware_samplers ? emit::ForwardSampling::samplers : emit::ForwardSampling::fetch;
+      for (const driver::ForwardPair& pair : driver::forward_pairs(shader, target, sampling)) {
+        const std::string stem = pair.stem + std::string(target.forward_infix);
+        if (!write(stem + ".vert", pair.text.vertex) || !write(stem + ".frag", pair.text.fragment)) return false;
+      }
+      return true;
+    });
   }
 
   bool headers() {
@@ -104,15 +116,27 @@ class Writer {
   }
 
   bool wants(std::string_view target) const {
-    return std::ranges::find(arguments_.targets, target) != arguments_.targets.end();
+    if (!arguments_.targets.empty())
+      return std::ranges::find(arguments_.targets, target) != arguments_.targets.end();
+    return target == "glsl" || (target == "cpp" && arguments_.wrapper != Wrapper::forward);
   }
 
-  bool spirv(const std::string& name, const std::string& text, const driver::Program& program) {
-    const bool vertex = program.stage == driver::Stage::vertex;
-    const auto kind = vertex ? glsl::ShaderKind::vertex : glsl::ShaderKind::fragment;
-    const auto words = glsl::compile_spirv(text, kind, diagnostics_, driver::description(program));
-    if (!words) return false;
-    return write(name + ".spv", {reinterpret_cast<const char*>(words->data()), 4 * words->size()});
+  /// Calls `write` for each language of which the text or the binary form is wanted.
+  template <class Write>
+  bool for_each_target(Write write) {
+    for (const emit::Target* target : targets::all()) {
+      const bool is_text = wants(target->name);
+      const bool is_binary = target->binary != nullptr && wants(target->binary->name);
+      if ((is_text || is_binary) && !write(*target, is_text, is_binary ? target->binary : nullptr)) return false;
+    }
+    return true;
+  }
+
+  bool cannot(std::string_view target, std::string_view what, std::string_view other_fix = "") {
+    diagnostics_
+        .report(support::Id::unsupported, "there are no " + std::string(what) + " in " + std::string(target))
+        .suggest("leave " + std::string(target) + " out of --target" + std::string(other_fix));
+    return false;
   }
 
   const CompileArguments& arguments_;
@@ -238,10 +262,11 @@ int compile(const CompileArguments& arguments, const Common& common) {
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
   const auto kind = source != nullptr ? driver::kind_of(source, diagnostics) : std::nullopt;
   bool done = false;
-  if (kind && arguments.wrapper == "none") {
+  if (kind && arguments.wrapper != Wrapper::isoshade) {
     const driver::ShaderOptions shader_options{arguments.prefix, writer.division()};
     const auto shader = driver::compile_shader(source, options, shader_options, diagnostics);
-    done = shader && writer.shader(*shader);
+    const bool is_pure = arguments.wrapper == Wrapper::none;
+    done = shader && (is_pure ? writer.shader(*shader) : writer.forward(*shader));
   } else if (kind == graph::DocumentKind::function) {
     const auto program = driver::compile_function(source, options, diagnostics);
     done = program && write_function(*program, functions::tier_name(options.tier), writer);

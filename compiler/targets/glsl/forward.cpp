@@ -22,7 +22,6 @@ namespace {
 constexpr int levels = 16;
 
 std::string number(size_t value) { return std::to_string(value); }
-std::string swizzle(int width) { return width == 1 ? "" : std::string(".") + std::string("xyzw").substr(0, static_cast<size_t>(width)); }
 
 class Pair {
  public:
@@ -143,7 +142,7 @@ class Pair {
   /// How a parameter of a function of this wrapper is written; `attribute` is what names of attributes begin with.
   ParameterText text_of(const ForwardInput& input, std::string_view attribute) const {
     switch (input.kind) {
-      case ForwardInput::Kind::attribute: return {std::string(attribute) + std::string(field_of(input)) + swizzle(input.width)};
+      case ForwardInput::Kind::attribute: return {std::string(attribute) + std::string(field_of(input))};
       case ForwardInput::Kind::pixel: return {input.word == 0 ? "x" : "y"};
       case ForwardInput::Kind::index: return {"index"};
       case ForwardInput::Kind::position: return {"position"};
@@ -234,7 +233,7 @@ class Pair {
           "  return column == 0 ? cross(m[1], m[2]) : column == 1 ? cross(m[2], m[0]) : cross(m[0], m[1]);\n}\n\n";
     const LinkedNames names{own(""), pure_.tier.empty() ? "" : "_" + pure_.tier, {}};
     const LinkedText text = print_linked(program_.module, entries, *language(dialect_), names, texts);
-    return out + text.shared + text.own + "\n";
+    return out + text.shared + "\n" + text.own + "\n";
   }
 
   /// Fills the struct that the functions of a kind take.
