@@ -354,8 +354,12 @@ LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entr
   for (const uint32_t index : order)
     if (!module.functions[index].library.empty()) texts[index].name = library.take(module.functions[index]);
   for (const uint32_t index : order)
-    if (texts[index].name.empty() && texts[index].host.empty())
-      texts[index].name = globals.take_own(names.prefix + (texts[index].noun = module.functions[index].name));
+    if (texts[index].name.empty() && texts[index].host.empty()) {
+      const ir::Function& function = module.functions[index];
+      texts[index].noun = function.name;
+      const std::string wanted = names.prefix + function.name;
+      texts[index].name = function.document.empty() ? globals.take_own(wanted) : globals.take(wanted);
+    }
   printer.settle(names.prefix);
   LinkedText made;
   std::string checks;

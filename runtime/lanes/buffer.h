@@ -22,9 +22,9 @@ struct IntBuffer {
 
 /// The index, or the last one where it is outside of [0, size), also below 0: lanes that take no part in a
 /// branch may hold any index, and must not read outside.
-template <class I>
-ISOSHADE_INLINE I clamp_index(I index, int size) {
-  return select(unsigned_less(index, size), index, I(size - 1));
+template <class Ints>
+ISOSHADE_INLINE Ints clamp_index(Ints index, int size) {
+  return select(unsigned_less(index, size), index, Ints(size - 1));
 }
 
 ISOSHADE_INLINE float load(FloatBuffer buffer, int index) {
@@ -79,10 +79,10 @@ ISOSHADE_INLINE F load_lanes(const float* from) {
   read(from, result);
   return result;
 }
-/// lane_count<I> ints from here on.
-template <class I>
-ISOSHADE_INLINE I load_lanes(const int* from) {
-  I result;
+/// lane_count<Ints> ints from here on.
+template <class Ints>
+ISOSHADE_INLINE Ints load_lanes(const int* from) {
+  Ints result;
   read(from, result);
   return result;
 }
@@ -122,10 +122,10 @@ ISOSHADE_INLINE void number_lanes(Int<W, 2>& lanes) {
   lanes.high = lanes.low + W;
 }
 
-/// 0, 1, 2, ... lane_count<I> - 1; in the order of load_lanes.
-template <class I>
-ISOSHADE_INLINE I lane_index() {
-  I result;
+/// 0, 1, 2, ... lane_count<Ints> - 1; in the order of load_lanes.
+template <class Ints>
+ISOSHADE_INLINE Ints lane_index() {
+  Ints result;
   number_lanes(result);
   return result;
 }

@@ -15,8 +15,8 @@
 //     int light_count() const { return 1; }
 //     template <class F>
 //     isoshade::Light<F> light(int index, isoshade::lanes::vec3<F> position) const;
-//     template <class I>
-//     isoshade::lanes::vec4<isoshade::lanes::float_of<I>> texel(I image, I x, I y) const;
+//     template <class Ints>
+//     isoshade::lanes::vec4<isoshade::lanes::float_of<Ints>> texel(Ints image, Ints x, Ints y) const;
 //   };
 //
 // What holds for lanes (lanes.h) holds for shaders and hosts: no float that a member returns or a struct holds is
@@ -36,11 +36,11 @@ struct Light {
 };
 
 /// The size of an image in texels.
-template <class I>
+template <class Ints>
 struct ImageSize {
-  I width;
-  I height;
-  I smaller;  ///< how many smaller mip levels it has: the images image + 1, image + 2, ...
+  Ints width;
+  Ints height;
+  Ints smaller;  ///< how many smaller mip levels it has: the images image + 1, image + 2, ...
 };
 template <class F>
 using ImageSizeOf = ImageSize<lanes::int_of<F>>;

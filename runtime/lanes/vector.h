@@ -33,7 +33,7 @@ template <int W>
 struct Bool<W, 1> {
   using Raw = typename Register<W>::Mask;
   using F = Float<W, 1>;
-  using I = Int<W, 1>;
+  using Ints = Int<W, 1>;
 
   Raw raw;
 
@@ -59,7 +59,7 @@ struct Bool<W, 1> {
   ISOSHADE_INLINE friend Bool select(bool c, Bool a, Bool b) { return c ? a : b; }
   ISOSHADE_INLINE friend Bool select(Bool c, bool a, bool b) { return select(c, Bool(a), Bool(b)); }
   ISOSHADE_INLINE friend F select(Bool c, float a, float b) { return select(c, F(a), F(b)); }
-  ISOSHADE_INLINE friend I select(Bool c, int a, int b) { return select(c, I(a), I(b)); }
+  ISOSHADE_INLINE friend Ints select(Bool c, int a, int b) { return select(c, Ints(a), Ints(b)); }
 };
 
 template <int W>
@@ -189,7 +189,7 @@ template <int W>
 struct Bool<W, 2> {
   using Half = Bool<W, 1>;
   using F = Float<W, 2>;
-  using I = Int<W, 2>;
+  using Ints = Int<W, 2>;
 
   Half low, high;
 
@@ -211,7 +211,7 @@ struct Bool<W, 2> {
   ISOSHADE_INLINE friend Bool select(bool c, Bool a, Bool b) { return c ? a : b; }
   ISOSHADE_INLINE friend Bool select(Bool c, bool a, bool b) { return select(c, Bool(a), Bool(b)); }
   ISOSHADE_INLINE friend F select(Bool c, float a, float b) { return select(c, F(a), F(b)); }
-  ISOSHADE_INLINE friend I select(Bool c, int a, int b) { return select(c, I(a), I(b)); }
+  ISOSHADE_INLINE friend Ints select(Bool c, int a, int b) { return select(c, Ints(a), Ints(b)); }
 };
 
 template <int W>

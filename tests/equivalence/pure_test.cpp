@@ -489,7 +489,7 @@ void expect_cpp_gives(const Subjects& subjects, const std::vector<std::vector<in
     write(folder.path() / (shader->pure.prefix + ".h"), driver::text(*shader, *targets::find("cpp")));
     program += "#include \"" + shader->pure.prefix + ".h\"\n";
   }
-  program += "namespace {\nusing namespace isoshade::lanes;\n" + std::string(cpp_host);
+  program += "namespace {\nusing namespace isoshade::lanes;\nusing namespace isoshade::shaders;\n" + std::string(cpp_host);
   std::string calls;
   for (size_t i = 0; i < subjects.all.size(); ++i) {
     const Subject& subject = subjects.all[i];

@@ -9,7 +9,9 @@
 #include <sstream>
 
 #include "compiler/graph/graph.h"
+#include "compiler/targets/glsl/glsl.h"
 #include "compiler/targets/glsl/spirv.h"
+#include "compiler/targets/targets.h"
 
 namespace isoshade::names {
 namespace {
@@ -64,6 +66,21 @@ std::string said(const std::string& command) {
   return status == 0 ? "" : "exit " + std::to_string(status) + "\n" + text;
 }
 
+/// Functions of a host, which answer anything.
+std::string host_of(const driver::Shader& shader) {
+  std::string text;
+  for (const interface::HostCall call : host_calls(shader.pure)) {
+    const interface::HostRow& asked = interface::row(call);
+    const std::string type = (asked.returns_record() ? "isoshade_" : "") + std::string(asked.result);
+    const std::string value = asked.result == "Light"       ? "vec3(0.0), vec3(1.0)"
+                              : asked.result == "ImageSize" ? "1, 1, 0"
+                                                            : "1";
+    text += type + " isoshade_" + std::string(asked.name) + "(" + std::string(asked.parameters) + ") { return " + type +
+            "(" + value + "); }\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 bool is_full() { return std::getenv("ISOSHADE_FULL") != nullptr; }
@@ -84,8 +101,28 @@ void Texts::add(const driver::Program& program) {
   cpp_.push_back(driver::cpp(program));
 }
 
+void Texts::add(const driver::Shader& shader) {
+  support::Diagnostics diagnostics;
+  const std::string text = glsl::head() + driver::text(shader, *targets::find("glsl")) + host_of(shader) +
+                           "layout(location = 0) out vec4 the_color;\nvoid main() { the_color = vec4(1.0); }\n";
+  EXPECT_TRUE(glsl::compile_spirv(text, glsl::ShaderKind::fragment, diagnostics))
+      << diagnostics.text() << text.substr(0, 20000);
+  ++glsl_;
+  headers_.push_back({shader.pure.prefix, driver::text(shader, *targets::find("cpp"))});
+  replace(headers_.back().text, "#pragma once", "");
+}
+
 void Texts::compile() {
   const Folder folder;
+  const auto take = [&](const std::string& compiler, const std::string& text) {
+    const std::string path = folder.file("texts.cpp");
+    std::ofstream(path) << text;
+    EXPECT_EQ(said(compiler +
+                   " -std=gnu++20 -Wall -Wextra -Werror -Wno-unused-function -fsyntax-only -I " ISOSHADE_ROOT "/include " +
+                   path),
+              "")
+        << compiler;
+  };
   const auto compile = [&](const std::string& compiler, size_t every) {
     constexpr size_t most_bytes = 1'500'000;
     size_t count = 0;
@@ -97,15 +134,15 @@ void Texts::compile() {
         replace(text, "extern \"C\" __attribute__((visibility(\"default\"))) void", "void");
         file += "namespace text_" + std::to_string(i) + " {\n" + text + "}\n";
       }
-      const std::string path = folder.file("texts.cpp");
-      std::ofstream(path) << file;
-      EXPECT_EQ(
-          said(compiler +
-               " -std=gnu++20 -Wall -Wextra -Werror -Wno-unused-function -fsyntax-only -I " ISOSHADE_ROOT
-               "/include " +
-               path),
-          "")
-          << compiler;
+      take(compiler, file);
+    }
+    // Namespaces of a file have different names.
+    for (size_t i = 0; i < headers_.size();) {
+      std::string file = "#include \"isoshade/lanes/host.h\"\n#include \"isoshade/lanes/lanes.h\"\n" + includes();
+      std::set<std::string> spaces;
+      for (; i < headers_.size() && file.size() < most_bytes && spaces.insert(headers_[i].space).second; i += every, ++count)
+        file += headers_[i].text;
+      take(compiler, file);
     }
     return count;
   };

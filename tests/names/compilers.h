@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/driver/program.h"
+#include "compiler/driver/shader.h"
 
 namespace isoshade::names {
 
@@ -17,16 +17,22 @@ bool is_full();
 class Texts {
  public:
   void add(const driver::Program& program);
+  void add(const driver::Shader& shader);
   /// g++ over every text of C++, many in each file, after the headers of the standard libraries; and clang++.
   void compile();
 
   size_t glsl_count() const { return glsl_; }
-  size_t cpp_count() const { return cpp_.size(); }
+  size_t cpp_count() const { return cpp_.size() + headers_.size(); }
   size_t clang_count() const { return clang_; }
 
  private:
   size_t glsl_ = 0, clang_ = 0;
   std::vector<std::string> cpp_;
+  struct Header {
+    std::string space;  ///< its namespace
+    std::string text;
+  };
+  std::vector<Header> headers_;  ///< pure shaders
 };
 
 /// Every macro that g++ has after those headers.

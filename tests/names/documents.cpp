@@ -45,6 +45,7 @@ class Compiler {
   void function(const std::string& members) {
     if (auto program = driver::compile_function(source(members), options_, diagnostics_))
       made_.programs.push_back(std::move(*program));
+    shader(members);
   }
   /// Of passes beyond the first only the last is kept: the others have the same text but for its heading.
   void effect(const std::string& members) {
@@ -53,19 +54,25 @@ class Compiler {
     if (effect->passes[0].moves_vertices) made_.programs.push_back(std::move(effect->passes[0].vertex));
     made_.programs.push_back(std::move(effect->passes[0].pixel));
     if (effect->passes.size() > 1) made_.programs.push_back(std::move(effect->passes.back().pixel));
+    shader(members);
   }
   void post(const std::string& members) {
     if (auto post = driver::compile_post(source(members), options_, diagnostics_))
       made_.programs.push_back(std::move(post->program));
+    shader(members);
   }
 
   Made made() {
-    if (diagnostics_.has_errors()) made_.programs.clear();
+    if (diagnostics_.has_errors()) made_ = {};
     made_.messages = diagnostics_.text();
     return std::move(made_);
   }
 
  private:
+  void shader(const std::string& members) {
+    if (auto shader = driver::compile_shader(source(members), options_, {}, diagnostics_))
+      made_.shaders.push_back(std::move(*shader));
+  }
   static support::Source source(const std::string& members) {
     return std::make_shared<support::SourceFile>("odd/the_document.json",
                                                  R"({"isoshade": 1, )" + members + "}");

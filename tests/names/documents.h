@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "compiler/driver/driver.h"
+#include "compiler/driver/shader.h"
 #include "tests/names/words.h"
 
 namespace isoshade::names {
 
 struct Made {
   std::vector<driver::Program> programs;  ///< none: it did not compile
+  std::vector<driver::Shader> shaders;    ///< the same documents as pure shaders
   std::string messages;                   ///< then why
 };
 

@@ -20,6 +20,7 @@ class NameCase {
   void add(const Made& made) {
     ASSERT_TRUE(made.programs.size() > 0) << made.messages;
     for (const driver::Program& program : made.programs) texts_.add(program);
+    for (const driver::Shader& shader : made.shaders) texts_.add(shader);
   }
   void count(size_t words) { words_ += words; }
 

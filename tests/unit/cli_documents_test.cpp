@@ -36,15 +36,50 @@ TEST_F(Cli, TableErrorsHaveAPosition) {
 }
 
 TEST_F(Cli, CompiledFilesNeedNoSourceTree) {
-  const Outcome outcome =
-      run("compile " + graphs + "/materials/cook_torrance.json --target glsl,cpp,spirv -o " + file("out"));
+  const std::string command = "compile " + graphs + "/materials/cook_torrance.json -o " + file("out");
+  EXPECT_EQ(run(command).exit, 0);
+  const Outcome outcome = run(command + " --wrapper isoshade --target glsl,cpp,spirv");
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
   for (const char* name :
-       {"cook_torrance.base.pixel.frag", "cook_torrance.base.pixel.frag.spv", "cook_torrance.base.pixel.cpp",
+       {"cook_torrance.glsl", "cook_torrance.h", "cook_torrance.base.pixel.frag", "cook_torrance.base.pixel.frag.spv", "cook_torrance.base.pixel.cpp",
         "cook_torrance.base.vertex.vert", "cook_torrance.json", "isoshade/lanes/lanes.h"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   const std::string compiler = "c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " + file("out") + " ";
   EXPECT_EQ(std::system((compiler + file("out") + "/cook_torrance.base.pixel.cpp").c_str()), 0);
+  const std::string user = file("user.cpp", "#include \"cook_torrance.h\"\nint main() {}\n");
+  EXPECT_EQ(std::system((compiler + user).c_str()), 0);
+}
+
+TEST_F(Cli, PrefixNamesAllThatAShaderDefines) {
+  const std::string command = "compile " + graphs + "/effects/flat.json -q -o " + file("out") + " --target glsl,cpp --prefix ";
+  EXPECT_EQ(run(command + "mine").exit, 0);
+  const std::string glsl = read(folder_ / "out" / "flat.glsl"), cpp = read(folder_ / "out" / "flat.h");
+  EXPECT_NE(glsl.find(" mine_shade(mine_"), std::string::npos) << glsl;
+  EXPECT_EQ(glsl.find(" flat_"), std::string::npos) << glsl;
+  EXPECT_NE(cpp.find("namespace isoshade::shaders::mine {"), std::string::npos) << cpp;
+  // A prefix is data: it becomes an identifier that neither language reserves.
+  EXPECT_EQ(run(command + "'int; } evil {'").exit, 0);
+  EXPECT_NE(read(folder_ / "out" / "flat.h").find("namespace isoshade::shaders::int_evil {"), std::string::npos);
+}
+
+TEST_F(Cli, CompiledTextsAreTheSameInEveryWorkingDirectory) {
+  const std::string graph = fs::canonical(graphs + "/materials/textured.json").string();
+  std::vector<std::string> texts;
+  for (const std::string& there : {std::string("/"), fs::path(graph).parent_path().string()}) {
+    const std::string name = there == "/" ? graph : "textured.json";
+    const Outcome outcome =
+        run_command("cd " + there + " && " + std::string(ISOSHADE_COMMAND) + " compile " + name + " -q -o " + file("out"));
+    EXPECT_EQ(outcome.exit, 0) << outcome.text;
+    texts.push_back(read(folder_ / "out" / "textured.glsl") + read(folder_ / "out" / "textured.h"));
+  }
+  EXPECT_EQ(texts[0], texts[1]);
+  EXPECT_NE(texts[0].find("from materials/textured.json"), std::string::npos);
+}
+
+TEST_F(Cli, PureShadersHaveNoBinaryForm) {
+  const Outcome outcome = run("compile " + ggx + " -o " + file("out") + " --target spirv");
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.text.find("add --wrapper isoshade"), std::string::npos) << outcome.text;
 }
 
 TEST_F(Cli, LongestNamesGiveValidFileNames) {
@@ -58,7 +93,7 @@ TEST_F(Cli, LongestNamesGiveValidFileNames) {
       R"(", "nodes": {"c": {"type": "constant", "value": [1, 2, 3], "to": "color3"}}, "passes": [)" + passes +
       "]}";
   const Outcome outcome =
-      run("compile " + file("long.json", document) + " --target glsl,cpp,spirv -o " + file("out"));
+      run("compile " + file("long.json", document) + " --wrapper isoshade --target glsl,cpp,spirv -o " + file("out"));
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
   // The reflection, and three files for each of two stages of two passes.
   const auto files = fs::directory_iterator(folder_ / "out");
@@ -69,7 +104,7 @@ TEST_F(Cli, LongestNamesGiveValidFileNames) {
 
 TEST_F(Cli, CompileWritesPosts) {
   const Outcome outcome =
-      run("compile " + graphs + "/effects/bloom/blur.json --target glsl,cpp -o " + file("out"));
+      run("compile " + graphs + "/effects/bloom/blur.json --wrapper isoshade --target glsl,cpp -o " + file("out"));
   EXPECT_EQ(outcome.exit, 0) << outcome.text;
   for (const char* name : {"bloom_blur.post.frag", "bloom_blur.post.cpp", "bloom_blur.json"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;

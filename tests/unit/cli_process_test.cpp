@@ -313,7 +313,7 @@ TEST_F(CliProcess, RunningOutOfMemoryIsReportedAndExitsWithTwo) {
       "render " + scene_ + " --lanes 1 --size 1200x1200" + out,
       "verify " + scene_ + " --backends interpreter,cpu --lanes 1 --size 1200x1200",
       "check " + graphs + "/library/brdf/lambert.json",
-      "compile " + ggx + " --target glsl,cpp,spirv -o " + file("out"),
+      "compile " + ggx + " --wrapper isoshade --target glsl,cpp,spirv -o " + file("out"),
       "eval " + ggx + " --backend interpreter --inputs " + table + " -o " + file("o.csv"),
       "draw " + ggx + " -o " + file("a.dot")};
 #ifdef ISOSHADE_VULKAN

@@ -28,6 +28,9 @@ std::vector<uint32_t> entries_of(const PureShader& shader) {
   return entries;
 }
 
+/// Not the prefix alone: a global function may have its name ("time").
+std::string space(const PureShader& shader) { return "isoshade::shaders::" + shader.prefix; }
+
 class Pure final : public PureLanguage {
  public:
   explicit Pure(const PureShader& shader) : language_(linked_language(shader.module, entries_of(shader))) {}
@@ -42,7 +45,7 @@ class Pure final : public PureLanguage {
     for (const std::string& signature : signatures) out += "//   " + signature + "\n";
     out +=
         "//\n"
-        "// They stand in namespace " + shader.prefix + ". F is float, or the Float of isoshade/lanes/vector.h for several points at once. Compile with\n"
+        "// They stand in namespace " + space(shader) + ". F is float, or the Float of isoshade/lanes/vector.h for several points at once. Compile with\n"
         "// -ffp-contract=off -frounding-math -fwrapv (g++: also -fsignaling-nans), and call where an\n"
         "// isoshade::lanes::FpGuard is alive: then the bits are those of the GLSL.\n";
     if (!calls.empty()) {
@@ -57,10 +60,10 @@ class Pure final : public PureLanguage {
     if (!functions.empty())
       out += "// Functions of the library, which files share.\nnamespace isoshade::shared {\n\nusing namespace lanes;\n\n" +
              functions + "\n}  // namespace isoshade::shared\n\n";
-    return out + "namespace " + shader.prefix +
+    return out + "namespace " + space(shader) +
            " {\n\nusing namespace isoshade::lanes;\nusing namespace isoshade::shared;\n\n";
   }
-  std::string tail(const PureShader& shader) const override { return "\n}  // namespace " + shader.prefix + "\n"; }
+  std::string tail(const PureShader& shader) const override { return "\n}  // namespace " + space(shader) + "\n"; }
 
  private:
   std::unique_ptr<Language> language_;
