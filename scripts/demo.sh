@@ -16,5 +16,5 @@ verdict=0
 "$isoshade" verify "$scene" --report out/report || verdict=$?
 echo
 echo "images     out/material_balls.cpu.png  out/material_balls.vulkan.png"
-echo "programs   out/cook_torrance/cook_torrance.base.pixel.frag  .cpp"
+echo "shaders    out/cook_torrance/cook_torrance.glsl  cook_torrance.h"
 exit "$verdict"

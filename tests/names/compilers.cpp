@@ -69,7 +69,7 @@ std::string said(const std::string& command) {
 /// Functions of a host, which answer anything.
 std::string host_of(const driver::Shader& shader) {
   std::string text;
-  for (const interface::HostCall call : host_calls(shader.pure)) {
+  for (const interface::HostCall call : host_calls(shader.pure, shader.pure.functions)) {
     const interface::HostRow& asked = interface::row(call);
     const std::string type = (asked.returns_record() ? "isoshade_" : "") + std::string(asked.result);
     const std::string value = asked.result == "Light"       ? "vec3(0.0), vec3(1.0)"
