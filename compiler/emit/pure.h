@@ -51,6 +51,10 @@ std::vector<PureField> point_fields(const PureShader& shader, PureKind kind);
 std::string function_name(const PureShader& shader, const PureFunction& function, bool with_prefix);
 /// What functions of the shader ask their host for, in the order of host.def.
 std::vector<interface::HostCall> host_calls(const PureShader& shader, std::span<const PureFunction> functions);
+/// What all of its functions ask for.
+inline std::vector<interface::HostCall> host_calls(const PureShader& shader) {
+  return host_calls(shader, shader.functions);
+}
 
 /// How a language writes what stands around the functions of a pure shader.
 class PureLanguage {
