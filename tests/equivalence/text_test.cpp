@@ -10,6 +10,7 @@
 
 #include "compiler/check/library.h"
 #include "compiler/driver/driver.h"
+#include "compiler/interface/host.h"
 #include "compiler/targets/glsl/spirv.h"
 
 namespace isoshade::equivalence {
@@ -332,6 +333,17 @@ TEST(Text, ContainsNoUnusedFunctionsOrBuffers) {
       for (const std::string& buffer : matches(*text, "readonly buffer [a-z_]+ \\{ [a-z]+ ([a-z]+)\\[\\]"))
         EXPECT_GE(matches(*text, "(" + buffer + ")\\[[a-z0-9]").size(), 1u) << buffer;
     }
+  }
+}
+
+TEST(Manual, ListsWhatShadersAskOfTheirHost) {
+  std::stringstream manual;
+  manual << std::ifstream(ISOSHADE_GRAPHS "/README.md").rdbuf();
+  for (size_t i = 0; i < interface::host_call_count; ++i) {
+    const interface::HostRow& asked = interface::row(static_cast<interface::HostCall>(i));
+    const std::string line = "| `" + std::string(asked.result) + " " + std::string(asked.name) + "(" +
+                             std::string(asked.parameters) + ")` | " + std::string(asked.doc) + " |\n";
+    EXPECT_NE(manual.str().find(line), std::string::npos) << line;
   }
 }
 
