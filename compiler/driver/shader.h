@@ -25,11 +25,11 @@ struct ShaderPass {
 struct Shader {
   graph::DocumentKind kind{};
   emit::PureShader pure;
-  ParameterBlock parameters;              ///< of an effect or a post; the words are those of Program's records
-  std::vector<ShaderPass> passes;         ///< of an effect
-  std::vector<std::string> images;        ///< of a post: the names of further input images
-  std::optional<size_t> enabled;          ///< of a post: index of a parameter field
-  std::vector<Field> inputs, outputs;     ///< of a function
+  ParameterBlock parameters;           ///< of an effect or a post; the words are those of Program's records
+  std::vector<ShaderPass> passes;      ///< of an effect
+  std::vector<std::string> images;     ///< of a post: the names of further input images
+  std::optional<size_t> enabled;       ///< of a post: index of a parameter field
+  std::vector<Field> inputs, outputs;  ///< of a function
   std::shared_ptr<const check::TypedGraph> typed;
   functions::Tier tier = functions::Tier::standard;
 };

@@ -34,24 +34,25 @@ std::string doc_of(const interface::Binding& binding) {
   const auto axis = [](interface::Axis a, const char* of_x, const char* of_y) {
     return std::string(a == interface::Axis::x ? of_x : of_y);
   };
-  return std::visit(
-      interface::Cases{
-          [](const source::Attribute& s) {
-            std::string doc(row(s.value.attribute).doc);
-            if (!row(s.value.attribute).has_spaces) return doc;
-            constexpr std::string_view spaces[] = {"world", "object", "view"};
-            return "In " + std::string(spaces[static_cast<size_t>(s.value.space)]) + " space. " + doc;
-          },
-          [](const source::ScreenValue& s) { return std::string(row(s.value).doc); },
-          [&](const source::PixelOfImage& s) {
-            return "The " + axis(s.axis, "column", "row") + " of the image's pixel under the centre of the pixel.";
-          },
-          [](const source::OffsetInPixel&) {
-            return std::string("Where in that pixel the centre lies, 0 to 1 each.");
-          },
-          [](const auto&) { return std::string(); },
-      },
-      binding.source);
+  return std::visit(interface::Cases{
+                        [](const source::Attribute& s) {
+                          std::string doc(row(s.value.attribute).doc);
+                          if (!row(s.value.attribute).has_spaces) return doc;
+                          constexpr std::string_view spaces[] = {"world", "object", "view"};
+                          return "In " + std::string(spaces[static_cast<size_t>(s.value.space)]) +
+                                 " space. " + doc;
+                        },
+                        [](const source::ScreenValue& s) { return std::string(row(s.value).doc); },
+                        [&](const source::PixelOfImage& s) {
+                          return "The " + axis(s.axis, "column", "row") +
+                                 " of the image's pixel under the centre of the pixel.";
+                        },
+                        [](const source::OffsetInPixel&) {
+                          return std::string("Where in that pixel the centre lies, 0 to 1 each.");
+                        },
+                        [](const auto&) { return std::string(); },
+                    },
+                    binding.source);
 }
 
 /// The entries of a kind, and the parameters that are fields of their point.
@@ -110,8 +111,8 @@ class PurePrinter {
     std::vector<std::string> signatures;
     for (const PureFunction& function : shader_.functions)
       signatures.push_back(signature_of(function, texts[function.entry]));
-    return pure_.head(shader_, signatures, host_calls(shader_, shader_.functions), zero) + pure_.shared(shader_, text.shared) + structs() +
-           text.own + pure_.tail(shader_);
+    return pure_.head(shader_, signatures, host_calls(shader_, shader_.functions), zero) +
+           pure_.shared(shader_, text.shared) + structs() + text.own + pure_.tail(shader_);
   }
 
  private:
@@ -152,20 +153,23 @@ class PurePrinter {
 
   ParameterText text_of(const PureFunction& function, const interface::Binding& binding) const {
     const ir::Parameter& parameter = binding.parameter;
-    return std::visit(
-        interface::Cases{
-            [&](const place::Point&) {
-              return ParameterText{std::string(point_name(function.kind)) + "." +
-                                   field_name(point(function.kind), parameter)};
-            },
-            [&](const place::Parameter&) {
-              return ParameterText{"parameters." + field_name(shader_.parameters, parameter)};
-            },
-            [&](const place::Argument&) { return ParameterText{}; },
-            [&](const place::Host& host) { return ParameterText{call(host.call, host.argument), true}; },
-            [&](const place::Known& known) { return ParameterText{language_.hidden_int(known.value), true}; },
-        },
-        place_of(binding, function.kind == PureKind::function));
+    return std::visit(interface::Cases{
+                          [&](const place::Point&) {
+                            return ParameterText{std::string(point_name(function.kind)) + "." +
+                                                 field_name(point(function.kind), parameter)};
+                          },
+                          [&](const place::Parameter&) {
+                            return ParameterText{"parameters." + field_name(shader_.parameters, parameter)};
+                          },
+                          [&](const place::Argument&) { return ParameterText{}; },
+                          [&](const place::Host& host) {
+                            return ParameterText{call(host.call, host.argument), true};
+                          },
+                          [&](const place::Known& known) {
+                            return ParameterText{language_.hidden_int(known.value), true};
+                          },
+                      },
+                      place_of(binding, function.kind == PureKind::function));
   }
 
   void write_entry(const PureFunction& function, FunctionText& text) const {
@@ -203,10 +207,12 @@ class PurePrinter {
       if (out.back() != '(' && !text.signature.empty()) out += ", ";
       return out + text.signature + ")";
     }
-    if (std::ranges::any_of(made.parameters, [](const ir::Parameter& p) { return !p.group.empty(); })) return out + "...)";
+    if (std::ranges::any_of(made.parameters, [](const ir::Parameter& p) { return !p.group.empty(); }))
+      return out + "...)";
     for (size_t i = 0; i < made.parameters.size(); ++i) {
       if (out.back() != '(') out += ", ";
-      language_.parameter(out, made.parameters[i].type, made.parameters[i].uniform, made.parameters[i].name, true);
+      language_.parameter(out, made.parameters[i].type, made.parameters[i].uniform, made.parameters[i].name,
+                          true);
     }
     return out + ")";
   }
@@ -247,20 +253,23 @@ std::vector<PureField> point_fields(const PureShader& shader, PureKind kind) {
     size_t rank;
   };
   std::vector<Found> found;
-  for_each_point_parameter(shader, kind, [&](const ir::Parameter& parameter, const interface::Binding* binding) {
-    const auto same = [&](const Found& other) { return other.parameter.name == parameter.name; };
-    if (std::ranges::any_of(found, same)) return;
-    // Attributes in the order of their table, all else as the functions have it, derivatives last.
-    size_t rank = binding == nullptr ? 2 * interface::surface_value_count : interface::surface_value_count;
-    if (binding != nullptr)
-      if (const auto* attribute = std::get_if<interface::source::Attribute>(&binding->source))
-        rank = attribute->value.index();
-    found.push_back({parameter, rank});
-    const bool is_x = parameter.name.find("_ddx") != std::string::npos;
-    found.back().parameter.doc =
-        binding != nullptr ? doc_of(*binding)
-                           : std::string("What it changes by to the next pixel ") + (is_x ? "to the right." : "below.");
-  });
+  for_each_point_parameter(
+      shader, kind, [&](const ir::Parameter& parameter, const interface::Binding* binding) {
+        const auto same = [&](const Found& other) { return other.parameter.name == parameter.name; };
+        if (std::ranges::any_of(found, same)) return;
+        // Attributes in the order of their table, all else as the functions have it, derivatives last.
+        size_t rank =
+            binding == nullptr ? 2 * interface::surface_value_count : interface::surface_value_count;
+        if (binding != nullptr)
+          if (const auto* attribute = std::get_if<interface::source::Attribute>(&binding->source))
+            rank = attribute->value.index();
+        found.push_back({parameter, rank});
+        const bool is_x = parameter.name.find("_ddx") != std::string::npos;
+        found.back().parameter.doc =
+            binding != nullptr
+                ? doc_of(*binding)
+                : std::string("What it changes by to the next pixel ") + (is_x ? "to the right." : "below.");
+      });
   std::ranges::stable_sort(found, {}, &Found::rank);
   Names names(Scope::field);
   std::vector<PureField> fields;

@@ -39,7 +39,7 @@ struct PureShader {
   std::string tier;      ///< "fast", "precise", or empty for the default
   ir::Module module;     ///< optimised; functions of the host have no body
   std::vector<PureFunction> functions;
-  std::vector<PureField> parameters;  ///< of the struct Parameters: of the whole document
+  std::vector<PureField> parameters;                    ///< of the struct Parameters: of the whole document
   std::map<std::string, interface::HostFunction> host;  ///< by name in the module
 };
 
@@ -50,7 +50,8 @@ std::vector<PureField> point_fields(const PureShader& shader, PureKind kind);
 /// The name of a function in GLSL. In C++ it is the same in the namespace, without the prefix.
 std::string function_name(const PureShader& shader, const PureFunction& function, bool with_prefix);
 /// What functions of the shader ask their host for, in the order of host.def.
-std::vector<interface::HostCall> host_calls(const PureShader& shader, std::span<const PureFunction> functions);
+std::vector<interface::HostCall> host_calls(const PureShader& shader,
+                                            std::span<const PureFunction> functions);
 /// What all of its functions ask for.
 inline std::vector<interface::HostCall> host_calls(const PureShader& shader) {
   return host_calls(shader, shader.functions);

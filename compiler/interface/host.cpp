@@ -76,7 +76,9 @@ Place place_of(const Binding& binding, bool in_function) {
             return Place(place::Host{call_of(s.matrix), static_cast<int>(s.column)});
           },
           [](const source::Time&) { return Place(place::Host{HostCall::time}); },
-          [&](const source::Input&) { return in_function ? Place(place::Argument{}) : Place(place::Parameter{}); },
+          [&](const source::Input&) {
+            return in_function ? Place(place::Argument{}) : Place(place::Parameter{});
+          },
           [](const source::Image&) { return Place(place::Parameter{}); },
           [](const source::LightCount&) { return Place(place::Host{HostCall::light_count}); },
           [](const source::ScreenValue& s) { return place_of(s.value); },

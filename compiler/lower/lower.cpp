@@ -92,8 +92,9 @@ void limit(ir::Parameter& parameter, const graph::Input& input) {
 }
 
 /// One binding, or one for each column of a matrix.
-std::vector<Binding> bind_input(const TypedGraph& graph, uint32_t index, const std::vector<std::string>& columns,
-                                const std::string& group, bool is_parameter) {
+std::vector<Binding> bind_input(const TypedGraph& graph, uint32_t index,
+                                const std::vector<std::string>& columns, const std::string& group,
+                                bool is_parameter) {
   const graph::Input& input = graph.graph.inputs[index];
   std::vector<Binding> bindings;
   for (uint32_t c = 0; c < columns.size(); ++c) {
@@ -116,7 +117,8 @@ class ModuleLowering {
   interface::Interface add_function_document(const TypedGraph& graph);
   interface::Interface add_post(const TypedGraph& graph);
   /// `prefix`: what the function's name begins with.
-  interface::Interface add_pass(const TypedGraph& graph, size_t pass, PassPart part, const std::string& prefix = "");
+  interface::Interface add_pass(const TypedGraph& graph, size_t pass, PassPart part,
+                                const std::string& prefix = "");
 
   ir::Module take_module() { return std::move(module_); }
 
@@ -128,7 +130,8 @@ class ModuleLowering {
   uint32_t add_function(const TypedGraph& graph, std::string name, Bindings& bindings);
   /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are wanted.
   uint32_t build(const TypedGraph& graph, std::string name, const Bindings& bindings, const Needs& needs,
-                 std::span<const Operand> roots, std::vector<ir::Result> results, const ImageSlots& images = {});
+                 std::span<const Operand> roots, std::vector<ir::Result> results,
+                 const ImageSlots& images = {});
   interface::Interface interface_of(uint32_t entry, Bindings bindings) const {
     return {entry, std::move(bindings), host_.host};
   }
@@ -181,7 +184,8 @@ uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const 
     values.insert(values.end(), value.ids().begin(), value.ids().end());
   const std::vector<ir::Result>& wanted = module_.functions[index].results;
   for (size_t i = 0; i < values.size(); ++i)
-    if (wanted[i].type == ir::vector_type(4) && b.type(values[i]).width == 3) values[i] = with_alpha(b, values[i]);
+    if (wanted[i].type == ir::vector_type(4) && b.type(values[i]).width == 3)
+      values[i] = with_alpha(b, values[i]);
   b.finish(values);
   return index;
 }
@@ -195,7 +199,8 @@ uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name,
   for (uint32_t i = 0; i < inputs.size(); ++i) {
     const size_t number = bindings.size() / inputs_of_a_group + 1;
     const std::string group = count > most_plain_inputs ? "inputs_" + std::to_string(number) : "";
-    for (Binding& binding : bind_input(graph, i, inputs[i], group, false)) bindings.push_back(std::move(binding));
+    for (Binding& binding : bind_input(graph, i, inputs[i], group, false))
+      bindings.push_back(std::move(binding));
   }
   std::vector<std::pair<std::string, Type>> outputs;
   for (size_t i = 0; i < graph.outputs.size(); ++i)
@@ -203,7 +208,8 @@ uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name,
   const std::vector<std::vector<std::string>> columns = names_of_columns(outputs);
   std::vector<ir::Result> results;
   for (size_t i = 0; i < outputs.size(); ++i)
-    for (const std::string& column : columns[i]) results.push_back({column, nodes::ir_type(outputs[i].second)});
+    for (const std::string& column : columns[i])
+      results.push_back({column, nodes::ir_type(outputs[i].second)});
   return build(graph, std::move(name), bindings, needs, graph.outputs, std::move(results));
 }
 
@@ -239,7 +245,8 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
   const bool is_color = part == PassPart::color;
   const Operand* root = is_color ? &graph.outputs[pass] : graph.position_of(pass);
   support::assert_that(root != nullptr, "the pass moves no vertices");
-  const ir::Result result = is_color ? ir::Result{"color", ir::vector_type(4)} : ir::Result{"position", ir::vector_type(3)};
+  const ir::Result result =
+      is_color ? ir::Result{"color", ir::vector_type(4)} : ir::Result{"position", ir::vector_type(3)};
   const std::span<const Operand> roots(root, 1);
   const Needs needs(graph, roots);
   const std::string name = unique_name(prefix + (is_color ? names::shade : names::move_vertex));
@@ -277,8 +284,8 @@ interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
   if (needs.time) bindings.push_back(interface::bind_time());
   add_parameters(graph, needs, bindings);
   for (Binding& binding : tap_bindings(graph, needs.screen)) bindings.push_back(std::move(binding));
-  const uint32_t entry = build(graph, names::post_process, bindings, needs, graph.outputs,
-                               {{"color", ir::vector_type(4)}});
+  const uint32_t entry =
+      build(graph, names::post_process, bindings, needs, graph.outputs, {{"color", ir::vector_type(4)}});
   return interface_of(entry, std::move(bindings));
 }
 
@@ -309,7 +316,8 @@ std::vector<Binding> parameter_bindings(const TypedGraph& graph) {
   std::vector<Binding> bindings;
   for (uint32_t i = 0; i < columns.size(); ++i) {
     if (graph.graph.inputs[i].type == Type::filename) continue;
-    for (Binding& binding : bind_input(graph, i, columns[i], "parameters", true)) bindings.push_back(std::move(binding));
+    for (Binding& binding : bind_input(graph, i, columns[i], "parameters", true))
+      bindings.push_back(std::move(binding));
   }
   const std::vector<ImageSlot> slots = image_slots(graph).slots;
   for (uint32_t i = 0; i < slots.size(); ++i) bindings.push_back(interface::bind_image(i, slots[i].name));
@@ -320,7 +328,9 @@ LoweredShader lower_shader(const TypedGraph& graph) {
   ModuleLowering lowering(nullptr);
   LoweredShader made;
   switch (graph.graph.kind) {
-    case DocumentKind::function: made.entries.push_back({.interface = lowering.add_function_document(graph)}); break;
+    case DocumentKind::function:
+      made.entries.push_back({.interface = lowering.add_function_document(graph)});
+      break;
     case DocumentKind::post: made.entries.push_back({.interface = lowering.add_post(graph)}); break;
     case DocumentKind::effect:
     case DocumentKind::scene:
@@ -329,7 +339,8 @@ LoweredShader lower_shader(const TypedGraph& graph) {
         const std::string prefix = passes.size() > 1 ? passes[i].name + "_" : "";
         made.entries.push_back({PassPart::color, i, lowering.add_pass(graph, i, PassPart::color, prefix)});
         if (graph.position_of(i) != nullptr)
-          made.entries.push_back({PassPart::position, i, lowering.add_pass(graph, i, PassPart::position, prefix)});
+          made.entries.push_back(
+              {PassPart::position, i, lowering.add_pass(graph, i, PassPart::position, prefix)});
       }
   }
   made.module = lowering.take_module();

@@ -22,6 +22,7 @@ equivalence_test(textures_test 300)
 equivalence_test(samples_test 300)
 equivalence_test(views_test 300)
 equivalence_test(pure_test 900)
+target_sources(pure_test PRIVATE equivalence/pure_host.cpp equivalence/pure_subject.cpp)
 
 isoshade_test(forward_test SOURCES equivalence/forward_test.cpp LINKS isoshade_driver LABEL equivalence TIMEOUT 300)
 target_compile_definitions(forward_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")

@@ -12,6 +12,7 @@
 #include "compiler/driver/driver.h"
 #include "compiler/interface/host.h"
 #include "compiler/targets/glsl/spirv.h"
+#include "tests/unit/temporary_folder.h"
 
 namespace isoshade::equivalence {
 namespace {
@@ -71,26 +72,6 @@ const std::vector<Texts>& shipped() {
   return all;
 }
 
-/// A folder of this test's own, removed at its end.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (fs::temp_directory_path() / "isoshade-text-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~Folder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
-
 void expect_success(const std::string& command) {
   EXPECT_EQ(std::system((command + " >&2").c_str()), 0) << command;
 }
@@ -108,7 +89,7 @@ const std::string function_head =
     "(?:^|\n)(?:ISOSHADE_INLINE |precise )?[A-Za-z_0-9]+(?:<F>)? ([a-zA-Z_0-9]+)\\([^\n;]*\\) \\{";
 
 TEST(Text, GlslCompilesUnmodified) {
-  const Folder folder;
+  const testing::TemporaryFolder folder;
   std::string files;
   for (const Texts& texts : shipped()) {
     const std::string ending = texts.stage == driver::Stage::vertex ? ".vert" : ".frag";
@@ -123,7 +104,7 @@ TEST(Text, GlslCompilesUnmodified) {
 }
 
 TEST(Text, CppCompilesWithoutWarningsInBothCompilers) {
-  const Folder folder;
+  const testing::TemporaryFolder folder;
   for (const Texts& texts : shipped()) {
     const std::string path = folder.write(texts.name + ".cpp", texts.cpp).string();
     for (const char* compiler : {"g++", "clang++"})
@@ -150,7 +131,7 @@ TEST(Text, CompilesForProgramsWithoutInputs) {
   const auto function = driver::compile_function(
       source(R"("function": "f", "outputs": {"out": "c", "other": "p"}, )" + nodes), options, diagnostics);
   ASSERT_TRUE(effect && post && function) << diagnostics.text();
-  const Folder folder;
+  const testing::TemporaryFolder folder;
   for (const driver::Program* program :
        {&effect->passes[0].vertex, &effect->passes[0].pixel, &post->program, &*function}) {
     const std::string path =
@@ -217,7 +198,7 @@ TEST(Text, CompilesWithReservedWordsAsNames) {
   const auto program = driver::compile_function(std::make_shared<support::SourceFile>("odd/odd.json", text),
                                                 options, diagnostics);
   ASSERT_TRUE(program) << diagnostics.text();
-  const Folder folder;
+  const testing::TemporaryFolder folder;
   const std::string glsl =
       folder.write("odd.frag", driver::glsl(*program, driver::Division::native)).string();
   expect_success("glslangValidator -V " + glsl + " -o " + glsl + ".spv");
@@ -249,7 +230,7 @@ TEST(Text, DocumentTextCannotInjectCode) {
   const auto program =
       driver::compile_function(std::make_shared<support::SourceFile>(path, text), options, diagnostics);
   ASSERT_TRUE(program) << diagnostics.text();
-  const Folder folder;
+  const testing::TemporaryFolder folder;
   const std::string glsl = driver::glsl(*program, driver::Division::native), cpp = driver::cpp(*program);
   const std::string shader = folder.write("evil.frag", glsl).string();
   expect_success("glslangValidator -V " + shader + " -o " + shader + ".spv");

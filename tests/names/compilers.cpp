@@ -12,11 +12,10 @@
 #include "compiler/targets/glsl/glsl.h"
 #include "compiler/targets/glsl/spirv.h"
 #include "compiler/targets/targets.h"
+#include "tests/unit/temporary_folder.h"
 
 namespace isoshade::names {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Headers whose macros are names of lower case or common ones; complex.h last, for it defines I.
 constexpr const char* headers[] = {"cassert",    "cctype",      "cerrno",          "cfenv",      "cfloat",
@@ -31,23 +30,6 @@ std::string includes() {
   for (const char* header : headers) text += "#include <" + std::string(header) + ">\n";
   return text;
 }
-
-/// A folder of this test's own, removed at its end.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (fs::temp_directory_path() / "isoshade-names-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~Folder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
 
 void replace(std::string& text, std::string_view from, std::string_view to) {
   const size_t at = text.find(from);
@@ -75,8 +57,8 @@ std::string host_of(const driver::Shader& shader) {
     const std::string value = asked.result == "Light"       ? "vec3(0.0), vec3(1.0)"
                               : asked.result == "ImageSize" ? "1, 1, 0"
                                                             : "1";
-    text += type + " isoshade_" + std::string(asked.name) + "(" + std::string(asked.parameters) + ") { return " + type +
-            "(" + value + "); }\n";
+    text += type + " isoshade_" + std::string(asked.name) + "(" + std::string(asked.parameters) +
+            ") { return " + type + "(" + value + "); }\n";
   }
   return text;
 }
@@ -103,8 +85,9 @@ void Texts::add(const driver::Program& program) {
 
 void Texts::add(const driver::Shader& shader) {
   support::Diagnostics diagnostics;
-  const std::string text = glsl::head() + driver::text(shader, *targets::find("glsl")) + host_of(shader) +
-                           "layout(location = 0) out vec4 the_color;\nvoid main() { the_color = vec4(1.0); }\n";
+  const std::string text =
+      glsl::head() + driver::text(shader, *targets::find("glsl")) + host_of(shader) +
+      "layout(location = 0) out vec4 the_color;\nvoid main() { the_color = vec4(1.0); }\n";
   EXPECT_TRUE(glsl::compile_spirv(text, glsl::ShaderKind::fragment, diagnostics))
       << diagnostics.text() << text.substr(0, 20000);
   ++glsl_;
@@ -113,12 +96,12 @@ void Texts::add(const driver::Shader& shader) {
 }
 
 void Texts::compile() {
-  const Folder folder;
+  const testing::TemporaryFolder folder;
   const auto take = [&](const std::string& compiler, const std::string& text) {
-    const std::string path = folder.file("texts.cpp");
-    std::ofstream(path) << text;
+    const std::string path = folder.write("texts.cpp", text).string();
     EXPECT_EQ(said(compiler +
-                   " -std=gnu++20 -Wall -Wextra -Werror -Wno-unused-function -fsyntax-only -I " ISOSHADE_ROOT "/include " +
+                   " -std=gnu++20 -Wall -Wextra -Werror -Wno-unused-function -fsyntax-only -I " ISOSHADE_ROOT
+                   "/include " +
                    path),
               "")
         << compiler;
@@ -138,9 +121,11 @@ void Texts::compile() {
     }
     // Namespaces of a file have different names.
     for (size_t i = 0; i < headers_.size();) {
-      std::string file = "#include \"isoshade/lanes/host.h\"\n#include \"isoshade/lanes/lanes.h\"\n" + includes();
+      std::string file =
+          "#include \"isoshade/lanes/host.h\"\n#include \"isoshade/lanes/lanes.h\"\n" + includes();
       std::set<std::string> spaces;
-      for (; i < headers_.size() && file.size() < most_bytes && spaces.insert(headers_[i].space).second; i += every, ++count)
+      for (; i < headers_.size() && file.size() < most_bytes && spaces.insert(headers_[i].space).second;
+           i += every, ++count)
         file += headers_[i].text;
       take(compiler, file);
     }
@@ -151,10 +136,9 @@ void Texts::compile() {
 }
 
 std::set<std::string> macros_of_headers() {
-  const Folder folder;
-  const std::string path = folder.file("headers.cpp");
-  std::ofstream(path) << "#include <bits/stdc++.h>\n" << includes();
-  const std::string list = folder.file("macros");
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.write("headers.cpp", "#include <bits/stdc++.h>\n" + includes()).string();
+  const std::string list = (folder.path() / "macros").string();
   EXPECT_EQ(std::system(("g++ -std=gnu++20 -dM -E " + path + " >" + list).c_str()), 0);
   std::ifstream lines(list);
   std::set<std::string> found;
