@@ -69,8 +69,8 @@ TEST_F(Effects, MissingMemberOfTheHostIsOneErrorThatNamesIt) {
 struct Host {
   int light_count() const { return 0; }
 };
-auto color(const Host& host, const cartoon::Surface<float>& surface, const cartoon::Parameters& parameters) {
-  return cartoon::base_shade(host, surface, parameters);
+auto color(const Host& host, const isoshade::shaders::cartoon::Surface<float>& surface, const isoshade::shaders::cartoon::Parameters& parameters) {
+  return isoshade::shaders::cartoon::base_shade(host, surface, parameters);
 }
 )");
   for (const char* compiler : {"g++", "clang++"}) {

@@ -4,7 +4,7 @@
 #include "points.h"
 
 void program::shade_cartoon(const Attributes& attributes, const Host& host, float* rgba) {
-  cartoon::Parameters parameters{};
+  isoshade::shaders::cartoon::Parameters parameters{};
   parameters.color = vec3<float>(0.9f, 0.8f, 0.7f);
   parameters.main_tex_tiling = vec2<float>(3.0f, 2.0f);
   parameters.ambient = vec3<float>(0.1f, 0.1f, 0.15f);
@@ -14,8 +14,11 @@ void program::shade_cartoon(const Attributes& attributes, const Host& host, floa
   parameters.specular2_scale = 0.6f;
   parameters.main_tex = 0;
   parameters.ramp = 5;
-  using Surface = cartoon::Surface<F>;
+  using Surface = isoshade::shaders::cartoon::Surface<F>;
   shade_points<Surface>(
-      attributes, [&](const Surface& surface) { return cartoon::base_shade(host, surface, parameters); },
+      attributes,
+      [&](const Surface& surface) {
+        return isoshade::shaders::cartoon::base_shade(host, surface, parameters);
+      },
       rgba);
 }

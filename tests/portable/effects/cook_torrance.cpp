@@ -4,7 +4,7 @@
 #include "points.h"
 
 void program::shade_cook_torrance(const Attributes& attributes, const Host& host, float* rgba) {
-  cook_torrance::Parameters parameters{};
+  isoshade::shaders::cook_torrance::Parameters parameters{};
   parameters.base_color = vec3<float>(0.8f, 0.5f, 0.3f);
   parameters.metallic = 0.25f;
   parameters.roughness = 0.3f;
@@ -12,8 +12,11 @@ void program::shade_cook_torrance(const Attributes& attributes, const Host& host
   parameters.horizon_color = vec3<float>(0.6f, 0.7f, 0.8f);
   parameters.zenith_color = vec3<float>(0.2f, 0.3f, 0.6f);
   parameters.ground_color = vec3<float>(0.2f, 0.15f, 0.1f);
-  using Surface = cook_torrance::Surface<F>;
+  using Surface = isoshade::shaders::cook_torrance::Surface<F>;
   shade_points<Surface>(
-      attributes, [&](const Surface& surface) { return cook_torrance::shade(host, surface, parameters); },
+      attributes,
+      [&](const Surface& surface) {
+        return isoshade::shaders::cook_torrance::shade(host, surface, parameters);
+      },
       rgba);
 }

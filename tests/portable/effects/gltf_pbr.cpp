@@ -4,7 +4,7 @@
 #include "points.h"
 
 void program::shade_gltf_pbr(const Attributes& attributes, const Host& host, float* rgba) {
-  gltf_pbr::Parameters parameters{};
+  isoshade::shaders::gltf_pbr::Parameters parameters{};
   parameters.base_color = vec3<float>(1.0f, 0.9f, 0.8f);
   parameters.metallic = 0.5f;
   parameters.roughness = 0.6f;
@@ -20,7 +20,9 @@ void program::shade_gltf_pbr(const Attributes& attributes, const Host& host, flo
   parameters.normal_texture = 1;
   parameters.occlusion_texture = 5;
   parameters.emissive_texture = -1;
-  using Surface = gltf_pbr::Surface<F>;
+  using Surface = isoshade::shaders::gltf_pbr::Surface<F>;
   shade_points<Surface>(
-      attributes, [&](const Surface& surface) { return gltf_pbr::shade(host, surface, parameters); }, rgba);
+      attributes,
+      [&](const Surface& surface) { return isoshade::shaders::gltf_pbr::shade(host, surface, parameters); },
+      rgba);
 }
