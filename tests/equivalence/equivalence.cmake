@@ -36,3 +36,7 @@ isoshade_test(random_programs_test
   TIMEOUT 7200
   DEVICES)
 target_compile_definitions(random_programs_test PRIVATE $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
+
+if(ISOSHADE_VULKAN)
+  equivalence_test(forward_picture_test 300)
+endif()
