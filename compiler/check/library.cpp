@@ -65,7 +65,7 @@ Library::Library(std::string root) : root_(std::move(root)) {
 }
 
 void Library::add(const std::string& path, std::string text) {
-  memory_[canonical_path(path)] = std::make_shared<support::SourceFile>(path, std::move(text));
+  files_.memory[canonical_path(path)] = std::make_shared<support::SourceFile>(path, std::move(text));
 }
 
 Scope Library::scope_of(const std::string& path) const {
@@ -73,7 +73,7 @@ Scope Library::scope_of(const std::string& path) const {
   scope.path = canonical_path(path);
   scope.folder = folder_of(path);
   const bool in_library = is_within(scope.path, files_.library);
-  scope.home = in_library ? files_.library : graph::home_of(path);
+  scope.home = in_library ? files_.library : graph::home_of(path, files_);
   scope.document = name_in_collection(scope.path, scope.home, in_library);
   return scope;
 }
@@ -95,12 +95,7 @@ Library::Location Library::locate(std::string_view reference, const Scope& from)
 
 bool Library::exists(const Location& location) const {
   std::error_code error;
-  return memory_.contains(location.canonical) || fs::is_regular_file(location.path, error);
-}
-
-support::Source Library::read(const Location& location, const Span& where, Diagnostics& diagnostics) const {
-  const auto found = memory_.find(location.canonical);
-  return found != memory_.end() ? found->second : graph::read_source(location.path, diagnostics, where);
+  return files_.memory.contains(location.canonical) || fs::is_regular_file(location.path, error);
 }
 
 std::shared_ptr<const TypedGraph> Library::function(const Reference& referred, const Scope& from,
@@ -158,7 +153,7 @@ std::shared_ptr<const TypedGraph> Library::load(const Location& location, const 
         "function documents are nested more than " + std::to_string(max_document_depth) + " deep");
     return nullptr;
   }
-  const support::Source source = read(location, where, diagnostics);
+  const support::Source source = graph::read_document(location.path, files_, diagnostics, where);
   if (source == nullptr) return nullptr;
   const std::optional<graph::Document> document = graph::parse_document(source, diagnostics);
   if (!document) return nullptr;
@@ -197,6 +192,15 @@ std::shared_ptr<const TypedGraph> Library::instance(const std::shared_ptr<const 
   return generic.instances[type] = std::move(typed);
 }
 
+std::vector<std::string> Library::loaded() const {
+  std::map<std::string, std::string> by_canonical_path;
+  for (const auto& [key, function] : functions_)
+    if (function != nullptr) by_canonical_path.emplace(key.first, function->graph.source->path());
+  std::vector<std::string> paths;
+  for (const auto& [canonical, path] : by_canonical_path) paths.push_back(path);
+  return paths;
+}
+
 std::vector<std::string> Library::names() const {
   std::vector<std::string> names;
   const auto add = [&](const std::string& canonical_path) {
@@ -210,7 +214,7 @@ std::vector<std::string> Library::names() const {
     for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
       add(entry->path().string());
   }
-  for (const auto& [path, source] : memory_) add(path);
+  for (const auto& [path, source] : files_.memory) add(path);
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;

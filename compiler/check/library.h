@@ -30,6 +30,10 @@ struct Reference {
   const std::vector<nodes::Row>& rows;  ///< the table that does not contain it; for suggestions
 };
 
+/// The folder of the library functions that were installed with this program or shared library; without them, that of the
+/// source tree that it was built from.
+std::string shipped_library();
+
 class Library {
  public:
   /// `root`: the folder of the shipped functions ("brdf/ggx_d" is brdf/ggx_d.json in it); empty for none.
@@ -56,6 +60,9 @@ class Library {
   std::shared_ptr<const TypedGraph> instance(const std::shared_ptr<const TypedGraph>& function, Type type,
                                              const support::Span& where, support::Diagnostics& diagnostics);
 
+  /// The paths of the documents that were loaded, each once; in what they make, a change of any may show.
+  std::vector<std::string> loaded() const;
+
   /// All library names, sorted.
   std::vector<std::string> names() const;
 
@@ -71,14 +78,11 @@ class Library {
   };
   Location locate(std::string_view reference, const Scope& from) const;
   bool exists(const Location& location) const;
-  support::Source read(const Location& location, const support::Span& where,
-                       support::Diagnostics& diagnostics) const;
   std::shared_ptr<const TypedGraph> load(const Location& location, const Scope& from,
                                          const support::Span& where, support::Diagnostics& diagnostics);
 
   std::string root_;
   graph::FileRule files_;
-  std::map<std::string, support::Source> memory_;  ///< by canonical path
   /// By canonical path and by home, because home limits what the document may refer to; null if it has errors.
   std::map<std::pair<std::string, std::string>, std::shared_ptr<const TypedGraph>> functions_;
   /// The instances of generic functions, by their float instance, which is the one in functions_.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <set>
 #include <unistd.h>
 #include <utility>
 
@@ -97,6 +98,16 @@ void add_pointers(const Document& document, Diagnostics& diagnostics) {
   for (support::Diagnostic& diagnostic : diagnostics.all()) {
     if (diagnostic.where.file != document.source || !diagnostic.pointer.empty()) continue;
     diagnostic.pointer = pointer_at(document, diagnostic.where.begin);
+  }
+}
+
+void add_pointers(Diagnostics& diagnostics) {
+  std::set<Source> sources;
+  for (const support::Diagnostic& diagnostic : diagnostics.all()) sources.insert(diagnostic.where.file);
+  for (const Source& source : sources) {
+    Diagnostics ignored;
+    const auto document = source != nullptr ? parse_document(source, ignored) : std::nullopt;
+    if (document) add_pointers(*document, diagnostics);
   }
 }
 

@@ -85,6 +85,9 @@ std::string pointer_at(const Document& document, uint32_t offset);
 /// Fills in the pointer of every diagnostic that lies in `document` and has none. For --diagnostics json.
 void add_pointers(const Document& document, support::Diagnostics& diagnostics);
 
+/// The same for all diagnostics, whatever documents they lie in.
+void add_pointers(support::Diagnostics& diagnostics);
+
 /// Copies `value`, which stands in `source`, so that it can be inserted into the document.
 Json adopt(Document& document, support::Source source, Json value);
 

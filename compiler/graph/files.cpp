@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "compiler/graph/document.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
@@ -27,20 +28,30 @@ bool is_within(const std::string& path, const std::string& folder) {
   return folder.back() == '/' || path.size() == folder.size() || path[folder.size()] == '/';
 }
 
-std::string home_of(const std::string& document_path) {
+std::string home_of(const std::string& document_path, const FileRule& rule) {
   const fs::path own = fs::path(canonical_path(document_path)).parent_path();
   for (fs::path folder = own;; folder = folder.parent_path()) {
     std::error_code error;
-    if (fs::is_regular_file(folder / collection_marker, error)) return folder.string();
+    const fs::path marker = folder / collection_marker;
+    if (rule.memory.contains(marker.string()) || fs::is_regular_file(marker, error)) return folder.string();
     if (folder == folder.parent_path()) return own.string();
   }
+}
+
+support::Source read_document(const std::string& path, const FileRule& rule,
+                              support::Diagnostics& diagnostics, const support::Span& where) {
+  if (!rule.memory.empty()) {
+    const auto found = rule.memory.find(canonical_path(path));
+    if (found != rule.memory.end()) return found->second;
+  }
+  return read_source(path, diagnostics, where);
 }
 
 bool may_read(const std::string& path, const support::Span& where, const FileRule& rule,
               support::Diagnostics& diagnostics) {
   const support::Source& source = where.file;
   if (source == nullptr || source->origin() == support::SourceFile::Origin::argument ||
-      rule.permits(canonical_path(path), home_of(source->path()))) {
+      rule.permits(canonical_path(path), home_of(source->path(), rule))) {
     return true;
   }
   diagnostics

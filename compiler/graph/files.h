@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a document may refer to: those of its own collection, and the library.
+// Which files a document may refer to: those of its own collection, and the library. Documents in memory take the place
+// of files.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -18,21 +20,26 @@ std::string canonical_path(const std::string& path);
 /// Whether a canonical path is the canonical folder or below it; false for the folder "".
 bool is_within(const std::string& path, const std::string& folder);
 
-/// The canonical folder that a document's references must stay in: the nearest folder with the marker, from the
-/// document's own upwards, or its own if there is none.
-std::string home_of(const std::string& document_path);
-
 /// Resolves a path in a document relative to the document's folder.
 std::string path_beside(const std::string& document_path, const std::string& path);
 
 struct FileRule {
   std::string library;         ///< canonical; readable by every document; empty if there is none
   bool allow_outside = false;  ///< the user trusts the documents
+  std::map<std::string, support::Source> memory = {};  ///< read in place of files, by canonical path
 
   bool permits(const std::string& canonical, const std::string& home) const {
     return allow_outside || is_within(canonical, home) || is_within(canonical, library);
   }
 };
+
+/// The canonical folder that a document's references must stay in: the nearest folder with the marker, from the
+/// document's own upwards, or its own if there is none.
+std::string home_of(const std::string& document_path, const FileRule& rule = {});
+
+/// The document in memory, or else the file, that has this path. Reports a failure and returns null.
+support::Source read_document(const std::string& path, const FileRule& rule,
+                              support::Diagnostics& diagnostics, const support::Span& where = {});
 
 /// Whether the text at `where` may refer to the file; reports it if not. The user may name any file: `where` is then
 /// empty or in a command line argument.

@@ -137,7 +137,9 @@ bool Planner::may_read(const std::string& path, const support::Span& where) {
 
 support::Source Planner::read_document(const std::string& path, const support::Span& where) {
   if (!may_read(path, where)) return nullptr;
-  return graph::read_source(path, diagnostics_, where);
+  const check::Library* library = options_.compiler.library;
+  return graph::read_document(path, library != nullptr ? library->files() : graph::FileRule{}, diagnostics_,
+                              where);
 }
 
 bool Planner::compile_posts() {

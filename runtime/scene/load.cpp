@@ -75,7 +75,7 @@ class Loader {
       return std::nullopt;
     }
     if (!graph::may_read(path, where, files_, diagnostics_)) return std::nullopt;
-    const support::Source source = graph::read_source(path, diagnostics_, where);
+    const support::Source source = graph::read_document(path, files_, diagnostics_, where);
     auto base = source != nullptr ? load(source, where) : std::nullopt;
     if (!base) return std::nullopt;
     const auto kind = graph::document_kind(*base, diagnostics_);
@@ -98,7 +98,7 @@ class Loader {
 std::optional<Scene> load_scene(const support::Source& source, const std::vector<std::string>& settings,
                                 const graph::FileRule& files, support::Diagnostics& diagnostics) {
   auto document = Loader(files, diagnostics).load(source, {});
-  if (!document || !apply_settings(*document, settings, diagnostics)) return std::nullopt;
+  if (!document || !apply_settings(*document, settings, files, diagnostics)) return std::nullopt;
   return parse_scene(*document, diagnostics);
 }
 

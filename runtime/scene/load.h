@@ -35,6 +35,6 @@ std::optional<Scene> load_scene(const support::Source& source, const std::vector
 /// checks whether it fits; its reports show the setting. Reports settings that are malformed, or that name nothing or
 /// more than one thing, and then returns false.
 bool apply_settings(graph::Document& document, const std::vector<std::string>& settings,
-                    support::Diagnostics& diagnostics);
+                    const graph::FileRule& files, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::scene

@@ -84,7 +84,8 @@ Value* find_object(Value& json, std::string_view key) {
 
 class Editor {
  public:
-  Editor(Document& document, Diagnostics& diagnostics) : document_(document), diagnostics_(diagnostics) {}
+  Editor(Document& document, const graph::FileRule& files, Diagnostics& diagnostics)
+      : document_(document), files_(files), diagnostics_(diagnostics) {}
 
   /// Writes a setting into the document.
   bool apply(Setting& setting);
@@ -103,6 +104,7 @@ class Editor {
   const std::vector<std::string>& parameters_of_effect(const std::string& path);
 
   Document& document_;
+  const graph::FileRule& files_;
   Diagnostics& diagnostics_;
   std::map<std::string, std::vector<std::string>> effects_;  ///< parameter names by path
 };
@@ -112,7 +114,7 @@ const std::vector<std::string>& Editor::parameters_of_effect(const std::string& 
   if (!is_new) return found->second;
   // Errors of the effect are reported when it is compiled.
   Diagnostics unheard;
-  const support::Source source = graph::read_source(path, unheard, {document_.source, 0, 0});
+  const support::Source source = graph::read_document(path, files_, unheard, {document_.source, 0, 0});
   const auto effect = source ? graph::parse_document(source, unheard) : std::nullopt;
   if (!effect) return found->second;
   if (const Json* parameters = find_object(effect->root, "parameters"))
@@ -263,8 +265,9 @@ bool Editor::apply(Setting& setting) {
 
 }  // namespace
 
-bool apply_settings(Document& document, const std::vector<std::string>& settings, Diagnostics& diagnostics) {
-  Editor editor(document, diagnostics);
+bool apply_settings(Document& document, const std::vector<std::string>& settings,
+                    const graph::FileRule& files, Diagnostics& diagnostics) {
+  Editor editor(document, files, diagnostics);
   for (const std::string& text : settings) {
     std::optional<Setting> setting = split(text, diagnostics);
     if (!setting || !editor.apply(*setting)) return false;

@@ -44,7 +44,7 @@ struct ParsedScene {
 inline ParsedScene parse_text(const std::string& text, const std::vector<std::string>& settings = {}) {
   ParsedScene parsed;
   std::optional<graph::Document> document = document_of(text, parsed.diagnostics);
-  if (document && scene::apply_settings(*document, settings, parsed.diagnostics))
+  if (document && scene::apply_settings(*document, settings, {}, parsed.diagnostics))
     parsed.scene = scene::parse_scene(*document, parsed.diagnostics);
   return parsed;
 }

@@ -90,7 +90,7 @@ TEST(Settings, SetParametersThatOnlyTheEffectDeclares) {
                            parsed.diagnostics, (folder / "scene.json").string());
   for (const char* setting : {"bare.sheen=1", "sheen=1"}) {
     graph::Document changed = *document;
-    ASSERT_TRUE(scene::apply_settings(changed, {setting}, parsed.diagnostics)) << parsed.diagnostics.text();
+    ASSERT_TRUE(scene::apply_settings(changed, {setting}, {}, parsed.diagnostics)) << parsed.diagnostics.text();
     const auto scene = scene::parse_scene(changed, parsed.diagnostics);
     ASSERT_TRUE(scene) << parsed.diagnostics.text();
     EXPECT_EQ(find(scene->objects[0], "sheen")->value.number, 1.0f);
