@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/support/sha256.h"
 
-#include <cstdio>
-#include <cstdlib>
 #include <openssl/evp.h>
+
+#include "compiler/support/assert.h"
 
 namespace isoshade::support {
 namespace {
 
-void require(bool worked) {
-  if (worked) return;
-  std::fputs("isoshade: OpenSSL cannot compute SHA-256\n", stderr);
-  std::abort();
-}
+void require(bool worked) { assert_that(worked, "OpenSSL cannot compute SHA-256"); }
 
 EVP_MD_CTX* context_of(void* context) { return static_cast<EVP_MD_CTX*>(context); }
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,6 +20,17 @@ namespace {
 
 constexpr std::string_view folder_prefix = "isoshade-";
 constexpr std::string_view filler = "XXXXXX";
+
+/// The bits of a mode that new files do not get. Other threads may create files: umask() would change theirs too.
+mode_t mode_mask() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == "Umask:") {
+      unsigned mask = 0;
+      if (status >> std::oct >> mask) return static_cast<mode_t>(mask);
+    }
+  return 077;
+}
 
 void forget(const std::string& path) {
   const auto lock = Leftovers::lock();
@@ -75,8 +87,7 @@ TemporaryFile::TemporaryFile(const std::string& folder) : folder_(folder.empty()
   }
   // Some file systems lack O_TMPFILE, with various errors; mkostemp meets a genuine error again.
   std::string path = folder_ + "/.isoshade-" + std::string(filler);
-  const mode_t mask = umask(0);
-  umask(mask);
+  const mode_t mask = mode_mask();
   const auto lock = Leftovers::lock();
   descriptor_ = mkostemp(path.data(), O_CLOEXEC);
   if (descriptor_ < 0) return;
