@@ -11,6 +11,8 @@ packages=(
   glslang-dev spirv-tools spirv-headers libvulkan-dev
   # running: Vulkan on the CPU, and the loader for other devices
   mesa-vulkan-drivers libvulkan1
+  # packaging (scripts/package.sh)
+  dpkg-dev file
   # drawing graphs and plots
   graphviz gnuplot-nox
   # testing

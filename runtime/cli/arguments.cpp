@@ -3,12 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <isoshade/version.h>
 #include <map>
 
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/targets/targets.h"
-#include "runtime/cli/places.h"
 
 namespace isoshade::cli {
 
@@ -181,7 +181,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       "Compiles shader graphs to GLSL and C++, renders scenes with both, and proves the images identical.",
       "isoshade");
   app.footer(footer);
-  app.set_version_flag("--version", std::string(version));
+  app.set_version_flag("--version", "isoshade " ISOSHADE_VERSION);
   app.require_subcommand(0, 1);  // so that CLI11 names an unknown word; the case of no subcommand is handled below
   app.fallthrough();
 
@@ -243,6 +243,11 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(division_names)
       ->capture_default_str();
   add_precision(*compile_app, compile.precision);
+  compile_app->add_option("--depfile", compile.depfile,
+                          "File for a rule of make or ninja that names all files that were read; other files whose "
+                          "bytes would stay the same are then left as they are");
+  compile_app->add_flag("--no-lanes", compile.without_lanes,
+                        "Leave out the headers of isoshade/lanes, which are installed with isoshade");
   compile_app->add_option(
       "--dump-after", compile.dump_after,
       "Print the result of a stage: document, graph, typed, lower or a pass; `help` lists them");

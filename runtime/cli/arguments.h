@@ -54,6 +54,8 @@ struct CompileArguments {
   std::string prefix;
   std::string division = "native";
   functions::Tier precision = functions::Tier::standard;
+  std::string depfile;         ///< receives the names of all files that were read; empty: none
+  bool without_lanes = false;  ///< the program has the headers of isoshade/lanes
   std::string dump_after;
 };
 
@@ -150,7 +152,7 @@ struct Common {
   std::vector<std::string> disabled;                             ///< ids of warnings
   bool allow_outside = false;                                    ///< documents may name files in any folder
   support::Seconds build_timeout = support::default_time_limit;  ///< for each run of a compiler, Graphviz or gnuplot
-  std::string library;  ///< the folder of library documents; empty: see library_root()
+  std::string library;  ///< the folder of library documents; empty: check::shipped_library()
 };
 
 struct Arguments {

@@ -41,7 +41,7 @@ bool draw_picture(const std::string& gnuplot, const std::string& script, support
 
 bench::BenchOptions options_of(const BenchArguments& arguments, const Common& common) {
   bench::BenchOptions options;
-  options.library = library_root(common);
+  options.library = common.library.empty() ? check::shipped_library() : common.library;
   options.graphs = fs::path(options.library).parent_path().string();
   options.filter = arguments.only;
   options.lanes = arguments.lanes;

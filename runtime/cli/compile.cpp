@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -77,7 +79,7 @@ class Writer {
   }
 
   bool headers() {
-    if (!wants("cpp")) return true;
+    if (!wants("cpp") || arguments_.without_lanes) return true;
     for (const cpu::Header& header : cpu::lanes_headers())
       if (!write(std::string(header.path), header.text)) return false;
     return true;
@@ -97,9 +99,24 @@ class Writer {
           .suggest("choose another folder with -o");
       return false;
     }
-    if (!scene::write_file(path.string(), bytes, diagnostics_)) return false;
+    if (!is_kept(path, bytes) && !scene::write_file(path.string(), bytes, diagnostics_)) return false;
     written_.push_back(path.string());
     return true;
+  }
+
+  /// The rule that says what the first file depends on: the document, the functions that it uses, its images.
+  bool depfile(const check::Library& library) {
+    if (arguments_.depfile.empty() || written_.empty()) return true;
+    std::string rule = escaped(written_.front()) + ": " + escaped(arguments_.graph);
+    for (const std::vector<std::string>& paths : {library.loaded(), images_})
+      for (const std::string& path : paths) rule += " \\\n  " + escaped(path);
+    return may_write(arguments_.depfile, diagnostics_) &&
+           scene::write_file(arguments_.depfile, rule + "\n", diagnostics_);
+  }
+
+  void reads(const std::vector<driver::Image>& images) {
+    for (const driver::Image& image : images)
+      if (!image.file.empty()) images_.push_back(image.file);
   }
 
   const std::vector<std::string>& written() const { return written_; }
@@ -113,6 +130,25 @@ class Writer {
     const support::Source source = graph::read_source(path.string(), ignored);
     const auto document = source ? graph::parse_document(source, ignored) : std::nullopt;
     return document && document->root.find("isoshade") != nullptr;
+  }
+
+  /// Whether the file has these bytes, and a build tool wants to know that they did not change. The first file tells it
+  /// when this ran.
+  bool is_kept(const std::filesystem::path& path, std::string_view bytes) const {
+    if (arguments_.depfile.empty() || written_.empty()) return false;
+    std::ifstream file(path, std::ios::binary);
+    return file && std::equal(std::istreambuf_iterator<char>(file), {}, bytes.begin(), bytes.end());
+  }
+
+  /// A path as make and ninja read it.
+  static std::string escaped(const std::string& path) {
+    std::string text;
+    for (const char c : path) {
+      if (c == ' ' || c == '#') text += '\\';
+      if (c == '$') text += '$';
+      text += c;
+    }
+    return text;
   }
 
   bool wants(std::string_view target) const {
@@ -142,6 +178,7 @@ class Writer {
   const CompileArguments& arguments_;
   support::Diagnostics& diagnostics_;
   std::vector<std::string> written_;
+  std::vector<std::string> images_;  ///< paths of those that the document names
 };
 
 ordered_json reflect(const std::vector<driver::Field>& fields) {
@@ -267,6 +304,7 @@ int compile(const CompileArguments& arguments, const Common& common) {
     const auto shader = driver::compile_shader(source, options, shader_options, diagnostics);
     const bool is_pure = arguments.wrapper == Wrapper::none;
     done = shader && (is_pure ? writer.shader(*shader) : writer.forward(*shader));
+    if (shader) writer.reads(shader->parameters.images);
   } else if (kind == graph::DocumentKind::function) {
     const auto program = driver::compile_function(source, options, diagnostics);
     done = program && write_function(*program, functions::tier_name(options.tier), writer);
@@ -276,8 +314,9 @@ int compile(const CompileArguments& arguments, const Common& common) {
   } else if (kind) {
     const auto effect = driver::compile_effect(source, options, diagnostics);
     done = effect && write_effect(*effect, functions::tier_name(options.tier), writer);
+    if (effect) writer.reads(effect->parameters.images);
   }
-  if (done) done = writer.headers();
+  if (done) done = writer.headers() && writer.depfile(library);
   if (done && !arguments.dump_after.empty() && !lists_stages && dumped == 0)
     diagnostics.report(support::Id::unknown_stage, "there is no stage \"" + arguments.dump_after + "\"")
         .suggest("`--dump-after help` lists the stages of this graph");

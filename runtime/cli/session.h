@@ -17,10 +17,6 @@ struct Scene;
 
 namespace isoshade::cli {
 
-/// The folder of library documents: that of --library, else the one installed with the command, else that of the source
-/// tree that the command was built from.
-std::string library_root(const Common& common);
-
 /// The library, with the options of the command line.
 check::Library make_library(const Common& common);
 

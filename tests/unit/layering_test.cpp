@@ -41,7 +41,7 @@ std::map<std::string, Library> libraries() {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
       if (entry.path().filename() != "CMakeLists.txt") continue;
       const std::string text = read(entry.path());
-      for (const std::string& call : matches(text, R"(isoshade_library\(([^)]*)\))")) {
+      for (const std::string& call : matches(text, R"(isoshade_(?:shared_)?library\(([^)]*)\))")) {
         const std::string name = matches(call, R"(^\s*(\w+))").at(0);
         const std::vector<std::string> links = matches(call, R"(\bisoshade_(\w+))");
         all[name] = {fs::relative(entry.path().parent_path(), root).string(), {links.begin(), links.end()}};

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The compiler as a library: a graph in, shaders out.
+//
+//     const isoshade::Compilation made = isoshade::compile_file("effects/glow.json", {.targets = {"glsl"}});
+//     if (!made) return report(made.text);
+//     compile_glsl(my_fragment_shader + made.find("glow.glsl")->bytes);
+//
+// In CMake: find_package(isoshade REQUIRED) and target_link_libraries(program PRIVATE isoshade::compiler).
+//
+// Any number of threads may call any function at the same time.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isoshade/outcome.h>
+
+namespace isoshade {
+
+/// The version of the library that is linked; ISOSHADE_VERSION is that of the headers.
+ISOSHADE_API const char* version() noexcept;
+
+struct CompileOptions {
+  Sources sources = {};
+  std::vector<std::string> targets{"glsl", "cpp"};  ///< languages: "glsl", "cpp", "glsl-es"
+  std::string prefix = {};                          ///< of all names; empty: the document's name
+  Precision precision = Precision::standard;
+  /// For GPUs whose `/` and sqrt are not correctly rounded: computes both by multiplications and integers.
+  bool exact_division = false;
+};
+
+/// A file as `isoshade compile -o FOLDER` writes it. C++ includes the headers that are installed in isoshade/lanes.
+struct File {
+  std::string name;  ///< "glow.glsl"
+  std::string bytes;
+};
+
+struct Compilation : Outcome {
+  std::vector<File> files;
+  std::vector<std::string> read;  ///< paths of the documents and images that decide the result
+
+  /// Null if there is no file of this name.
+  const File* find(std::string_view name) const {
+    for (const File& file : files)
+      if (file.name == name) return &file;
+    return nullptr;
+  }
+};
+
+/// Compiles an effect, a post or a function to functions and structs that other programs link (graphs/README.md, "What
+/// compile writes").
+ISOSHADE_API Compilation compile_file(const std::string& path, const CompileOptions& options = {}) noexcept;
+
+/// The same for a document in memory; its path need not exist.
+ISOSHADE_API Compilation compile(const Document& document, const CompileOptions& options = {}) noexcept;
+
+}  // namespace isoshade

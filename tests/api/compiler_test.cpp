@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Documents to shaders through include/isoshade/compiler.h, as a program uses it.
+#include <isoshade/compiler.h>
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <thread>
+
+namespace {
+
+const std::string graphs = ISOSHADE_GRAPHS;
+
+const isoshade::Document half{"/virtual/half.json", R"({
+  "isoshade": 1, "function": "half", "inputs": {"in": {"type": "float"}},
+  "nodes": {"y": {"type": "multiply", "in1": "in", "in2": 0.5}}, "outputs": {"out": "y"}
+})"};
+
+TEST(Compiler, HeadersAndLibraryHaveTheSameVersion) {
+  EXPECT_STREQ(isoshade::version(), ISOSHADE_VERSION);
+}
+
+TEST(Compiler, ADocumentInMemoryBecomesTexts) {
+  const isoshade::Compilation made = isoshade::compile(half);
+  ASSERT_TRUE(made) << made.text;
+  ASSERT_NE(made.find("half.glsl"), nullptr);
+  ASSERT_NE(made.find("half.h"), nullptr);
+  EXPECT_NE(made.find("half.glsl")->bytes.find("float half"), std::string::npos) << made.find("half.glsl")->bytes;
+  EXPECT_NE(made.find("half.h")->bytes.find("namespace half"), std::string::npos);
+  EXPECT_EQ(made.find("half.txt"), nullptr);
+  EXPECT_EQ(made.read, std::vector<std::string>{half.path});
+}
+
+TEST(Compiler, OptionsChooseTargetsAndPrefix) {
+  isoshade::CompileOptions options;
+  options.targets = {"cpp"};
+  options.prefix = "mine";
+  const isoshade::Compilation made = isoshade::compile(half, options);
+  ASSERT_TRUE(made) << made.text;
+  EXPECT_EQ(made.find("half.glsl"), nullptr);
+  EXPECT_NE(made.find("half.h")->bytes.find("namespace mine"), std::string::npos);
+  options.prefix = "not a name";
+  EXPECT_EQ(isoshade::compile(half, options).diagnostics.at(0).id, "bad-id");
+  options.prefix = "";
+  options.targets = {"hlsl"};
+  const isoshade::Compilation refused = isoshade::compile(half, options);
+  EXPECT_EQ(refused.diagnostics.at(0).id, "unknown-choice");
+  EXPECT_FALSE(refused.diagnostics.at(0).notes.empty());
+}
+
+TEST(Compiler, AFileTellsWhatItReads) {
+  const isoshade::Compilation made = isoshade::compile_file(graphs + "/effects/cartoon.json");
+  ASSERT_TRUE(made) << made.text;
+  EXPECT_FALSE(made.find("cartoon.glsl")->bytes.empty());
+  EXPECT_EQ(made.read.at(0), graphs + "/effects/cartoon.json");
+  EXPECT_GT(made.read.size(), 3u);
+  EXPECT_TRUE(std::ranges::any_of(made.read, [](const std::string& path) { return path.find("library/toon") != std::string::npos; }));
+}
+
+TEST(Compiler, PrecisionChangesTheText) {
+  isoshade::CompileOptions precise;
+  precise.precision = isoshade::Precision::precise;
+  const std::string file = graphs + "/materials/cook_torrance.json";
+  const isoshade::Compilation standard = isoshade::compile_file(file), other = isoshade::compile_file(graphs + "/effects/cartoon.json", precise);
+  ASSERT_TRUE(standard && other) << standard.text << other.text;
+  EXPECT_NE(isoshade::compile_file(graphs + "/effects/cartoon.json").find("cartoon.glsl")->bytes,
+            other.find("cartoon.glsl")->bytes);
+}
+
+TEST(Compiler, ErrorsAreDataWithPlaces) {
+  isoshade::Document wrong = half;
+  wrong.text.replace(wrong.text.find("\"in2\""), 5, "\"in3\"");
+  const isoshade::Compilation made = isoshade::compile(wrong);
+  EXPECT_EQ(made.status, isoshade::Status::failed);
+  EXPECT_TRUE(made.files.empty());
+  ASSERT_FALSE(made.diagnostics.empty());
+  const isoshade::Diagnostic& diagnostic = made.diagnostics[0];
+  EXPECT_EQ(diagnostic.id, "unknown-port");
+  EXPECT_EQ(diagnostic.severity, isoshade::Severity::error);
+  EXPECT_EQ(diagnostic.where.file, half.path);
+  EXPECT_EQ(diagnostic.where.line, 3);
+  EXPECT_FALSE(diagnostic.suggestion.empty());
+  EXPECT_NE(made.text.find("^"), std::string::npos) << made.text;
+}
+
+TEST(Compiler, AMissingFileAndASceneAreErrors) {
+  EXPECT_EQ(isoshade::compile_file("/nowhere/a.json").diagnostics.at(0).id, "missing-file");
+  EXPECT_EQ(isoshade::compile_file(graphs + "/scenes/material_balls.json").diagnostics.at(0).id, "wrong-kind");
+  EXPECT_EQ(isoshade::compile_file("-").diagnostics.at(0).id, "missing-file") << "standard input belongs to the program";
+  EXPECT_EQ(isoshade::compile({"", ""}).diagnostics.at(0).id, "syntax");
+}
+
+TEST(Compiler, ThreadsCompileAtOnce) {
+  const char* names[] = {"/effects/cartoon.json", "/materials/cook_torrance.json", "/effects/height_fog.json", "/effects/terrain.json"};
+  std::vector<std::string> alone, together(8);
+  const auto text_of = [&](size_t i) {
+    const isoshade::Compilation made = isoshade::compile_file(graphs + names[i % std::size(names)]);
+    EXPECT_TRUE(made) << made.text;
+    std::string text;
+    for (const isoshade::File& file : made.files) text += file.name + file.bytes;
+    return text;
+  };
+  for (size_t i = 0; i < together.size(); ++i) alone.push_back(text_of(i));
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < together.size(); ++i) threads.emplace_back([&, i] { together[i] = text_of(i); });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(together, alone);
+}
+
+}  // namespace
