@@ -18,6 +18,7 @@ packages=(
   # testing
   libgtest-dev libbenchmark-dev glslang-tools clang valgrind vulkan-validationlayers python3-jsonschema
   g++-aarch64-linux-gnu qemu-user
+  chromium chromium-driver
 )
 
 missing=()

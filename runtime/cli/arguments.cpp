@@ -346,6 +346,15 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
 
+  PageArguments page;
+  CLI::App* page_app = app.add_subcommand(
+      "page", "Write a scene as one HTML page: WebGL2 draws it, and a panel changes its parameters");
+  page_app->add_option("SCENE", page.scene, "A scene document")->required();
+  page_app->add_option("-o,--output", page.output, "FILE.html")->required();
+  add_precision(*page_app, page.precision);
+  add_changes(*page_app, page.changes);
+  add_choice(*page_app, page.choice);
+
   BenchArguments bench;
   CLI::App* bench_app = app.add_subcommand(
       "bench", "Measure run time and error: formulas, precisions, lane counts, Vulkan and GLSL's built-ins");
@@ -426,6 +435,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   if (check_app->parsed()) parsed.check = check;
   if (format_app->parsed()) parsed.format = format;
   if (draw_app->parsed()) parsed.draw = draw;
+  if (page_app->parsed()) parsed.page = page;
   if (bench_app->parsed()) parsed.bench = bench;
   if (cache_app->parsed()) parsed.cache = cache;
   if (devices_app->parsed()) parsed.devices = devices;

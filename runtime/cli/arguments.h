@@ -118,6 +118,14 @@ struct DrawArguments {
   int depth = 1;  ///< how many levels of called functions are drawn
 };
 
+struct PageArguments {
+  std::string scene;
+  std::string output;
+  SceneChanges changes;
+  functions::Tier precision = functions::Tier::standard;
+  BackendChoice choice;
+};
+
 struct BenchArguments {
   std::string output;  ///< a folder; empty: print only the summary
   std::string only;    ///< part of the names of effects; empty: all
@@ -164,6 +172,7 @@ struct Arguments {
   std::optional<CheckArguments> check;
   std::optional<FormatArguments> format;
   std::optional<DrawArguments> draw;
+  std::optional<PageArguments> page;
   std::optional<BenchArguments> bench;
   std::optional<CacheArguments> cache;
   std::optional<DevicesArguments> devices;

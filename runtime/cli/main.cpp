@@ -99,6 +99,7 @@ int run(int argc, char** argv) {
   if (arguments->check) return check_documents(*arguments->check, arguments->common);
   if (arguments->format) return format(*arguments->format, arguments->common);
   if (arguments->draw) return draw(*arguments->draw, arguments->common);
+  if (arguments->page) return page(*arguments->page, arguments->common);
   if (arguments->bench) return bench(*arguments->bench, arguments->common);
   if (arguments->cache) return cache(*arguments->cache, arguments->common);
   if (arguments->nodes) return nodes(*arguments->nodes, arguments->common);

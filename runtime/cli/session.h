@@ -59,6 +59,7 @@ int eval(const EvalArguments& arguments, const Common& common);
 int check_documents(const CheckArguments& arguments, const Common& common);
 int format(const FormatArguments& arguments, const Common& common);
 int draw(const DrawArguments& arguments, const Common& common);
+int page(const PageArguments& arguments, const Common& common);
 int bench(const BenchArguments& arguments, const Common& common);
 int cache(const CacheArguments& arguments, const Common& common);
 int devices(const DevicesArguments& arguments, const Common& common);

@@ -270,7 +270,7 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
     const bool unseen = std::ranges::none_of(copy.views, may_see);
     bool left_out = false;
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
-      if (effect.parameters.is_off(pass.enabled, parameters[part])) {
+      if (!options_.disabled && effect.parameters.is_off(pass.enabled, parameters[part])) {
         ++skipped[p].disabled;
       } else if (unseen) {
         left_out = true;

@@ -12,3 +12,9 @@ add_test(NAME schema_test
   COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/schema_test.py
     $<TARGET_FILE:isoshade> ${PROJECT_SOURCE_DIR}/graphs)
 set_tests_properties(schema_test PROPERTIES TIMEOUT 120 LABELS unit)
+
+# chromium, chromium-driver
+add_test(NAME page_in_browser_test
+  COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/page_test.py
+    $<TARGET_FILE:isoshade> ${PROJECT_SOURCE_DIR}/graphs)
+set_tests_properties(page_in_browser_test PROPERTIES TIMEOUT 600 LABELS unit SKIP_RETURN_CODE 77)

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws the frame: the scene into an image of floats with its depth, then the posts over it.
+"use strict";
+
+/// Clip space of isoshade to that of WebGL: depth is 0 to w in one and -w to w in the other, unless WebGL can be told. The
+/// depths in images are those of isoshade in both cases, but more precise far away if it can.
+function chooseClipSpace(gl) {
+  const control = gl.getExtension("EXT_clip_control");
+  control?.clipControlEXT(control.LOWER_LEFT_EXT, control.ZERO_TO_ONE_EXT);
+  return control ? [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] : [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, -1, 1];
+}
+
+/// What names of a forward pair begin with that are not the document's (compiler/interface/forward.def).
+const prefix = "isoshade_";
+
+/// The size of a post's image. The fraction is a float, the product exact.
+function postSize({ size }, width, height) {
+  return [Math.ceil(width * size), Math.ceil(height * size)];
+}
+
+/// The number at the end of a sampler's name: "image2".
+const numberIn = (name) => Number(name.match(/\d+$/)[0]);
+
+class Frame {
+  constructor(gl, data, values) {
+    Object.assign(this, { gl, data, values });
+    this.webglFromClip = chooseClipSpace(gl);
+    this.hasFloats = gl.getExtension("EXT_color_buffer_float") !== null;
+    this.colorFormat = this.hasFloats ? gl.RGBA32F : gl.RGBA8;
+    this.programs = data.programs.map((program) => new Program(gl, program));
+    this.textures = data.textures.map((texture) => this.makeImage(texture));
+    this.textureOfRecord = new Map(data.textures.map(({ record }, number) => [record, number]));
+    this.noImage = makeTexture(gl, gl.RGBA32F, 1, 1);
+    this.targets = new Map();  // by the name of what draws into them
+    this.makeMeshes();
+    this.slices = new Slices(gl);
+    this.places = data.draws.map((draw) => this.reservePlaces(this.programs[draw.program]));
+    this.postPlaces = data.posts.map((post) => this.reservePlaces(this.programs[post.program]));
+  }
+
+  /// Where the blocks of one draw lie in the buffer.
+  reservePlaces(program) {
+    return program.blocks.map(({ size }) => this.slices.reserve(size));
+  }
+
+  makeMeshes() {
+    const { gl, data } = this;
+    const vertices = gl.createBuffer(), indices = gl.createBuffer();
+    gl.bindVertexArray(null);
+    gl.bindBuffer(gl.ARRAY_BUFFER, vertices);
+    gl.bufferData(gl.ARRAY_BUFFER, data.vertices, gl.STATIC_DRAW);
+    this.arrays = this.programs.map((program) => {
+      const array = gl.createVertexArray();
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
+      for (const { name, location } of program.attributes) {
+        const part = own(data.layouts.vertex, name.slice(`${prefix}in_`.length));
+        if (!part) throw new Error(`the page has no vertex attribute ${name}`);
+        gl.enableVertexAttribArray(location);
+        gl.vertexAttribPointer(location, part[1], gl.FLOAT, false, 4 * data.layouts.vertex_words, 4 * part[0]);
+      }
+      return array;
+    });
+    if (this.arrays.length > 0) gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, data.indices, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+  }
+
+  /// A texture with its mip levels. Bytes become the floats that isoshade reads, by its own tables.
+  makeImage({ levels }) {
+    const { gl, data } = this;
+    const texture = makeTexture(gl, gl.RGBA32F, levels[0].width, levels[0].height, levels.length);
+    levels.forEach(({ first, width, height, table }, level) => {
+      let texels = data.texels.subarray(first, first + 4 * width * height);
+      if (table >= 0) {
+        const bytes = data.texel_bytes.subarray(4 * first, 4 * (first + width * height));
+        texels = Float32Array.from(bytes, (byte, i) => data.texels[(i % 4 === 3 ? 0 : table) + byte]);
+      }
+      gl.texSubImage2D(gl.TEXTURE_2D, level, 0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
+    });
+    return texture;
+  }
+
+  target(name, width, height, hasDepth) {
+    const old = this.targets.get(name);
+    if (old && old.width === width && old.height === height) return old;
+    if (old) old.release();
+    const made = new Target(this.gl, width, height, this.colorFormat, hasDepth);
+    this.targets.set(name, made);
+    return made;
+  }
+
+  /// Fills the blocks of a draw or post with values by the names of their members. `state`: the values of each block.
+  fillBlocks(program, places, state) {
+    program.blocks.forEach((block, b) => {
+      const values = state[block.name.slice(prefix.length)];
+      fillBlock(this.slices.view, places[b], block, (name) => values.get(name.slice(name.indexOf(".") + 1)));
+    });
+  }
+
+  viewValues(view, time) {
+    return new Map(Object.entries({
+      view_from_world: affine(view.view), world_from_view: affine(view.inverse_view),
+      clip_from_view: multiply(this.webglFromClip, view.projection), eye: view.eye, pixel_size: view.pixel_size, time: [time],
+    }));
+  }
+  screenValues(view, time, size) {
+    const vectors = ["view_ray", "ray_origin"].flatMap((name) =>
+      ["", "_right", "_down"].map((end, i) => [name + end, view[name].slice(3 * i, 3 * i + 3)]));
+    return new Map([...Object.entries({ ...view, size, time: [time] }), ...vectors]);
+  }
+  objectValues(draw) {
+    const object = unpack(this.data.records, draw.object, this.data.layouts.object);
+    return new Map([["world_from_object", affine(object.model)], ["object_from_world", affine(object.inverse)]]);
+  }
+
+  /// The block has room for more lights than the scene has.
+  lightValues() {
+    const { lights, layouts } = this.data;
+    const values = new Map([["count", [Math.min(lights.length, layouts.most_lights)]]]);
+    for (let i = 0; i < layouts.most_lights; ++i)
+      for (const [name, part] of Object.entries(unpack(lights[i] ?? [], 0, layouts.light)))
+        values.set(`lights[${i}].${name}`, part);
+    return values;
+  }
+
+  /// The members of a block of parameters, from the words of a record.
+  parameterValues({ parameters }, record) {
+    const values = new Map();
+    parameters.forEach((name, word) => {
+      let end = word + 1;
+      while (end < parameters.length && parameters[end] === "") ++end;
+      if (name !== "") values.set(name, record.slice(word, end));
+    });
+    return values;
+  }
+
+  /// Binds to each sampler of a program what `textureOf` gives for its name.
+  bindSamplers(program, textureOf) {
+    const { gl } = this;
+    program.samplers.forEach(({ name }, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, textureOf(name.slice(prefix.length)) ?? this.noImage);
+    });
+  }
+
+  /// Whether a pass or post is switched off by a parameter.
+  isOff(enabled, record) {
+    return enabled !== null && record[enabled] === 0;
+  }
+
+  /// Fills the blocks of all draws and posts. `view`: the parts of the view's record.
+  fill(view, time, width, height) {
+    const { data, programs, slices } = this;
+    const Lights = this.lightValues();
+    const View = this.viewValues(view, time);
+    this.drawRecords = data.draws.map((draw, d) => {
+      const first = draw.object + data.layouts.object_words;
+      const record = data.records.slice(first, first + draw.words);
+      this.values.apply(draw.owner, record);
+      this.fillBlocks(programs[draw.program], this.places[d], {
+        View, Lights, Object: this.objectValues(draw),
+        Parameters: this.parameterValues(data.programs[draw.program], record),
+      });
+      return record;
+    });
+    this.postRecords = data.posts.map((post, p) => {
+      const record = Float32Array.from(post.record);
+      this.values.apply(post.owner, record);
+      this.fillBlocks(programs[post.program], this.postPlaces[p], {
+        Screen: this.screenValues(view, time, postSize(post, width, height)),
+        Parameters: this.parameterValues(data.programs[post.program], record),
+      });
+      return record;
+    });
+    slices.upload();
+  }
+
+  use(number, places) {
+    const { gl } = this;
+    const program = this.programs[number];
+    gl.useProgram(program.program);
+    gl.bindVertexArray(this.arrays[number]);
+    program.blocks.forEach((block, b) => this.slices.bind(block.index, places[b], block.size));
+    return program;
+  }
+
+  /// The finished image: colours as floats where the browser has them.
+  draw(view, time, width, height) {
+    const { gl, data } = this;
+    this.fill(view, time, width, height);
+    const scene = this.target("scene", width, height, true);
+    scene.use();
+    gl.clearBufferfv(gl.COLOR, 0, data.background);
+    gl.depthMask(true);
+    gl.clearBufferfv(gl.DEPTH, 0, [0]);
+    gl.enable(gl.DEPTH_TEST);
+    data.draws.forEach((draw, d) => {
+      const record = this.drawRecords[d];
+      if (this.isOff(draw.enabled, record)) return;
+      const program = this.use(draw.program, this.places[d]);
+      this.bindSamplers(program, (name) => this.textures[this.textureOfRecord.get(record[draw.images + numberIn(name)])]);
+      if (draw.cull === "none") gl.disable(gl.CULL_FACE);
+      else gl.enable(gl.CULL_FACE);
+      if (draw.cull !== "none") gl.cullFace(draw.cull === "back" ? gl.BACK : gl.FRONT);
+      gl.depthFunc(draw.depth === "always" ? gl.ALWAYS : gl.GREATER);
+      gl.drawElements(gl.TRIANGLES, draw.count, gl.UNSIGNED_INT, 4 * draw.first);
+    });
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.CULL_FACE);
+    return this.drawPosts(scene, width, height);
+  }
+
+  drawPosts(scene, width, height) {
+    const { gl, data } = this;
+    const images = [scene];
+    data.posts.forEach((post, p) => {
+      if (this.isOff(post.enabled, this.postRecords[p])) {
+        images.push(images[post.over]);
+        return;
+      }
+      const made = this.target(`post ${p}`, ...postSize(post, width, height), false);
+      const program = this.use(post.program, this.postPlaces[p]);
+      this.bindSamplers(program, (name) => (name === "depth_picture" ? scene.depth
+        : images[post.sources[numberIn(name)]]?.color));
+      made.use();
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      images.push(made);
+    });
+    return images[images.length - 1];
+  }
+}

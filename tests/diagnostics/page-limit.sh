@@ -1,0 +1,1 @@
+"$ISOSHADE" page scene.json --samples 4 -o "$OUT/a.html"
