@@ -139,7 +139,7 @@ TEST_F(PageTest, HasThePostsAndWhatTheyGoOver) {
   const json data = data_of(*page);
   ASSERT_EQ(data.at("posts").size(), 2u);
   EXPECT_EQ(data.at("posts")[0].at("over"), 0);
-  EXPECT_EQ(data.at("posts")[1].at("sources"), json({0}));
+  EXPECT_EQ(data.at("posts")[1].at("sources"), json::array({0}));
   EXPECT_EQ(data.at("owners")[2].at("name"), "second");
 }
 

@@ -22,7 +22,7 @@ function limited(field, value) {
 }
 
 /// A slider and a field for one number of a value. `read` and `write` access the number. Where the value is tiny in its
-/// range, the slider moves more finely near the range's beginning.
+/// range, the slider moves more finely near the range's beginning. It gives numbers of four digits.
 function numberControl(field, label, read, write) {
   const [low, high] = sliderRange(field, read());
   const whole = field.type === "integer";
@@ -35,7 +35,7 @@ function numberControl(field, label, read, write) {
   const take = (value) => {
     if (Number.isFinite(value)) write(limited(field, whole ? Math.round(value) : value));
   };
-  range.addEventListener("input", () => take(low + (high - low) * Number(range.value) ** power));
+  range.addEventListener("input", () => take(Number((low + (high - low) * Number(range.value) ** power).toPrecision(4))));
   number.addEventListener("change", () => {
     if (number.value !== "") take(Number(number.value));
     number.value = floatText(read());
