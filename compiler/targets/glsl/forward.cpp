@@ -227,10 +227,11 @@ class Pair {
           return std::ranges::any_of(text.parameters, [](const ParameterText& p) { return p.text.starts_with("isoshade_cofactors"); });
         }))
       out +=
-          "// A column of the matrix that takes normals to world space.\n"
+          "// A column of the matrix that takes normals to world space; they lead out of a mesh that is mirrored, too.\n"
           "vec3 isoshade_cofactors(int column) {\n"
           "  mat3 m = mat3(isoshade_object.world_from_object);\n"
-          "  return column == 0 ? cross(m[1], m[2]) : column == 1 ? cross(m[2], m[0]) : cross(m[0], m[1]);\n}\n\n";
+          "  vec3 cofactors = column == 0 ? cross(m[1], m[2]) : column == 1 ? cross(m[2], m[0]) : cross(m[0], m[1]);\n"
+          "  return dot(m[column], cofactors) < 0.0 ? -cofactors : cofactors;\n}\n\n";
     const LinkedNames names{own(""), pure_.tier.empty() ? "" : "_" + pure_.tier, {}};
     const LinkedText text = print_linked(program_.module, entries, *language(dialect_), names, texts);
     return out + text.shared + "\n" + text.own + "\n";
