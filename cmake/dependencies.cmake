@@ -4,13 +4,13 @@
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
-# glslang's package file refers to SPIRV-Tools without finding it.
+# glslang's package file refers to SPIRV-Tools and Threads without finding them.
+find_package(Threads REQUIRED)
 find_package(SPIRV-Tools REQUIRED)
 find_package(SPIRV-Tools-opt REQUIRED)
 find_package(glslang REQUIRED)
 
 if(ISOSHADE_RUNTIME)
-  find_package(Threads REQUIRED)
   find_package(glm REQUIRED)
   find_package(TBB REQUIRED)
   find_package(OpenEXR 3.1 REQUIRED)

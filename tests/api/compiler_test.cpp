@@ -25,7 +25,7 @@ TEST(Compiler, ADocumentInMemoryBecomesTexts) {
   ASSERT_NE(made.find("half.glsl"), nullptr);
   ASSERT_NE(made.find("half.h"), nullptr);
   EXPECT_NE(made.find("half.glsl")->bytes.find("float half"), std::string::npos) << made.find("half.glsl")->bytes;
-  EXPECT_NE(made.find("half.h")->bytes.find("namespace half"), std::string::npos);
+  EXPECT_NE(made.find("half.h")->bytes.find("::half"), std::string::npos);
   EXPECT_EQ(made.find("half.txt"), nullptr);
   EXPECT_EQ(made.read, std::vector<std::string>{half.path});
 }
@@ -37,7 +37,7 @@ TEST(Compiler, OptionsChooseTargetsAndPrefix) {
   const isoshade::Compilation made = isoshade::compile(half, options);
   ASSERT_TRUE(made) << made.text;
   EXPECT_EQ(made.find("half.glsl"), nullptr);
-  EXPECT_NE(made.find("half.h")->bytes.find("namespace mine"), std::string::npos);
+  EXPECT_NE(made.find("half.h")->bytes.find("::mine"), std::string::npos);
   options.prefix = "not a name";
   EXPECT_EQ(isoshade::compile(half, options).diagnostics.at(0).id, "bad-id");
   options.prefix = "";
