@@ -30,18 +30,10 @@ std::optional<std::vector<const emit::Target*>> find_targets(const std::vector<s
   return found;
 }
 
-/// Whether a prefix can begin names in every language.
-bool is_prefix(const std::string& prefix, Diagnostics& diagnostics) {
-  if (prefix.empty() || graph::is_id(prefix)) return true;
-  diagnostics.report(support::Id::bad_id,
-                     support::quote(prefix) + " is no prefix: it must match [A-Za-z_][A-Za-z0-9_]{0,127}");
-  return false;
-}
-
 bool compile_source(const support::Source& source, const CompileOptions& options, check::Library& library,
                     Compilation& made, Diagnostics& diagnostics) {
   const auto languages = find_targets(options.targets, diagnostics);
-  if (!languages || !is_prefix(options.prefix, diagnostics)) return false;
+  if (!languages) return false;
   driver::CompileOptions compile;
   compile.library = &library;
   compile.tier = api::tier_of(options.precision);

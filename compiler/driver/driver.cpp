@@ -10,6 +10,7 @@
 #include "compiler/lower/screen.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/support/visible.h"
 #include "compiler/targets/cpp/cpp.h"
 
 namespace isoshade::driver {
@@ -268,6 +269,11 @@ std::optional<Program> compile_function(const support::Source& source, const Com
 
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, Diagnostics& diagnostics) {
+  if (const std::string& prefix = shader_options.prefix; !prefix.empty() && !graph::is_id(prefix)) {
+    diagnostics.report(support::Id::bad_id, support::quote(prefix) +
+                                                " is not a valid prefix: it must match [A-Za-z_][A-Za-z0-9_]{0,127}");
+    return std::nullopt;
+  }
   const auto typed = read_graph(source, std::nullopt, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
   const graph::Graph& graph = typed->graph;

@@ -116,7 +116,7 @@ class PurePrinter {
   }
 
  private:
-  std::string prefix() const { return pure_.has_prefix() ? shader_.prefix + "_" : ""; }
+  std::string prefix() const { return pure_.has_prefix() ? name_prefix(shader_) : ""; }
   std::string record(std::string_view name) const { return prefix() + std::string(name); }
 
   std::vector<std::string> records() const {
@@ -237,6 +237,10 @@ class PurePrinter {
 
 }  // namespace
 
+std::string name_prefix(const PureShader& shader) {
+  return shader.prefix.ends_with('_') ? shader.prefix : shader.prefix + "_";
+}
+
 std::string_view point_record(PureKind kind) {
   switch (kind) {
     case PureKind::shade: return "Surface";
@@ -280,7 +284,7 @@ std::vector<PureField> point_fields(const PureShader& shader, PureKind kind) {
 std::string function_name(const PureShader& shader, const PureFunction& function, bool with_prefix) {
   if (function.kind == PureKind::function) return shader.prefix;
   const std::string& name = shader.module.functions[function.entry].name;
-  return with_prefix ? shader.prefix + "_" + name : name;
+  return with_prefix ? name_prefix(shader) + name : name;
 }
 
 std::vector<HostCall> host_calls(const PureShader& shader, std::span<const PureFunction> functions) {

@@ -43,6 +43,8 @@ struct PureShader {
   std::map<std::string, interface::HostFunction> host;  ///< by name in the module
 };
 
+/// What the shader's names in GLSL begin with: the prefix and one underscore, for GLSL ES reserves two in a row.
+std::string name_prefix(const PureShader& shader);
 /// The struct whose fields a function is given for each point that it is called for; empty for functions.
 std::string_view point_record(PureKind kind);
 /// Its fields: all that the functions of this kind read, with the derivatives that they need.

@@ -38,7 +38,7 @@ std::string glsl_field(const std::string& target, const ir::Type type, int word)
 }
 
 std::string glsl_program(const Subject& subject, const std::string& pure) {
-  const std::string prefix = subject.shader->pure.prefix + "_";
+  const std::string prefix = name_prefix(subject.shader->pure);
   const std::string after = std::to_string(std::size(lower::frame_buffers) + 2);
   std::string text =
       glsl::head() +

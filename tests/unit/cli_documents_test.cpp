@@ -57,9 +57,12 @@ TEST_F(Cli, PrefixNamesAllThatAShaderDefines) {
   EXPECT_NE(glsl.find(" mine_shade(mine_"), std::string::npos) << glsl;
   EXPECT_EQ(glsl.find(" flat_"), std::string::npos) << glsl;
   EXPECT_NE(cpp.find("namespace isoshade::shaders::mine {"), std::string::npos) << cpp;
-  // A prefix is data: it becomes an identifier that neither language reserves.
-  EXPECT_EQ(run(command + "'int; } evil {'").exit, 0);
-  EXPECT_NE(read(folder_ / "out" / "flat.h").find("namespace isoshade::shaders::int_evil {"), std::string::npos);
+  const Outcome code = run(command + "'int; } evil {'");
+  EXPECT_EQ(code.exit, 2);
+  EXPECT_NE(code.text.find("is not a valid prefix"), std::string::npos) << code.text;
+  // A prefix that is a word of a language gets one underscore, and no name has two in a row.
+  EXPECT_EQ(run(command + "flat").exit, 0);
+  EXPECT_NE(read(folder_ / "out" / "flat.glsl").find(" flat_shade(flat_"), std::string::npos);
 }
 
 TEST_F(Cli, CompiledTextsAreTheSameInEveryWorkingDirectory) {

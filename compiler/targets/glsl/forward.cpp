@@ -66,7 +66,7 @@ class Pair {
 
  private:
   bool is_post() const { return pure_.functions[program_.main].kind == PureKind::post_process; }
-  std::string prefixed(std::string_view name) const { return pure_.prefix + "_" + std::string(name); }
+  std::string prefixed(std::string_view name) const { return name_prefix(pure_) + std::string(name); }
   /// A name of the wrapper. No name of the shader begins so.
   static std::string own(std::string_view name) { return "isoshade_" + std::string(name); }
 

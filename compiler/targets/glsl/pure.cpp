@@ -66,11 +66,11 @@ class Pure final : public PureLanguage {
     for (const std::string& signature : signatures) out += "//   " + signature + "\n";
     out += "//\n";
     comment_lines(out,
-                  "No main, no layout, no buffers. Each name begins with " + shader.prefix +
-                      "_, or with iso_ if it is of the library, whose functions all such files share.",
+                  "No main, no layout, no buffers. Each name begins with " + name_prefix(shader) +
+                      ", or with iso_ if it is of the library, whose functions all such files share.",
                   0);
     out += head_;
-    const std::string guard = capitals(shader.prefix) + "_GLSL";
+    const std::string guard = capitals(name_prefix(shader)) + "GLSL";
     out += "#ifndef " + guard + "\n#define " + guard + "\n\n";
     if (has_hidden_zero) out += hidden_zero_head;
     return out + prototypes(calls);
