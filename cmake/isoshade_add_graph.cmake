@@ -43,7 +43,6 @@ function(isoshade_add_graph target graph)
   _isoshade_name_of(${graph} name)
 
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}.isoshade)
-  # In the order in which the command writes them: the rule of its depfile is that of the first.
   set(all_languages glsl cpp glsl-es)
   set(extensions .glsl .h .es.glsl)
   set(languages "")

@@ -104,10 +104,13 @@ class Writer {
     return true;
   }
 
-  /// The rule that says what the first file depends on: the document, the functions that it uses, its images.
+  /// The rule that says what the files depend on: the document, the functions that it uses, its images.
   bool depfile(const check::Library& library) {
     if (arguments_.depfile.empty() || written_.empty()) return true;
-    std::string rule = escaped(written_.front()) + ": " + escaped(arguments_.graph);
+    std::string rule;
+    for (const std::string& path : written_) rule += escaped(path) + " ";
+    rule.back() = ':';
+    rule += " " + escaped(arguments_.graph);
     for (const std::vector<std::string>& paths : {library.loaded(), images_})
       for (const std::string& path : paths) rule += " \\\n  " + escaped(path);
     return may_write(arguments_.depfile, diagnostics_) &&
