@@ -91,7 +91,7 @@ struct Function {
   std::vector<ValueId> operands;
   std::vector<Block> blocks;
 
-  /// A library function that `expand` has not given its body yet.
+  /// A library function that `expand` has not given its body yet, or one that the program defines which links the module.
   bool is_declaration() const { return blocks.empty(); }
 
   std::span<const ValueId> operands_of(const Instruction& i) const {

@@ -67,7 +67,6 @@ TEST(Validator, ReportsTheFirstBreachOfEveryRule) {
       {"origin 0", [](Module& m) { f(m).origins[0].line = 3; }},
       {"origin 0", [](Module& m) { f(m).origins.clear(); }},
       {"the node of origin 1", [](Module& m) { f(m).origins[1].node = "//"; }},
-      {"neither a body nor", [](Module& m) { m.functions[1].library.clear(); }},
       {"names no origin", [](Module& m) { f(m).values[2].names = 99; }},
       {"wrong number of parameters", [](Module& m) { f(m).blocks[0].parameters.pop_back(); }},
       {"a block's parameter is no value", [](Module& m) { f(m).blocks[0].parameters[0] = 999; }},
