@@ -97,7 +97,7 @@ std::vector<int32_t> table_of(const Subject& subject, size_t rows) {
   return table;
 }
 
-Subjects subjects_of(const std::vector<std::filesystem::path>& paths) {
+Subjects subjects_of(const std::vector<std::filesystem::path>& paths, driver::Division division) {
   Subjects made;
   support::Diagnostics diagnostics;
   check::Library library(ISOSHADE_GRAPHS "/library");
@@ -109,7 +109,7 @@ Subjects subjects_of(const std::vector<std::filesystem::path>& paths) {
     if (kind != graph::DocumentKind::effect && kind != graph::DocumentKind::post) continue;
     // Documents of several folders may have the same name.
     const std::string prefix = path.parent_path().filename().string() + "_" + path.stem().string();
-    auto shader = driver::compile_shader(source, options, {.prefix = prefix}, diagnostics);
+    auto shader = driver::compile_shader(source, options, {prefix, division}, diagnostics);
     EXPECT_TRUE(shader) << diagnostics.text();
     if (!shader) continue;
     made.shaders.push_back(std::make_unique<driver::Shader>(*std::move(shader)));

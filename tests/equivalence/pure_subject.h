@@ -32,7 +32,8 @@ struct Subjects {
 };
 
 /// Of the effects and posts among some documents.
-Subjects subjects_of(const std::vector<std::filesystem::path>& paths);
+Subjects subjects_of(const std::vector<std::filesystem::path>& paths,
+                     driver::Division division = driver::Division::native);
 
 int words_of(const std::vector<emit::PureField>& fields);
 /// Random points and parameters, within their ranges.

@@ -232,8 +232,9 @@ void expect_all_agree(const std::vector<fs::path>& paths, size_t rows, bool with
   options.glsl = [&](const driver::Program& program, driver::Division) { return texts.at(program.name); };
   const auto device = vulkan::create(options, diagnostics);
   ASSERT_TRUE(device) << diagnostics.text();
+  const Subjects divided = subjects_of(paths, device->division());
   for (size_t i = 0; i < subjects.all.size(); ++i) {
-    const Subject& subject = subjects.all[i];
+    const Subject& subject = divided.all[i];
     texts[subject.runtime.name] =
         glsl_program(subject, driver::text(*subject.shader, *targets::find("glsl")));
     expect_same(subject, expected[i], evaluate(*device, subject, tables[i]), "vulkan");
