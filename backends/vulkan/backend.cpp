@@ -90,7 +90,7 @@ const DeviceInfo& VulkanBackend::device() const { return device_->info(); }
 
 std::string VulkanBackend::description() const {
   return device().name + ", " + device().driver + ", " +
-         (division_ == driver::Division::native ? "native" : "exact") + " division" +
+         std::string(driver::name(division_)) + " division" +
          (device_->validates() ? ", validated" : "");
 }
 

@@ -52,12 +52,6 @@ std::string cycle_from(const Scope& last, const std::string& path) {
   return text + support::visible(users.back()->document);
 }
 
-/// A document's name in its collection, the same in every working directory.
-std::string name_in_collection(const std::string& canonical, const std::string& home, bool in_library) {
-  if (!is_within(canonical, home)) return fs::path(canonical).filename().string();
-  return (in_library ? "library/" : "") + fs::path(canonical).lexically_relative(home).string();
-}
-
 }  // namespace
 
 Library::Library(std::string root) : root_(std::move(root)) {
@@ -74,7 +68,7 @@ Scope Library::scope_of(const std::string& path) const {
   scope.folder = folder_of(path);
   const bool in_library = is_within(scope.path, files_.library);
   scope.home = in_library ? files_.library : graph::home_of(path, files_);
-  scope.document = name_in_collection(scope.path, scope.home, in_library);
+  scope.document = graph::name_in_collection(scope.path, scope.home, files_);
   return scope;
 }
 
@@ -144,7 +138,7 @@ std::shared_ptr<const TypedGraph> Library::load(const Location& location, const 
   scope.path = location.canonical;
   scope.folder = folder_of(location.path);
   scope.home = location.in_library ? files_.library : from.home;
-  scope.document = name_in_collection(scope.path, scope.home, location.in_library);
+  scope.document = graph::name_in_collection(scope.path, scope.home, files_);
   scope.user = &from;
   scope.depth = from.depth + 1;
   if (scope.depth > max_document_depth) {

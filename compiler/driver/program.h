@@ -2,6 +2,7 @@
 // A program: one kernel at the end of the pipeline, with its reflection. Backends run programs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,6 +45,9 @@ struct Program {
 
 /// Whether the device computes `/` and `sqrt`, or Newton steps with an exact integer remainder do.
 enum class Division : uint8_t { native, exact };
+inline constexpr std::array division_names{"native", "exact"};
+
+constexpr std::string_view name(Division division) { return division_names[static_cast<size_t>(division)]; }
 
 /// For messages: `the pixel stage of "fur" (fur.json)`.
 std::string description(const Program& program);

@@ -15,7 +15,6 @@ using interface::HostRow;
 namespace place = interface::place;
 
 constexpr std::array kinds_of_points{PureKind::shade, PureKind::move_vertex, PureKind::post_process};
-constexpr std::string_view parameters_record = "Parameters";
 
 /// The local that holds a function's point.
 std::string_view point_name(PureKind kind) {
@@ -120,7 +119,7 @@ class PurePrinter {
   std::string record(std::string_view name) const { return prefix() + std::string(name); }
 
   std::vector<std::string> records() const {
-    std::vector<std::string> names{record(parameters_record)};
+    std::vector<std::string> names{record(parameters_record), record(results_record)};
     for (const PureKind kind : kinds_of_points) names.push_back(record(point_record(kind)));
     return names;
   }
@@ -176,7 +175,13 @@ class PurePrinter {
     text.name = function_name(shader_, function, pure_.has_prefix());
     for (const HostCall call : host_calls(shader_, std::span(&function, 1)))
       text.asks.push_back(interface::row(call).name);
-    if (function.kind == PureKind::function) return;
+    if (function.kind == PureKind::function) {
+      const std::vector<PureField> results = result_fields(shader_, function);
+      if (results.size() < 2) return;
+      text.result_type = record(results_record);
+      for (const PureField& result : results) text.result_fields.push_back(result.name);
+      return;
+    }
     const std::vector<ir::Parameter>& parameters = shader_.module.functions[function.entry].parameters;
     for (size_t i = 0; i < parameters.size(); ++i) {
       const bool is_derivative = i >= function.bindings.size();
@@ -278,6 +283,18 @@ std::vector<PureField> point_fields(const PureShader& shader, PureKind kind) {
   Names names(Scope::field);
   std::vector<PureField> fields;
   for (Found& field : found) fields.push_back({names.take(field.parameter.name), std::move(field.parameter)});
+  return fields;
+}
+
+std::vector<PureField> result_fields(const PureShader& shader, const PureFunction& function) {
+  Names names(Scope::field);
+  std::vector<PureField> fields;
+  for (const ir::Result& result : shader.module.functions[function.entry].results) {
+    PureField& field = fields.emplace_back();
+    field.name = names.take(result.name);
+    field.parameter.name = result.name;
+    field.parameter.type = result.type;
+  }
   return fields;
 }
 

@@ -45,10 +45,14 @@ struct PureShader {
 
 /// What the shader's names in GLSL begin with: the prefix and one underscore, for GLSL ES reserves two in a row.
 std::string name_prefix(const PureShader& shader);
+/// The structs of the parameters, and of the results of a function document that has several.
+inline constexpr std::string_view parameters_record = "Parameters", results_record = "Result";
 /// The struct whose fields a function is given for each point that it is called for; empty for functions.
 std::string_view point_record(PureKind kind);
 /// Its fields: all that the functions of this kind read, with the derivatives that they need.
 std::vector<PureField> point_fields(const PureShader& shader, PureKind kind);
+/// The fields of results_record.
+std::vector<PureField> result_fields(const PureShader& shader, const PureFunction& function);
 /// The name of a function in GLSL. In C++ it is the same in the namespace, without the prefix.
 std::string function_name(const PureShader& shader, const PureFunction& function, bool with_prefix);
 /// What functions of the shader ask their host for, in the order of host.def.

@@ -47,6 +47,12 @@ support::Source read_document(const std::string& path, const FileRule& rule,
   return read_source(path, diagnostics, where);
 }
 
+std::string name_in_collection(const std::string& canonical, const std::string& home, const FileRule& rule) {
+  const bool in_library = is_within(canonical, rule.library);
+  const fs::path name = fs::path(canonical).lexically_relative(in_library ? rule.library : home);
+  return ((in_library ? "library" : "") / name).string();
+}
+
 bool may_read(const std::string& path, const support::Span& where, const FileRule& rule,
               support::Diagnostics& diagnostics) {
   const support::Source& source = where.file;

@@ -41,6 +41,10 @@ std::string home_of(const std::string& document_path, const FileRule& rule = {})
 support::Source read_document(const std::string& path, const FileRule& rule,
                               support::Diagnostics& diagnostics, const support::Span& where = {});
 
+/// The name of a file that a document refers to, the same in every working directory: "library/..." in the library, else the
+/// path from the folder `home` of the document.
+std::string name_in_collection(const std::string& canonical, const std::string& home, const FileRule& rule);
+
 /// Whether the text at `where` may refer to the file; reports it if not. The user may name any file: `where` is then
 /// empty or in a command line argument.
 bool may_read(const std::string& path, const support::Span& where, const FileRule& rule,

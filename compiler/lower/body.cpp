@@ -200,8 +200,7 @@ Value Body::image(uint32_t index) {
   const ir::ValueId texture = environment_.image_slots[environment_.images->of_node[index]];
   const ir::ValueId otherwise = read(operands[port::default_value]).id();
   const ir::ValueId texcoord = read(operands[port::texcoord]).id();
-  const Sampling sampling{filter_of(graph_, node), address_mode_of(graph_, node, port::uaddressmode),
-                          address_mode_of(graph_, node, port::vaddressmode)};
+  const Sampling sampling = sampling_of(graph_, node);
   const auto picture = [&] {
     const ir::ValueId color = sample(b_, environment_.interface, sampling, texture, texcoord);
     std::array<ir::ValueId, 4> components;

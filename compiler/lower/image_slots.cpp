@@ -39,18 +39,18 @@ ImageSlot slot_of(const check::TypedGraph& graph, uint32_t index) {
     slot.place = graph.files[file.index].place;
   }
   slot.decoding = decoding_of(graph, node);
-  slot.mips = filter_of(graph, node) == nodes::Filter::trilinear;
+  slot.samplings = {sampling_of(graph, node)};
+  slot.mips = slot.samplings[0].filter == nodes::Filter::trilinear;
   return slot;
 }
 
 }  // namespace
 
-nodes::Filter filter_of(const check::TypedGraph& graph, const check::Node& node) {
-  return static_cast<nodes::Filter>(graph.operands_of(node)[port::filtertype].index);
-}
-
-nodes::AddressMode address_mode_of(const check::TypedGraph& graph, const check::Node& node, size_t port) {
-  return static_cast<nodes::AddressMode>(graph.operands_of(node)[port].index);
+Sampling sampling_of(const check::TypedGraph& graph, const check::Node& node) {
+  const std::span<const Operand> operands = graph.operands_of(node);
+  return {static_cast<nodes::Filter>(operands[port::filtertype].index),
+          static_cast<nodes::AddressMode>(operands[port::uaddressmode].index),
+          static_cast<nodes::AddressMode>(operands[port::vaddressmode].index)};
 }
 
 ImageSlots image_slots(const check::TypedGraph& graph) {
@@ -72,6 +72,8 @@ ImageSlots image_slots(const check::TypedGraph& graph) {
     result.of_node[i] = static_cast<uint32_t>(found - result.slots.begin());
     if (found != result.slots.end()) {
       found->mips |= slot.mips;
+      if (std::ranges::find(found->samplings, slot.samplings[0]) == found->samplings.end())
+        found->samplings.push_back(slot.samplings[0]);
       continue;
     }
     // A parameter that is read in two ways has two slots; none is called as a parameter or a column of one.

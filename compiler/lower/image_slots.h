@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/check/typed_graph.h"
+#include "compiler/lower/sampling.h"
 #include "compiler/nodes/row.h"
 
 namespace isoshade::lower {
@@ -25,6 +26,7 @@ struct ImageSlot {
   graph::TextRange place;     ///< where it says so
   Decoding decoding = Decoding::linear;
   bool mips = false;  ///< levels of half the size are read too
+  std::vector<Sampling> samplings;  ///< the ways in which nodes read it, each once
 };
 
 struct ImageSlots {
@@ -36,7 +38,6 @@ struct ImageSlots {
 ImageSlots image_slots(const check::TypedGraph& graph);
 
 /// Of a node whose row is an image.
-nodes::Filter filter_of(const check::TypedGraph& graph, const check::Node& node);
-nodes::AddressMode address_mode_of(const check::TypedGraph& graph, const check::Node& node, size_t port);
+Sampling sampling_of(const check::TypedGraph& graph, const check::Node& node);
 
 }  // namespace isoshade::lower

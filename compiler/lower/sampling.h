@@ -18,6 +18,8 @@ namespace isoshade::lower {
 struct Sampling {
   nodes::Filter filter;
   nodes::AddressMode u, v;
+
+  friend bool operator==(const Sampling&, const Sampling&) = default;
 };
 
 /// The colour of a texture at `texcoord`, as a vec4 under `builder`. Beyond edges of AddressMode::constant it is that

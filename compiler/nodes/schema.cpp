@@ -8,18 +8,23 @@
 
 namespace isoshade::nodes {
 
-SchemaJson object_schema(const std::vector<SchemaKey>& keys) {
+SchemaJson closed_schema(const std::vector<SchemaKey>& keys) {
   SchemaJson properties = SchemaJson::object();
   std::vector<std::string_view> required;
   for (const SchemaKey& key : keys) {
     properties[std::string(key.name)] = key.schema;
     if (key.required) required.push_back(key.name);
   }
-  properties["extras"] = true;
   SchemaJson schema{{"type", "object"}};
   if (!required.empty()) schema["required"] = required;
   schema["properties"] = std::move(properties);
   schema["additionalProperties"] = false;
+  return schema;
+}
+
+SchemaJson object_schema(const std::vector<SchemaKey>& keys) {
+  SchemaJson schema = closed_schema(keys);
+  schema["properties"]["extras"] = true;
   return schema;
 }
 

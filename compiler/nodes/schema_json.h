@@ -44,6 +44,8 @@ inline SchemaJson array_schema(SchemaJson item, size_t least, size_t most) {
 }
 inline SchemaJson numbers_schema(size_t count) { return array_schema(number_schema(), count, count); }
 
+/// An object with these keys and no other.
+SchemaJson closed_schema(const std::vector<SchemaKey>& keys);
 /// An object with these keys, `extras` and no other.
 SchemaJson object_schema(const std::vector<SchemaKey>& keys);
 /// An object whose keys are ids.

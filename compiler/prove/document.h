@@ -37,6 +37,12 @@ struct NotProved {
   size_t later = 0;  ///< undecided, of Proof::later
 };
 
+/// The same without a report; nothing is shown.
+NotProved count(const Subject& subject, const Proof& proof);
+
+/// The effort for each subject of a document: they share the error analysis time of one function.
+Effort effort_for(const std::vector<Subject>& subjects);
+
 enum class Detail : uint8_t {
   brief,  ///< for people: the first ones, with a few of their inputs
   all,    ///< for tools

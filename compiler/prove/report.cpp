@@ -224,6 +224,20 @@ void Reporter::report(const Entry& entry) {
 
 }  // namespace
 
+NotProved count(const Subject& subject, const Proof& proof) {
+  NotProved counts;
+  for (const Entry& entry : entries_of(subject.tape, proof.unproved))
+    ++(entry.is_refuted() ? counts.refuted : counts.undecided);
+  counts.later = entries_of(subject.tape, proof.later).size();
+  return counts;
+}
+
+Effort effort_for(const std::vector<Subject>& subjects) {
+  Effort effort;
+  effort.error /= std::max<size_t>(subjects.size(), 1);
+  return effort;
+}
+
 NotProved report(const TypedGraph& graph, const Subject& subject, const Proof& proof,
                  support::Diagnostics& diagnostics, Detail detail) {
   const bool all = detail == Detail::all;

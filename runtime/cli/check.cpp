@@ -136,8 +136,7 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   Result result = Result::proved;
   const auto where = restrictions(*subjects, arguments.where, diagnostics);
   if (!where) return Result::error;
-  prove::Effort effort;  // the passes of an effect share the error analysis time of one function
-  effort.error /= std::max<size_t>(subjects->size(), 1);
+  const prove::Effort effort = prove::effort_for(*subjects);
   for (const prove::Subject& subject : *subjects) {
     const prove::Proof proof = prove::prove(subject.tape, effort, *where);
     if (proof.vacuous) {

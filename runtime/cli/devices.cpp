@@ -23,8 +23,7 @@ bool print_device(const vulkan::DeviceInfo& device, support::Diagnostics& diagno
   for (const vulkan::Check& check : backend->probe().checks)
     std::printf("   %s  %s%s%s\n", check.passed ? "ok    " : "FAILED", check.name.c_str(),
                 check.detail.empty() ? "" : ": ", check.detail.c_str());
-  const char* division = backend->division() == driver::Division::native ? "native" : "exact";
-  std::printf("   division: %s; %s\n", division,
+  std::printf("   division: %s; %s\n", std::string(driver::name(backend->division())).c_str(),
               backend->probe().passed() ? "images are identical to those of every proven device"
                                         : "NOT proven: images may differ from those of other devices");
   return true;

@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Conformance, Vulkan,
                          [](const auto& info) {
                            const driver::Division division = std::get<0>(info.param);
                            const vulkan::EvalStage stage = std::get<1>(info.param);
-                           return std::string(division == driver::Division::native ? "native" : "exact") +
+                           return std::string(driver::name(division)) +
                                   (stage == vulkan::EvalStage::fragment ? "_fragment" : "_vertex");
                          });
 #endif

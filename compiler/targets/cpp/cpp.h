@@ -19,6 +19,8 @@ const emit::Target& target();
 
 /// Spells the functions of a pure shader.
 std::unique_ptr<emit::Language> linked_language(const ir::Module& module, std::span<const uint32_t> entries);
+/// The namespace of a pure shader.
+std::string space(const emit::PureShader& shader);
 /// A pure shader, whole: a header.
 std::string pure(const emit::PureShader& shader);
 

@@ -35,7 +35,6 @@ std::vector<uint32_t> entries_of(const PureShader& shader) {
 }
 
 /// Not the prefix alone: a global function may have its name ("time").
-std::string space(const PureShader& shader) { return "isoshade::shaders::" + shader.prefix; }
 
 class Pure final : public PureLanguage {
  public:
@@ -83,6 +82,8 @@ class Pure final : public PureLanguage {
 };
 
 }  // namespace
+
+std::string space(const PureShader& shader) { return "isoshade::shaders::" + shader.prefix; }
 
 std::string pure(const PureShader& shader) { return print_pure(shader, Pure(shader)); }
 
