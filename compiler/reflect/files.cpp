@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/reflect/files.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "compiler/lower/image_slots.h"
+#include "compiler/support/read_file.h"
+#include "compiler/support/sha256.h"
+
+namespace isoshade::reflect {
+
+namespace {
+
+constexpr size_t most_image_bytes = size_t{1} << 30;
+
+/// The documents of all functions that a graph uses, by canonical path.
+void add_functions(const check::TypedGraph& graph, std::map<std::string, const check::TypedGraph*>& found,
+                   std::set<const check::TypedGraph*>& seen) {
+  for (const check::Node& node : graph.nodes) {
+    const check::TypedGraph* callee = node.callee.get();
+    if (callee == nullptr || !seen.insert(callee).second) continue;
+    found.emplace(graph::canonical_path(callee->graph.source->path()), callee);
+    add_functions(*callee, found, seen);
+  }
+}
+
+}  // namespace
+
+std::string file_name(const check::TypedGraph& graph, const std::string& path, const graph::FileRule& rule) {
+  if (path.empty()) return "";
+  return graph::name_in_collection(graph::canonical_path(path),
+                                   graph::home_of(graph.graph.source->path(), rule), rule);
+}
+
+std::vector<ReadFile> files_of(const check::TypedGraph& graph, const graph::FileRule& rule) {
+  std::vector<ReadFile> files;
+  const auto add_document = [&](const support::SourceFile& source, FileRole role) {
+    const std::string name = file_name(graph, source.path(), rule);
+    files.push_back({source.path(), {name, role, support::sha256(source.text())}});
+  };
+  add_document(*graph.graph.source, FileRole::document);
+  std::map<std::string, const check::TypedGraph*> functions;
+  std::set<const check::TypedGraph*> seen;
+  add_functions(graph, functions, seen);
+  for (const auto& [path, function] : functions) add_document(*function->graph.source, FileRole::function);
+  const std::string& document = graph.graph.source->path();
+  std::map<std::string, std::string> images;  // by canonical path, as to be opened
+  for (const lower::ImageSlot& slot : lower::image_slots(graph).slots) {
+    if (slot.path.empty()) continue;
+    const std::string path = graph::path_beside(document, slot.path);
+    images.emplace(graph::canonical_path(path), path);
+  }
+  for (const auto& [canonical, path] : images) {
+    ReadFile& read = files.emplace_back(ReadFile{path, {file_name(graph, path, rule), FileRole::image, {}}});
+    if (!rule.permits(canonical, graph::home_of(document, rule))) continue;
+    if (const auto image = support::read_file(path, most_image_bytes); image.bytes)
+      read.file.sha256 = support::sha256(*image.bytes);
+  }
+  std::ranges::stable_sort(files, {}, [](const ReadFile& file) {
+    return std::pair(file.file.role, std::string_view(file.file.path));
+  });
+  return files;
+}
+
+}  // namespace isoshade::reflect
