@@ -8,7 +8,8 @@
 #
 # - The C++ is included by the document's name, #include "glow.h": its folder is an include directory of TARGET, which gets
 #   the headers and flags of isoshade::lanes.
-# - Properties of TARGET list the files: ISOSHADE_GLSL, ISOSHADE_CPP, ISOSHADE_GLSL_ES, and all of them ISOSHADE_FILES.
+# - Properties of TARGET list the files: ISOSHADE_GLSL, ISOSHADE_CPP, ISOSHADE_GLSL_ES, ISOSHADE_REFLECTION, and all of
+#   them ISOSHADE_FILES.
 #
 # The files are made again when the graph, a function that it uses, an image that it names, or isoshade changes. Files whose
 # text stays the same keep their time, so that what is compiled from them is not compiled again. After a document was given
@@ -46,7 +47,8 @@ function(isoshade_add_graph target graph)
   set(all_languages glsl cpp glsl-es)
   set(extensions .glsl .h .es.glsl)
   set(languages "")
-  set(files "")
+  set(files ${folder}/${name}.json)
+  set_property(TARGET ${target} APPEND PROPERTY ISOSHADE_REFLECTION ${files})
   foreach(language extension IN ZIP_LISTS all_languages extensions)
     if(language IN_LIST arg_TARGETS)
       list(REMOVE_ITEM arg_TARGETS ${language})

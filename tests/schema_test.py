@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tables of graphs/README.md are what `isoshade nodes --markdown` and `isoshade schema --markdown` print, the
-shipped JSON Schema is what `isoshade schema` prints, every shipped document is valid by it, and documents with one
-fault are not.
+shipped JSON Schemas are what `isoshade schema` prints, every shipped document and its reflection are valid by them, and
+documents and reflections with one fault are not.
 
 schema_test.py ISOSHADE GRAPHS_FOLDER            tests
 schema_test.py ISOSHADE GRAPHS_FOLDER --update   writes the tables and the schema instead
@@ -12,6 +12,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import jsonschema
@@ -19,13 +20,14 @@ import jsonschema
 ISOSHADE, GRAPHS = sys.argv[1], pathlib.Path(sys.argv[2])
 MANUAL = GRAPHS / "README.md"
 SHIPPED = GRAPHS / "schema" / "isoshade.schema.json"
+SHIPPED_REFLECTION = GRAPHS / "schema" / "isoshade.reflection.schema.json"
 
 
 def printed(*arguments):
     return subprocess.run([ISOSHADE, *arguments], check=True, capture_output=True, text=True).stdout
 
 
-TABLES = ("nodes", "--markdown"), ("schema", "--markdown")
+TABLES = ("nodes", "--markdown"), ("schema", "--markdown"), ("schema", "--reflection", "--markdown")
 
 
 def manual_parts(arguments):
@@ -40,6 +42,7 @@ def manual_parts(arguments):
 def update():
     SHIPPED.parent.mkdir(exist_ok=True)
     SHIPPED.write_text(printed("schema"))
+    SHIPPED_REFLECTION.write_text(printed("schema", "--reflection"))
     for arguments in TABLES:
         before, _, after = manual_parts(arguments)
         MANUAL.write_text(before + printed(*arguments) + after)
@@ -175,9 +178,8 @@ class Schema(unittest.TestCase):
         self.assertTrue(SHIPPED.read_text() == self.text, "update it: schema_test.py ... --update")
 
     def test_every_shipped_document_is_valid(self):
-        documents = [p for p in GRAPHS.rglob("*.json") if p.parent.name != "schema"]
-        self.assertGreater(len(documents), 10)
-        for path in documents:
+        self.assertGreater(len(documents()), 10)
+        for path in documents():
             self.assertEqual(self.errors(json.loads(path.read_text())), [], path)
 
     def test_documents_of_every_kind_are_valid(self):
@@ -188,6 +190,64 @@ class Schema(unittest.TestCase):
     def test_documents_with_one_thing_wrong_are_not(self):
         for document, path, value in BROKEN:
             self.assertNotEqual(self.errors(changed(document, path, value)), [], f"{path} = {value}")
+
+
+def documents():
+    return [p for p in GRAPHS.rglob("*.json") if p.parent.name != "schema"]
+
+
+class Reflection(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.text = printed("schema", "--reflection")
+        schema = json.loads(cls.text)
+        jsonschema.Draft7Validator.check_schema(schema)
+        cls.validator = jsonschema.Draft7Validator(schema)
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+
+    def reflect(self, path, *arguments):
+        """The reflection of a document."""
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder.name))
+        subprocess.run([ISOSHADE, "compile", path, "-o", folder, "--target", "glsl", "-q", *arguments], check=True)
+        (reflection,) = folder.glob("*.json")
+        return json.loads(reflection.read_text())
+
+    def errors(self, reflection):
+        return [f"{'/'.join(map(str, e.absolute_path))}: {e.message}" for e in self.validator.iter_errors(reflection)]
+
+    def test_the_shipped_schema_is_current(self):
+        self.assertTrue(SHIPPED_REFLECTION.read_text() == self.text, "update it: schema_test.py ... --update")
+
+    def test_the_reflection_of_every_shipped_document_is_valid(self):
+        kinds = set()
+        for path in documents():
+            if "scene" in json.loads(path.read_text()):
+                continue
+            reflection = self.reflect(path)
+            kinds.add(reflection["kind"])
+            self.assertEqual(self.errors(reflection), [], path)
+        self.assertEqual(kinds, {"function", "effect", "post"})
+
+    def test_reflections_with_one_fault_are_not_valid(self):
+        reflection = self.reflect(GRAPHS / "materials" / "textured.json")
+        self.assertEqual(self.errors(reflection), [])
+        for path, value in [
+            ("isoshade_reflection", 2),
+            ("kind", "scene"),
+            ("bindings", []),
+            ("files", ...),
+            ("files/0/role", "header"),
+            ("structs/0/bytes/scalar", {"size": 4, "alignment": 4}),
+            ("structs/0/fields/0/type", "mat3"),
+            ("structs/0/fields/0/bytes/std140", ...),
+            ("parameters/0/type", "any"),
+            ("images/0/samplings/0/filter", "cubic"),
+            ("passes/0/states/cull", ...),
+            ("passes/0/states/blend", "none"),
+            ("host/0/name", "printf"),
+        ]:
+            self.assertNotEqual(self.errors(changed(reflection, path, value)), [], f"{path} = {value}")
 
 
 class Manual(unittest.TestCase):

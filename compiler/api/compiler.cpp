@@ -5,6 +5,8 @@
 #include "compiler/driver/shader.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/graph/document.h"
+#include "compiler/reflect/files.h"
+#include "compiler/reflect/reflect.h"
 #include "compiler/support/visible.h"
 #include "compiler/targets/targets.h"
 
@@ -45,10 +47,11 @@ bool compile_source(const support::Source& source, const CompileOptions& options
     made.files.push_back(
         {shader->pure.name + std::string(target->extension), driver::text(*shader, *target)});
   }
-  made.read = library.loaded();
-  made.read.insert(made.read.begin(), source->path());
-  for (const driver::Image& image : shader->parameters.images)
-    if (!image.file.empty()) made.read.push_back(image.file);
+  const auto reflection = reflect::reflect(*shader, {division, library.files(), false, {}}, diagnostics);
+  if (!reflection) return false;
+  made.files.push_back({shader->pure.name + ".json", reflect::json(*reflection)});
+  for (reflect::ReadFile& file : reflect::files_of(*shader->typed, library.files()))
+    made.read.push_back(std::move(file.path));
   return true;
 }
 

@@ -102,22 +102,6 @@ Binding bind_taps(uint32_t node, std::string node_name, int count) {
   return {source::TapCount{node}, {std::move(node_name), ir::int_type, "taps", true}, {taps, taps}};
 }
 
-std::string_view kind_name(const Source& source) {
-  using Name = std::string_view;
-  return std::visit(Cases{[](const source::Attribute&) { return Name("surface attribute"); },
-                          [](const source::MatrixColumn&) { return Name("matrix column"); },
-                          [](const source::Time&) { return Name("time"); },
-                          [](const source::Input&) { return Name("parameter"); },
-                          [](const source::Image&) { return Name("image"); },
-                          [](const source::LightCount&) { return Name("light count"); },
-                          [](const source::ScreenValue&) { return Name("screen value"); },
-                          [](const source::PixelOfImage&) { return Name("pixel of an image"); },
-                          [](const source::OffsetInPixel&) { return Name("offset in a pixel"); },
-                          [](const source::SizeOfImage&) { return Name("size of an image"); },
-                          [](const source::TapCount&) { return Name("tap count"); }},
-                    source);
-}
-
 const HostFunction* Interface::find(uint32_t function) const {
   const auto found = std::ranges::find(host, function, &HostFunction::function);
   return found == host.end() ? nullptr : &*found;

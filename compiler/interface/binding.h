@@ -179,9 +179,6 @@ struct Binding {
   int element = -1;  ///< of a matrix's column: the number of its first element in the matrix
 };
 
-/// For reflection: "surface attribute", "parameter", ...
-std::string_view kind_name(const Source& source);
-
 // Bindings whose parameter follows from what they are.
 Binding bind(SurfaceValue value);
 Binding bind(SpaceMatrix matrix, uint32_t column);

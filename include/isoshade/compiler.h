@@ -32,7 +32,7 @@ struct CompileOptions {
 
 /// A file as `isoshade compile -o FOLDER` writes it. C++ includes the headers that are installed in isoshade/lanes.
 struct File {
-  std::string name;  ///< "glow.glsl"
+  std::string name;  ///< "glow.glsl"; "glow.json" is the reflection (graphs/README.md, "Reflection")
   std::string bytes;
 };
 

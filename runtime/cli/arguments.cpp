@@ -6,6 +6,7 @@
 #include <isoshade/version.h>
 #include <map>
 
+#include "compiler/driver/program.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/targets/targets.h"
@@ -98,7 +99,7 @@ const CLI::Validator compared_names(
     },
     "cpu,vulkan,interpreter");
 const CLI::IsMember lane_names({"1", "4", "8", "16", "8x2", "16x2"});
-const CLI::IsMember division_names({"native", "exact"});
+const CLI::IsMember division_names(driver::division_names);
 
 void add_fail_on_nan(CLI::App& app, bool& fail) {
   app.add_flag("--fail-on-nan", fail, "Exit with 1 if a pixel is infinite or NaN, before or after the posts");
@@ -239,6 +240,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->default_str("fetch");
   compile_app->add_option("--prefix", compile.prefix,
                           "What names begin with, the namespace in C++; the document's name if not given");
+  compile_app->add_flag("--check", compile.check, "Add what `isoshade check` finds to the reflection; may take seconds");
   compile_app->add_option("--division", compile.division, "Division in the GLSL: native or exact")
       ->check(division_names)
       ->capture_default_str();
@@ -393,8 +395,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   SchemaArguments schema;
   CLI::App* schema_app =
       app.add_subcommand("schema", "Print the JSON Schema (draft-07) of all documents, for editors");
+  schema_app->add_flag("--reflection", schema.reflection, "The schema of what `compile` writes as NAME.json");
   schema_app->add_flag("--markdown", schema.markdown,
-                       "Print the keys of scenes as the tables of graphs/README.md instead");
+                       "Print the keys of scenes, or of reflections, as the tables of graphs/README.md instead");
 
   try {
     app.parse(argc, argv);

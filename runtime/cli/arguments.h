@@ -53,6 +53,7 @@ struct CompileArguments {
   bool hardware_samplers = false;  ///< of a forward pair
   std::string prefix;
   std::string division = "native";
+  bool check = false;  ///< the reflection says what is proved
   functions::Tier precision = functions::Tier::standard;
   std::string depfile;         ///< receives the names of all files that were read; empty: none
   bool without_lanes = false;  ///< the program has the headers of isoshade/lanes
@@ -150,7 +151,8 @@ struct NodesArguments {
 };
 
 struct SchemaArguments {
-  bool markdown = false;  ///< the keys of scenes, as the manual's tables
+  bool reflection = false;  ///< of reflections, not of documents
+  bool markdown = false;    ///< the keys of scenes or reflections, as the manual's tables
 };
 
 struct Common {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "backends/cpu/compiler.h"
@@ -13,7 +12,11 @@
 #include "compiler/driver/forward.h"
 #include "compiler/driver/shader.h"
 #include "compiler/driver/target_limits.h"
+#include "compiler/lower/frame_layout.h"
+#include "compiler/reflect/files.h"
+#include "compiler/reflect/reflect.h"
 #include "compiler/support/visible.h"
+#include "compiler/targets/glsl/glsl.h"
 #include "compiler/targets/targets.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
@@ -22,7 +25,20 @@ namespace isoshade::cli {
 
 namespace {
 
-using nlohmann::ordered_json;
+/// The files of a document with isoshade's stages, and what the reflection tells of them.
+struct StageFiles {
+  struct File {
+    reflect::Stage stage;
+    driver::Program program;
+  };
+  std::vector<File> files;
+  reflect::List<reflect::RecordWords> record;
+
+  void add(driver::Program program, std::string file, reflect::Optional<std::string> pass = {}) {
+    const std::string stage(lower::name(program.stage));
+    files.push_back({{{stage}, std::move(pass), std::move(file)}, std::move(program)});
+  }
+};
 
 /// Writes the files of one compilation.
 class Writer {
@@ -52,16 +68,24 @@ class Writer {
   /// A pure shader in each language.
   bool shader(const driver::Shader& shader) {
     return for_each_target([&](const emit::Target& target, bool, const emit::Binary* binary) {
-      if (binary != nullptr) return cannot(binary->name, "functions to include", "; or add --wrapper isoshade");
+      if (binary != nullptr)
+        return cannot(binary->name, "functions to include", "; or add --wrapper isoshade");
       return driver::within_limits(shader, target, division(), diagnostics_) &&
              write(shader.pure.name + std::string(target.extension), driver::text(shader, target));
     });
   }
 
+  std::vector<driver::ForwardPair> pairs(const driver::Shader& shader, const emit::Target& target) const {
+    const auto sampling =
+        arguments_.hardware_samplers ? emit::ForwardSampling::samplers : emit::ForwardSampling::fetch;
+    return driver::forward_pairs(shader, target, sampling);
+  }
+
   /// The forward pairs in each language.
   bool forward(const driver::Shader& shader) {
     if (shader.kind == graph::DocumentKind::function) {
-      diagnostics_.report(support::Id::unsupported, "a function has no vertices and pixels to stand around it")
+      diagnostics_
+          .report(support::Id::unsupported, "a function has no vertices and pixels to stand around it")
           .suggest("leave out --wrapper forward");
       return false;
     }
@@ -69,13 +93,37 @@ class Writer {
       if (binary != nullptr || target.forward == nullptr)
         return cannot(binary != nullptr ? binary->name : target.name, "forward shaders");
       if (!driver::within_limits(shader, target, division(), diagnostics_)) return false;
-      const auto sampling = arguments_.hardware_samplers ? emit::ForwardSampling::samplers : emit::ForwardSampling::fetch;
-      for (const driver::ForwardPair& pair : driver::forward_pairs(shader, target, sampling)) {
+      for (const driver::ForwardPair& pair : pairs(shader, target)) {
         const std::string stem = pair.stem + std::string(target.forward_infix);
-        if (!write(stem + ".vert", pair.text.vertex) || !write(stem + ".frag", pair.text.fragment)) return false;
+        if (!write(stem + ".vert", pair.text.vertex) || !write(stem + ".frag", pair.text.fragment))
+          return false;
       }
       return true;
     });
+  }
+
+  bool stages(const StageFiles& stages) {
+    return std::ranges::all_of(stages.files,
+                               [&](const auto& file) { return program(file.stage.file, file.program); });
+  }
+
+  /// The reflection comes first: if it would overwrite a document, no other file is written either.
+  bool all(const driver::Shader& shader, const std::optional<StageFiles>& stages,
+           const graph::FileRule& files) {
+    const bool is_forward = arguments_.wrapper == Wrapper::forward;
+    std::vector<driver::ForwardPair> bound;  // alike in all languages
+    if (is_forward) bound = pairs(shader, glsl::target());
+    auto reflection = reflect::reflect(shader, {division(), files, arguments_.check, bound}, diagnostics_);
+    if (!reflection) return false;
+    for (const reflect::ReadFile& read : reflect::files_of(*shader.typed, files))
+      if (read.file.role == reflect::FileRole::image && read.file.sha256) images_.push_back(read.path);
+    if (stages) {
+      reflection->stages = reflect::Stages{{}, stages->record};
+      for (const StageFiles::File& file : stages->files) reflection->stages->programs.push_back(file.stage);
+    }
+    if (!write(reflection->name + ".json", reflect::json(*reflection))) return false;
+    if (stages) return this->stages(*stages);
+    return is_forward ? forward(shader) : this->shader(shader);
   }
 
   bool headers() {
@@ -115,11 +163,6 @@ class Writer {
       for (const std::string& path : paths) rule += " \\\n  " + escaped(path);
     return may_write(arguments_.depfile, diagnostics_) &&
            scene::write_file(arguments_.depfile, rule + "\n", diagnostics_);
-  }
-
-  void reads(const std::vector<driver::Image>& images) {
-    for (const driver::Image& image : images)
-      if (!image.file.empty()) images_.push_back(image.file);
   }
 
   const std::vector<std::string>& written() const { return written_; }
@@ -166,7 +209,8 @@ class Writer {
     for (const emit::Target* target : targets::all()) {
       const bool is_text = wants(target->name);
       const bool is_binary = target->binary != nullptr && wants(target->binary->name);
-      if ((is_text || is_binary) && !write(*target, is_text, is_binary ? target->binary : nullptr)) return false;
+      if ((is_text || is_binary) && !write(*target, is_text, is_binary ? target->binary : nullptr))
+        return false;
     }
     return true;
   }
@@ -181,36 +225,8 @@ class Writer {
   const CompileArguments& arguments_;
   support::Diagnostics& diagnostics_;
   std::vector<std::string> written_;
-  std::vector<std::string> images_;  ///< paths of those that the document names
+  std::vector<std::string> images_;  ///< paths of those that were read, to hash them
 };
-
-ordered_json reflect(const std::vector<driver::Field>& fields) {
-  ordered_json list = ordered_json::array();
-  for (const driver::Field& field : fields) {
-    ordered_json row{{"name", field.name}, {"type", field.type}, {"words", field.words}};
-    if (!field.value.empty()) row["value"] = field.value;
-    if (field.min) row["min"] = *field.min;
-    if (field.max) row["max"] = *field.max;
-    if (!field.names.empty()) row["enum"] = field.names;
-    list.push_back(row);
-  }
-  return list;
-}
-
-/// The parameters of the document's function, in order.
-ordered_json reflect(const std::vector<interface::Binding>& bindings) {
-  ordered_json list = ordered_json::array();
-  for (const interface::Binding& binding : bindings) {
-    const ir::Parameter& parameter = binding.parameter;
-    ordered_json row{{"name", parameter.name}};
-    if (!parameter.group.empty()) row["group"] = parameter.group;
-    row["kind"] = interface::kind_name(binding.source);
-    row["type"] = ir::name(parameter.type);
-    row["uniform"] = parameter.uniform;
-    list.push_back(row);
-  }
-  return list;
-}
 
 /// The common beginning of the file names of a pass. Two names of 128 characters with an extension exceed the length
 /// limit of file names; long names are therefore cut, and the number of the pass keeps them unique ("." is in no name).
@@ -222,60 +238,38 @@ std::string pass_stem(const driver::Effect& effect, size_t pass) {
          std::to_string(pass);
 }
 
-// The reflection is written first: if it would overwrite a document, no other file is written either.
-bool write_effect(const driver::Effect& effect, std::string_view precision, Writer& writer) {
-  ordered_json reflection{{"effect", effect.name}, {"document", effect.document}, {"precision", precision}};
-  reflection["parameters"] = reflect(effect.parameters.fields);
-  // One word each in the record, after the parameters.
-  for (const driver::Image& image : effect.parameters.images) {
-    constexpr const char* decodings[] = {"linear", "srgb", "srgb if 8 bits"};
-    ordered_json row{{"name", image.slot.name}, {"file", image.file}};
-    if (!image.slot.parameter.empty()) row["parameter"] = image.slot.parameter;
-    row["decoding"] = decodings[static_cast<size_t>(image.slot.decoding)];
-    row["mips"] = image.slot.mips;
-    reflection["images"].push_back(row);
+std::optional<StageFiles> stages_of(const support::Source& source, graph::DocumentKind kind,
+                                    const driver::CompileOptions& options,
+                                    support::Diagnostics& diagnostics) {
+  StageFiles stages;
+  switch (kind) {
+    case graph::DocumentKind::function:
+      if (auto program = driver::compile_function(source, options, diagnostics)) {
+        const std::string name = program->name;
+        stages.add(*std::move(program), name);
+        return stages;
+      }
+      return std::nullopt;
+    case graph::DocumentKind::post:
+      if (auto post = driver::compile_post(source, options, diagnostics)) {
+        stages.record = reflect::record_of(post->parameters, 0);
+        stages.add(std::move(post->program), post->name + ".post");
+        return stages;
+      }
+      return std::nullopt;
+    case graph::DocumentKind::effect:
+    case graph::DocumentKind::scene: break;
   }
-  for (size_t i = 0; i < effect.passes.size(); ++i) {
-    const driver::EffectPass& pass = effect.passes[i];
-    const std::string stem = pass_stem(effect, i);
-    ordered_json row{{"name", pass.name}, {"vertex", stem + ".vertex"}, {"pixel", stem + ".pixel"}};
-    for (const interface::PassStateRow& state : interface::pass_states())
-      row[std::string(state.key)] = state.values[state.get(pass.state)];
-    row["vertex_inputs"] = reflect(pass.vertex.bindings);
-    row["pixel_inputs"] = reflect(pass.pixel.bindings);
-    row["moves_vertices"] = pass.moves_vertices;
-    if (pass.enabled) row["enabled"] = effect.parameters.fields[*pass.enabled].name;
-    reflection["passes"].push_back(row);
+  auto effect = driver::compile_effect(source, options, diagnostics);
+  if (!effect) return std::nullopt;
+  stages.record = reflect::record_of(effect->parameters, lower::object_word::parameters);
+  for (size_t i = 0; i < effect->passes.size(); ++i) {
+    driver::EffectPass& pass = effect->passes[i];
+    const std::string stem = pass_stem(*effect, i);
+    stages.add(std::move(pass.vertex), stem + ".vertex", pass.name);
+    stages.add(std::move(pass.pixel), stem + ".pixel", pass.name);
   }
-  if (!writer.write(effect.name + ".json", reflection.dump(2) + "\n")) return false;
-  for (size_t i = 0; i < effect.passes.size(); ++i) {
-    const std::string stem = pass_stem(effect, i);
-    if (!writer.program(stem + ".vertex", effect.passes[i].vertex) ||
-        !writer.program(stem + ".pixel", effect.passes[i].pixel))
-      return false;
-  }
-  return true;
-}
-
-bool write_post(const driver::Post& post, std::string_view precision, Writer& writer) {
-  ordered_json reflection{{"post", post.name}, {"document", post.document}, {"precision", precision}};
-  reflection["parameters"] = reflect(post.parameters.fields);
-  reflection["taps"] = reflect(post.parameters.taps);
-  reflection["images"] = post.images;
-  reflection["reads_depth"] = post.reads_depth;
-  reflection["inputs"] = reflect(post.program.bindings);
-  if (post.enabled) reflection["enabled"] = post.parameters.fields[*post.enabled].name;
-  return writer.write(post.name + ".json", reflection.dump(2) + "\n") &&
-         writer.program(post.name + ".post", post.program);
-}
-
-bool write_function(const driver::Program& program, std::string_view precision, Writer& writer) {
-  ordered_json reflection{
-      {"function", program.name}, {"document", program.document}, {"precision", precision}};
-  reflection["inputs"] = reflect(program.inputs);
-  reflection["outputs"] = reflect(program.results);
-  return writer.write(program.name + ".json", reflection.dump(2) + "\n") &&
-         writer.program(program.name, program);
+  return stages;
 }
 
 }  // namespace
@@ -302,22 +296,18 @@ int compile(const CompileArguments& arguments, const Common& common) {
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
   const auto kind = source != nullptr ? driver::kind_of(source, diagnostics) : std::nullopt;
   bool done = false;
-  if (kind && arguments.wrapper != Wrapper::isoshade) {
-    const driver::ShaderOptions shader_options{arguments.prefix, writer.division()};
-    const auto shader = driver::compile_shader(source, options, shader_options, diagnostics);
-    const bool is_pure = arguments.wrapper == Wrapper::none;
-    done = shader && (is_pure ? writer.shader(*shader) : writer.forward(*shader));
-    if (shader) writer.reads(shader->parameters.images);
-  } else if (kind == graph::DocumentKind::function) {
-    const auto program = driver::compile_function(source, options, diagnostics);
-    done = program && write_function(*program, functions::tier_name(options.tier), writer);
-  } else if (kind == graph::DocumentKind::post) {
-    const auto post = driver::compile_post(source, options, diagnostics);
-    done = post && write_post(*post, functions::tier_name(options.tier), writer);
-  } else if (kind) {
-    const auto effect = driver::compile_effect(source, options, diagnostics);
-    done = effect && write_effect(*effect, functions::tier_name(options.tier), writer);
-    if (effect) writer.reads(effect->parameters.images);
+  if (kind) {
+    std::optional<StageFiles> stages;
+    driver::CompileOptions shader_options = options;
+    if (arguments.wrapper == Wrapper::isoshade) {
+      stages = stages_of(source, *kind, options, diagnostics);
+      shader_options.dump = {};  // of the stages alone
+    }
+    if (stages || arguments.wrapper != Wrapper::isoshade) {
+      const auto shader =
+          driver::compile_shader(source, shader_options, {arguments.prefix, writer.division()}, diagnostics);
+      done = shader && writer.all(*shader, stages, library.files());
+    }
   }
   if (done) done = writer.headers() && writer.depfile(library);
   if (done && !arguments.dump_after.empty() && !lists_stages && dumped == 0)

@@ -8,6 +8,7 @@
 #include "compiler/graph/expression.h"
 #include "compiler/nodes/manual.h"
 #include "compiler/nodes/schema.h"
+#include "compiler/reflect/reflection.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/format.h"
@@ -107,8 +108,11 @@ int nodes(const NodesArguments& arguments, const Common& common) {
 }
 
 int schema(const SchemaArguments& arguments, const Common& common) {
-  if (arguments.markdown) {
-    std::fputs(scene::format::markdown().c_str(), stdout);
+  if (arguments.reflection || arguments.markdown) {
+    const std::string text = !arguments.reflection ? scene::format::markdown()
+                             : arguments.markdown  ? reflect::markdown()
+                                                   : reflect::schema();
+    std::fputs(text.c_str(), stdout);
     return success;
   }
   support::Diagnostics diagnostics = make_diagnostics(common);
