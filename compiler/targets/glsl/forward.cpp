@@ -223,6 +223,9 @@ class Pair {
     if (point && !is_post()) add(*point, "", {});
     if (program_.light) add(*program_.light, "int index, vec3 position", {"index", "position"});
     if (entries.empty()) return out;
+    const bool has_zero =
+        std::ranges::any_of(entries, [&](uint32_t entry) { return uses_hidden_zero(program_.module, entry); });
+    if (has_zero && out.find(hidden_zero_head) == std::string::npos) out += hidden_zero_head;
     if (std::ranges::any_of(texts, [](const FunctionText& text) {
           return std::ranges::any_of(text.parameters, [](const ParameterText& p) { return p.text.starts_with("isoshade_cofactors"); });
         }))
