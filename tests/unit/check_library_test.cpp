@@ -22,8 +22,8 @@ TEST(CheckLibrary, ResolvesNamesAndRelativePaths) {
   const auto graph = front_end.check(function("f", calls("part/own.json")), "mine/f.json");
   ASSERT_NE(graph, nullptr) << front_end.diagnostics.text();
   const auto own = graph->nodes[0].callee;
-  EXPECT_EQ(graph->document, "mine/f.json");
-  EXPECT_EQ(own->document, "mine/part/own.json");
+  EXPECT_EQ(graph->document, "f.json") << "by its path in its collection";
+  EXPECT_EQ(own->document, "part/own.json");
   EXPECT_EQ(own->nodes[0].callee->document, "library/math/fourth.json");
   EXPECT_EQ(own->nodes[0].callee->nodes[0].callee->document, "library/math/square.json");
 }
