@@ -237,6 +237,10 @@ class Pair {
           "  return dot(m[column], cofactors) < 0.0 ? -cofactors : cofactors;\n}\n\n";
     const LinkedNames names{own(""), pure_.tier.empty() ? "" : "_" + pure_.tier, {}};
     const LinkedText text = print_linked(program_.module, entries, *language(dialect_), names, texts);
+    for (const uint32_t entry : entries) {
+      const std::string& record = texts[entry].result_type;
+      support::assert_that(record.empty() || record == result_record(program_.module.functions[entry].name), record);
+    }
     return out + text.shared + "\n" + text.own + "\n";
   }
 
