@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/names/compilers.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <span>
 #include <sstream>
 
+#include "compiler/driver/forward.h"
 #include "compiler/graph/graph.h"
 #include "compiler/targets/glsl/glsl.h"
 #include "compiler/targets/glsl/spirv.h"
@@ -93,6 +96,15 @@ void Texts::add(const driver::Shader& shader) {
   ++glsl_;
   headers_.push_back({shader.pure.prefix, driver::text(shader, *targets::find("cpp"))});
   replace(headers_.back().text, "#pragma once", "");
+  const emit::Target& es = *targets::find("glsl-es");
+  es_.push_back({".frag", "#version 300 es\n" + driver::text(shader, es) + host_of(shader) +
+                              "out vec4 the_color;\nvoid main() { the_color = vec4(1.0); }\n"});
+  // The pairs of an effect have the same names but for that of the pass.
+  std::vector<driver::ForwardPair> pairs = driver::forward_pairs(shader, es);
+  for (const driver::ForwardPair& pair : std::span(pairs).first(std::min<size_t>(pairs.size(), 2))) {
+    es_.push_back({".vert", pair.text.vertex});
+    es_.push_back({".frag", pair.text.fragment});
+  }
 }
 
 void Texts::compile() {
@@ -131,6 +143,10 @@ void Texts::compile() {
     }
     return count;
   };
+  for (size_t i = 0; i < es_.size(); ++i) folder.write("es_" + std::to_string(i) + es_[i].ending, es_[i].text);
+  if (!es_.empty()) {
+    EXPECT_EQ(said("cd " + folder.path().string() + " && find . -name 'es_*' | xargs glslangValidator"), "");
+  }
   compile("g++ -Wno-restrict", 1);
   clang_ = compile("clang++", is_full() ? 1 : 16);
 }

@@ -18,10 +18,12 @@ class Texts {
  public:
   void add(const driver::Program& program);
   void add(const driver::Shader& shader);
-  /// g++ over every text of C++, many in each file, after the headers of the standard libraries; and clang++.
+  /// g++ over every text of C++, many in each file, after the headers of the standard libraries; and clang++. glslangValidator
+  /// over every text of GLSL ES.
   void compile();
 
   size_t glsl_count() const { return glsl_; }
+  size_t es_count() const { return es_.size(); }
   size_t cpp_count() const { return cpp_.size() + headers_.size(); }
   size_t clang_count() const { return clang_; }
 
@@ -33,6 +35,11 @@ class Texts {
     std::string text;
   };
   std::vector<Header> headers_;  ///< pure shaders
+  struct EsText {
+    const char* ending;
+    std::string text;
+  };
+  std::vector<EsText> es_;  ///< GLSL ES: pure shaders and forward pairs
 };
 
 /// Every macro that g++ has after those headers.

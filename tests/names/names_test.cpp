@@ -26,8 +26,8 @@ class NameCase {
 
   ~NameCase() {
     texts_.compile();
-    std::printf("%-22s %5zu words: glslang %4zu texts, g++ %4zu, clang++ %4zu\n", name_.c_str(), words_,
-                texts_.glsl_count(), texts_.cpp_count(), texts_.clang_count());
+    std::printf("%-22s %5zu words: glslang %4zu texts, g++ %4zu, clang++ %4zu, GLSL ES %4zu\n", name_.c_str(), words_,
+                texts_.glsl_count(), texts_.cpp_count(), texts_.clang_count(), texts_.es_count());
     ::testing::Test::RecordProperty("words_of_" + name_, static_cast<int>(words_));
   }
 
