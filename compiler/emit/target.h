@@ -24,14 +24,16 @@ struct Heading {
   std::string name;
 };
 
-/// A form that a compiler makes of a target's kernels, with a name of its own on the command line.
+/// A form that a compiler makes of a target's whole shaders, with a name of its own on the command line. Gives bytes; a text
+/// that does not compile is reported, and `what` names it there.
 struct Binary {
   std::string_view name;       ///< "spirv"
   std::string_view doc;        ///< for the help of the command line
   std::string_view extension;  ///< behind the name of the text's file: ".spv"
-  /// The bytes; a text that does not compile is reported. `what` names it there.
-  std::optional<std::string> (*compile)(const std::string& text, lower::Stage stage,
-                                        support::Diagnostics& diagnostics, const std::string& what);
+  std::optional<std::string> (*kernel)(const std::string& text, lower::Stage stage, support::Diagnostics& diagnostics,
+                                       const std::string& what);
+  std::optional<ForwardText> (*forward)(const ForwardText& pair, support::Diagnostics& diagnostics,
+                                        const std::string& what);
 };
 
 /// A target language. Its folder defines `const emit::Target& target()`, which compiler/targets/targets.cpp collects.

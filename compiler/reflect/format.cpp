@@ -18,66 +18,113 @@ using Json = nlohmann::ordered_json;
 using nodes::SchemaJson;
 using nodes::SchemaKey;
 
+/// Writes JSON as Json::dump(2) does. Nothing stands in a Json but scalars: the destructor of others takes memory, and ends
+/// the program where there is none.
+class Writer {
+ public:
+  void scalar(const Json& value) { text_ += value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+  /// The shortest number that reads back as the same float.
+  void number(float value) {
+    const std::string text = support::format_float(value);
+    double shortest = 0;
+    std::from_chars(text.data(), text.data() + text.size(), shortest);
+    scalar(static_cast<float>(shortest) == value ? shortest : static_cast<double>(value));
+  }
+
+  /// Calls write(item) with each.
+  template <class Items, class Write>
+  void array(const Items& items, const Write& write) {
+    nested('[', ']', [&] {
+      for (const auto& item : items) {
+        next();
+        write(item);
+      }
+    });
+  }
+  /// Calls write(), which calls key() before each value.
+  template <class Write>
+  void object(const Write& write) {
+    nested('{', '}', write);
+  }
+  void key(std::string_view name) {
+    next();
+    scalar(name);
+    text_ += ": ";
+  }
+
+  std::string take() { return std::move(text_); }
+
+ private:
+  template <class Write>
+  void nested(char opening, char closing, const Write& write) {
+    text_ += opening;
+    ++depth_;
+    write();
+    --depth_;
+    if (text_.back() != opening) new_line();
+    text_ += closing;
+  }
+  void next() {
+    if (text_.back() != '[' && text_.back() != '{') text_ += ',';
+    new_line();
+  }
+  void new_line() { text_.append(1, '\n').append(2 * depth_, ' '); }
+
+  std::string text_;
+  size_t depth_ = 0;
+};
+
 /// What a type is in JSON: its value, its schema, its name in the manual.
 template <class T>
 struct Format;
 
-/// The shortest number that reads back as the same float.
-Json number(float value) {
-  const std::string text = support::format_float(value);
-  double shortest = 0;
-  std::from_chars(text.data(), text.data() + text.size(), shortest);
-  return static_cast<float>(shortest) == value ? shortest : static_cast<double>(value);
-}
-
 template <>
 struct Format<Text> {
-  static Json json(const Text& text) { return text; }
+  static void write(Writer& out, const Text& text) { out.scalar(text); }
   static SchemaJson schema() { return nodes::string_schema(); }
   static std::string name() { return "string"; }
 };
 template <>
 struct Format<Boolean> {
-  static Json json(Boolean value) { return value; }
+  static void write(Writer& out, Boolean value) { out.scalar(value); }
   static SchemaJson schema() { return nodes::boolean_schema(); }
   static std::string name() { return "boolean"; }
 };
 template <>
 struct Format<Integer> {
-  static Json json(Integer value) { return value; }
+  static void write(Writer& out, Integer value) { out.scalar(value); }
   static SchemaJson schema() { return {{"type", "integer"}}; }
   static std::string name() { return "integer"; }
 };
 template <>
 struct Format<Real> {
-  static Json json(Real value) {
+  static void write(Writer& out, Real value) {
     support::assert_that(std::isfinite(value), "a number of a reflection is not finite");
-    return value;
+    out.scalar(value);
   }
   static SchemaJson schema() { return nodes::number_schema(); }
   static std::string name() { return "number"; }
 };
 template <>
 struct Format<Float> : Format<Real> {
-  static Json json(Float value) { return number(value); }
+  static void write(Writer& out, Float value) { out.number(value); }
 };
 template <>
 struct Format<Version> {
-  static Json json(Version) { return Version::number; }
+  static void write(Writer& out, Version) { out.scalar(Version::number); }
   static SchemaJson schema() { return {{"const", Version::number}}; }
   static std::string name() { return std::to_string(Version::number); }
 };
 
 template <class T>
 struct Format<Optional<T>> : Format<T> {
-  static Json json(const Optional<T>& value) { return Format<T>::json(*value); }
+  static void write(Writer& out, const Optional<T>& value) { Format<T>::write(out, *value); }
 };
 template <class T>
 struct Format<List<T>> {
-  static Json json(const List<T>& list) {
-    Json items = Json::array();
-    for (const T& item : list) items.push_back(Format<T>::json(item));
-    return items;
+  static void write(Writer& out, const List<T>& list) {
+    out.array(list, [&](const T& item) { Format<T>::write(out, item); });
   }
   static SchemaJson schema() { return {{"type", "array"}, {"items", Format<T>::schema()}}; }
   static std::string name() { return "list of " + Format<T>::name(); }
@@ -91,9 +138,9 @@ std::string listed(const std::vector<std::string_view>& words) {
 
 template <std::vector<std::string_view> (*list)()>
 struct Format<Word<list>> {
-  static Json json(const Word<list>& word) {
+  static void write(Writer& out, const Word<list>& word) {
     support::assert_that(std::ranges::count(list(), word.text) == 1, "no such word: " + word.text);
-    return word.text;
+    out.scalar(word.text);
   }
   static SchemaJson schema() { return nodes::one_of(list()); }
   static std::string name() { return listed(list()); }
@@ -101,19 +148,17 @@ struct Format<Word<list>> {
 
 template <>
 struct Format<Value> {
-  static Json json(const Value& value) {
+  static void write(Writer& out, const Value& value) {
     const graph::Literal& literal = value.literal;
     switch (literal.kind) {
-      case graph::Literal::Kind::boolean: return literal.boolean;
-      case graph::Literal::Kind::string: return literal.string;
+      case graph::Literal::Kind::boolean: return out.scalar(literal.boolean);
+      case graph::Literal::Kind::string: return out.scalar(literal.string);
       case graph::Literal::Kind::number:
-        return value.type == graph::Type::integer ? Json(static_cast<int64_t>(literal.number))
-                                                  : number(literal.number);
-      case graph::Literal::Kind::numbers: break;
+        if (value.type == graph::Type::integer) return out.scalar(static_cast<int64_t>(literal.number));
+        return out.number(literal.number);
+      case graph::Literal::Kind::numbers:
+        return out.array(literal.numbers, [&](float component) { out.number(component); });
     }
-    Json numbers = Json::array();
-    for (const float component : literal.numbers) numbers.push_back(number(component));
-    return numbers;
   }
   static SchemaJson schema() {
     return nodes::any_of({nodes::boolean_schema(), nodes::number_schema(), nodes::string_schema(),
@@ -124,11 +169,13 @@ struct Format<Value> {
 
 template <>
 struct Format<PassStates> {
-  static Json json(const PassStates& states) {
-    Json object = Json::object();
-    for (const interface::PassStateRow& row : interface::pass_states())
-      object[std::string(row.key)] = row.values[row.get(states.state)];
-    return object;
+  static void write(Writer& out, const PassStates& states) {
+    out.object([&] {
+      for (const interface::PassStateRow& row : interface::pass_states()) {
+        out.key(row.key);
+        out.scalar(row.values[row.get(states.state)]);
+      }
+    });
   }
   static SchemaJson schema() {
     std::vector<SchemaKey> keys;
@@ -146,7 +193,7 @@ struct Choice {
 /// Of an enumeration of reflection.def; `Table` has its rows.
 template <class Enum, class Table>
 struct ChoiceFormat {
-  static Json json(Enum value) { return Table::rows[static_cast<size_t>(value)].name; }
+  static void write(Writer& out, Enum value) { out.scalar(Table::rows[static_cast<size_t>(value)].name); }
   static SchemaJson schema() {
     std::vector<SchemaJson> words;
     for (const Choice& row : Table::rows) words.push_back({{"const", row.name}, {"description", row.doc}});
@@ -163,14 +210,15 @@ struct ChoiceFormat {
 /// Of a record of reflection.def; `Table::visit` calls its argument with each member, key and doc.
 template <class Record, class Table>
 struct RecordFormat {
-  static Json json(const Record& record) {
-    Json object = Json::object();
-    Table::visit([&]<class T>(T Record::*member, std::string_view key, std::string_view) {
-      if constexpr (requires { (record.*member).has_value(); })
-        if (!(record.*member).has_value()) return;
-      object[std::string(key)] = Format<T>::json(record.*member);
+  static void write(Writer& out, const Record& record) {
+    out.object([&] {
+      Table::visit([&]<class T>(T Record::*member, std::string_view key, std::string_view) {
+        if constexpr (requires { (record.*member).has_value(); })
+          if (!(record.*member).has_value()) return;
+        out.key(key);
+        Format<T>::write(out, record.*member);
+      });
     });
-    return object;
   }
   /// The key of its definition in the schema.
   static std::string id() {
@@ -229,7 +277,9 @@ struct RecordFormat {
 }  // namespace
 
 std::string json(const Reflection& reflection) {
-  return Format<Reflection>::json(reflection).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Writer out;
+  Format<Reflection>::write(out, reflection);
+  return out.take() + "\n";
 }
 
 std::string schema() {

@@ -10,24 +10,35 @@
 // Any number of threads may call any function at the same time.
 #pragma once
 
+#include <isoshade/outcome.h>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <isoshade/outcome.h>
 
 namespace isoshade {
 
 /// The version of the library that is linked; ISOSHADE_VERSION is that of the headers.
 ISOSHADE_API const char* version() noexcept;
 
+/// What stands around the functions that a document becomes.
+enum class Wrapper {
+  none,      ///< nothing: they are included in programs of your own
+  forward,   ///< an ordinary vertex and fragment shader for each pass, outside of the contract
+  isoshade,  ///< the stages that isoshade's own renderer runs
+};
+
 struct CompileOptions {
   Sources sources = {};
-  std::vector<std::string> targets{"glsl", "cpp"};  ///< languages: "glsl", "cpp", "glsl-es"
-  std::string prefix = {};                          ///< of all names; empty: the document's name
+  /// "glsl", "cpp", "glsl-es", with a wrapper "spirv"; empty: glsl and, unless the wrapper is forward, cpp.
+  std::vector<std::string> targets = {};
+  Wrapper wrapper = Wrapper::none;
+  bool hardware_samplers = false;  ///< forward: images are read by samplers, not by isoshade's own filters
+  std::string prefix = {};         ///< of all names; empty: the document's name
   Precision precision = Precision::standard;
   /// For GPUs whose `/` and sqrt are not correctly rounded: computes both by multiplications and integers.
   bool exact_division = false;
+  /// Adds to the reflection what `isoshade check` finds; takes seconds where much is left to prove.
+  bool prove = false;
 };
 
 /// A file as `isoshade compile -o FOLDER` writes it. C++ includes the headers that are installed in isoshade/lanes.
@@ -48,8 +59,7 @@ struct Compilation : Outcome {
   }
 };
 
-/// Compiles an effect, a post or a function to functions and structs that other programs link (graphs/README.md, "What
-/// compile writes").
+/// Compiles an effect, a post or a function (graphs/README.md, "What compile writes").
 ISOSHADE_API Compilation compile_file(const std::string& path, const CompileOptions& options = {}) noexcept;
 
 /// The same for a document in memory; its path need not exist.

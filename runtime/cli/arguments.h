@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <isoshade/compiler.h>
+
 #include "compiler/functions/tier.h"
 #include "compiler/support/process.h"
 
@@ -41,9 +43,6 @@ struct SceneChanges {
   std::optional<float> time;          ///< in seconds
   std::optional<int> samples;         ///< per pixel
 };
-
-/// What `compile` writes around the functions of a document.
-enum class Wrapper : uint8_t { none, isoshade, forward };
 
 struct CompileArguments {
   std::string graph;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Documents to shaders through include/isoshade/compiler.h, as a program uses it.
-#include <isoshade/compiler.h>
-
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <isoshade/compiler.h>
 #include <thread>
 
 namespace {
@@ -15,16 +14,15 @@ const isoshade::Document half{"/virtual/half.json", R"({
   "nodes": {"y": {"type": "multiply", "in1": "in", "in2": 0.5}}, "outputs": {"out": "y"}
 })"};
 
-TEST(Compiler, HeadersAndLibraryHaveTheSameVersion) {
-  EXPECT_STREQ(isoshade::version(), ISOSHADE_VERSION);
-}
+TEST(Compiler, HeadersAndLibraryHaveTheSameVersion) { EXPECT_STREQ(isoshade::version(), ISOSHADE_VERSION); }
 
 TEST(Compiler, ADocumentInMemoryBecomesTexts) {
   const isoshade::Compilation made = isoshade::compile(half);
   ASSERT_TRUE(made) << made.text;
   ASSERT_NE(made.find("half.glsl"), nullptr);
   ASSERT_NE(made.find("half.h"), nullptr);
-  EXPECT_NE(made.find("half.glsl")->bytes.find("float half"), std::string::npos) << made.find("half.glsl")->bytes;
+  EXPECT_NE(made.find("half.glsl")->bytes.find("float half"), std::string::npos)
+      << made.find("half.glsl")->bytes;
   EXPECT_NE(made.find("half.h")->bytes.find("::half"), std::string::npos);
   EXPECT_EQ(made.find("half.txt"), nullptr);
   EXPECT_EQ(made.read, std::vector<std::string>{half.path});
@@ -47,20 +45,60 @@ TEST(Compiler, OptionsChooseTargetsAndPrefix) {
   EXPECT_FALSE(refused.diagnostics.at(0).notes.empty());
 }
 
+std::vector<std::string> names_of(const isoshade::Compilation& made) {
+  std::vector<std::string> names;
+  for (const isoshade::File& file : made.files) names.push_back(file.name);
+  return names;
+}
+
+TEST(Compiler, WrappersGiveTheFilesOfTheCommand) {
+  isoshade::CompileOptions options;
+  options.targets = {"spirv", "glsl-es"};
+  options.wrapper = isoshade::Wrapper::forward;
+  const isoshade::Compilation forward = isoshade::compile_file(graphs + "/effects/cartoon.json", options);
+  ASSERT_TRUE(forward) << forward.text;
+  const std::vector<std::string> expected{"cartoon.json",
+                                          "cartoon.outline.vert.spv",
+                                          "cartoon.outline.frag.spv",
+                                          "cartoon.base.vert.spv",
+                                          "cartoon.base.frag.spv",
+                                          "cartoon.outline.es.vert",
+                                          "cartoon.outline.es.frag",
+                                          "cartoon.base.es.vert",
+                                          "cartoon.base.es.frag"};
+  EXPECT_EQ(names_of(forward), expected);
+  EXPECT_EQ(forward.find("cartoon.base.frag.spv")->bytes.substr(0, 4), "\x03\x02\x23\x07")
+      << "the magic number of SPIR-V";
+
+  options.targets = {};
+  options.wrapper = isoshade::Wrapper::isoshade;
+  const isoshade::Compilation stages = isoshade::compile(half, options);
+  ASSERT_TRUE(stages) << stages.text;
+  EXPECT_EQ(names_of(stages), (std::vector<std::string>{"half.json", "half.frag", "half.cpp"}));
+
+  options.wrapper = isoshade::Wrapper::forward;
+  EXPECT_EQ(isoshade::compile(half, options).diagnostics.at(0).id, "unsupported") << "of a function";
+  options.wrapper = isoshade::Wrapper::none;
+  options.targets = {"spirv"};
+  EXPECT_EQ(isoshade::compile(half, options).diagnostics.at(0).id, "unsupported") << "functions to include";
+}
+
 TEST(Compiler, AFileTellsWhatItReads) {
   const isoshade::Compilation made = isoshade::compile_file(graphs + "/effects/cartoon.json");
   ASSERT_TRUE(made) << made.text;
   EXPECT_FALSE(made.find("cartoon.glsl")->bytes.empty());
   EXPECT_EQ(made.read.at(0), graphs + "/effects/cartoon.json");
   EXPECT_GT(made.read.size(), 3u);
-  EXPECT_TRUE(std::ranges::any_of(made.read, [](const std::string& path) { return path.find("library/toon") != std::string::npos; }));
+  EXPECT_TRUE(std::ranges::any_of(
+      made.read, [](const std::string& path) { return path.find("library/toon") != std::string::npos; }));
 }
 
 TEST(Compiler, PrecisionChangesTheText) {
   isoshade::CompileOptions precise;
   precise.precision = isoshade::Precision::precise;
   const std::string file = graphs + "/materials/cook_torrance.json";
-  const isoshade::Compilation standard = isoshade::compile_file(file), other = isoshade::compile_file(graphs + "/effects/cartoon.json", precise);
+  const isoshade::Compilation standard = isoshade::compile_file(file),
+                              other = isoshade::compile_file(graphs + "/effects/cartoon.json", precise);
   ASSERT_TRUE(standard && other) << standard.text << other.text;
   EXPECT_NE(isoshade::compile_file(graphs + "/effects/cartoon.json").find("cartoon.glsl")->bytes,
             other.find("cartoon.glsl")->bytes);
@@ -84,13 +122,16 @@ TEST(Compiler, ErrorsAreDataWithPlaces) {
 
 TEST(Compiler, AMissingFileAndASceneAreErrors) {
   EXPECT_EQ(isoshade::compile_file("/nowhere/a.json").diagnostics.at(0).id, "missing-file");
-  EXPECT_EQ(isoshade::compile_file(graphs + "/scenes/material_balls.json").diagnostics.at(0).id, "wrong-kind");
-  EXPECT_EQ(isoshade::compile_file("-").diagnostics.at(0).id, "missing-file") << "standard input belongs to the program";
+  EXPECT_EQ(isoshade::compile_file(graphs + "/scenes/material_balls.json").diagnostics.at(0).id,
+            "wrong-kind");
+  EXPECT_EQ(isoshade::compile_file("-").diagnostics.at(0).id, "missing-file")
+      << "standard input belongs to the program";
   EXPECT_EQ(isoshade::compile({"", ""}).diagnostics.at(0).id, "syntax");
 }
 
 TEST(Compiler, ThreadsCompileAtOnce) {
-  const char* names[] = {"/effects/cartoon.json", "/materials/cook_torrance.json", "/effects/height_fog.json", "/effects/terrain.json"};
+  const char* names[] = {"/effects/cartoon.json", "/materials/cook_torrance.json", "/effects/height_fog.json",
+                         "/effects/terrain.json"};
   std::vector<std::string> alone, together(8);
   const auto text_of = [&](size_t i) {
     const isoshade::Compilation made = isoshade::compile_file(graphs + names[i % std::size(names)]);

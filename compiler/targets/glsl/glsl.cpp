@@ -111,15 +111,28 @@ class Glsl final : public Language {
 
 constexpr Dialect vulkan{TargetId::glsl, true};
 
-std::optional<std::string> compile_words(const std::string& text, lower::Stage stage,
-                                         support::Diagnostics& diagnostics, const std::string& what) {
-  const auto kind = stage == lower::Stage::vertex ? ShaderKind::vertex : ShaderKind::fragment;
-  const auto words = compile_spirv(text, kind, diagnostics, what);
+std::optional<std::string> bytes_of(const std::optional<std::vector<uint32_t>>& words) {
   if (!words) return std::nullopt;
   return std::string(reinterpret_cast<const char*>(words->data()), 4 * words->size());
 }
 
-constexpr Binary spirv{"spirv", "SPIR-V of the GLSL", ".spv", compile_words};
+std::optional<std::string> compile_kernel(const std::string& text, lower::Stage stage,
+                                          support::Diagnostics& diagnostics, const std::string& what) {
+  const auto kind = stage == lower::Stage::vertex ? ShaderKind::vertex : ShaderKind::fragment;
+  return bytes_of(compile_spirv(text, kind, diagnostics, what));
+}
+
+std::optional<ForwardText> compile_pair(const ForwardText& pair, support::Diagnostics& diagnostics,
+                                        const std::string& what) {
+  auto vertex = bytes_of(
+      compile_spirv(pair.vertex, ShaderKind::vertex, diagnostics, "the vertex shader of " + what, Contract::outside));
+  auto fragment = bytes_of(compile_spirv(pair.fragment, ShaderKind::fragment, diagnostics,
+                                         "the fragment shader of " + what, Contract::outside));
+  if (!vertex || !fragment) return std::nullopt;
+  return ForwardText{*std::move(vertex), *std::move(fragment)};
+}
+
+constexpr Binary spirv{"spirv", "SPIR-V of the GLSL, with a wrapper", ".spv", compile_kernel, compile_pair};
 
 constexpr Target glsl_target{
     .id = TargetId::glsl,

@@ -132,8 +132,8 @@ void refuse(support::Diagnostics& diagnostics, const std::string& what, const st
 }  // namespace
 
 std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
-                                                   support::Diagnostics& diagnostics,
-                                                   const std::string& what) {
+                                                   support::Diagnostics& diagnostics, const std::string& what,
+                                                   Contract contract) {
   std::string error;
   // `precise` tells other compilers of the text what must be exact. glslang 12 follows it from each precise value back
   // along every path to where it comes from: exponential time where structs and vectors are taken apart and made anew,
@@ -147,7 +147,8 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
     refuse(diagnostics, what, error);
     return std::nullopt;
   }
-  support::assert_that(preserves_nan(*spirv), "a shader without SignedZeroInfNanPreserve 32");
+  support::assert_that(contract == Contract::outside || preserves_nan(*spirv),
+                       "a shader without SignedZeroInfNanPreserve 32");
   return spirv;
 }
 
@@ -168,7 +169,8 @@ std::optional<size_t> count_contractible(const std::string& glsl, ShaderKind kin
     if (is_float_arithmetic(instruction.opcode)) computed.push_back((*spirv)[i + 2]);
     i += instruction.words;
   }
-  return static_cast<size_t>(std::ranges::count_if(computed, [&](uint32_t id) { return !exact.contains(id); }));
+  return static_cast<size_t>(
+      std::ranges::count_if(computed, [&](uint32_t id) { return !exact.contains(id); }));
 }
 
 }  // namespace isoshade::glsl

@@ -13,16 +13,20 @@ namespace isoshade::glsl {
 
 enum class ShaderKind : uint8_t { vertex, fragment };
 
+/// Whether a shader promises bits. One that does begins with head(); a module of it without SignedZeroInfNanPreserve 32
+/// would be a bug of ours, so it aborts.
+enum class Contract : uint8_t { within, outside };
+
 /// The module with entry point `main`, validated by SPIRV-Tools. Not optimised: every operation is as in the text, and
 /// those on floats are NoContraction, whether the text says `precise` or not. The same text gives the same words on
 /// every machine, in time linear in its length. Thread-safe.
 ///
-/// `glsl` begins with head(); a module without SignedZeroInfNanPreserve 32 would be a bug of ours, so it
-/// aborts. A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.
+/// A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.
 /// `what` names the text in that report: `the pixel stage of "fur" (fur.json)`.
 std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
                                                    support::Diagnostics& diagnostics,
-                                                   const std::string& what = "a shader");
+                                                   const std::string& what = "a shader",
+                                                   Contract contract = Contract::within);
 
 /// How many operations on floats the text leaves to a compiler that follows `precise` to contract, or nothing where it
 /// does not compile. Of our texts none: users compile them by compilers of their own. May take exponential time.
