@@ -306,6 +306,22 @@ std::vector<uint32_t> order_of(const ir::Module& module, std::span<const uint32_
   return *order;
 }
 
+/// Which functions texts can share, by function: those of the library that call no others. One that passes a constant on
+/// calls a clone, which may be another in each text.
+std::vector<bool> shared_functions(const ir::Module& module, const std::vector<uint32_t>& callees_first) {
+  std::vector<bool> shared(module.functions.size());
+  for (const uint32_t index : callees_first) {
+    const ir::Function& function = module.functions[index];
+    shared[index] = !function.library.empty();
+    for (const ir::Block& block : function.blocks)
+      for (const ir::InstructionId id : block.instructions) {
+        const ir::Instruction& instruction = function.instructions[id];
+        if (instruction.op == ir::Opcode::call && !shared[instruction.imm]) shared[index] = false;
+      }
+  }
+  return shared;
+}
+
 /// A macro that tells whether a text has a function, and which: its value is a hash of the text.
 void add_guarded(std::string& out, std::string& checks, const std::string& function_name, const std::string& text) {
   std::string macro = function_name;
@@ -345,6 +361,7 @@ std::string print_functions(const ir::Module& module, uint32_t entry, const Lang
 LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entries, const Language& language,
                         const LinkedNames& names, std::vector<FunctionText>& texts) {
   const std::vector<uint32_t> order = order_of(module, entries);
+  const std::vector<bool> shared = shared_functions(module, order);
   FunctionsPrinter printer(module, order, language, texts);
   Names& globals = printer.globals();
   for (const FunctionText& text : texts)
@@ -352,7 +369,7 @@ LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entr
   for (const std::string& record : names.records) globals.hold(record);
   OwnNames library(globals, names.tier);
   for (const uint32_t index : order)
-    if (!module.functions[index].library.empty()) texts[index].name = library.take(module.functions[index]);
+    if (shared[index]) texts[index].name = library.take(module.functions[index]);
   for (const uint32_t index : order)
     if (texts[index].name.empty() && texts[index].host.empty()) {
       const ir::Function& function = module.functions[index];
@@ -365,7 +382,7 @@ LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entr
   std::string checks;
   for (const uint32_t index : order) {
     if (!texts[index].host.empty()) continue;
-    if (module.functions[index].library.empty()) {
+    if (!shared[index]) {
       printer.print(made.own, index);
       continue;
     }

@@ -226,18 +226,23 @@ void expect_all_agree(const std::vector<fs::path>& paths, size_t rows, bool with
     expected.push_back(evaluate(*interpreter, subject, tables.back()));
   }
 #ifdef ISOSHADE_VULKAN
-  support::Diagnostics diagnostics;
-  std::map<std::string, std::string> texts;
-  vulkan::VulkanOptions options;
-  options.glsl = [&](const driver::Program& program, driver::Division) { return texts.at(program.name); };
-  const auto device = vulkan::create(options, diagnostics);
-  ASSERT_TRUE(device) << diagnostics.text();
-  const Subjects divided = subjects_of(paths, device->division());
-  for (size_t i = 0; i < subjects.all.size(); ++i) {
-    const Subject& subject = divided.all[i];
-    texts[subject.runtime.name] =
-        glsl_program(subject, driver::text(*subject.shader, *targets::find("glsl")));
-    expect_same(subject, expected[i], evaluate(*device, subject, tables[i]), "vulkan");
+  for (const driver::Division division : {driver::Division::native, driver::Division::exact}) {
+    support::Diagnostics diagnostics;
+    std::map<std::string, std::string> texts;
+    vulkan::VulkanOptions options;
+    options.glsl = [&](const driver::Program& program, driver::Division) { return texts.at(program.name); };
+    const auto device = vulkan::create(options, diagnostics);
+    ASSERT_TRUE(device) << diagnostics.text();
+    // Exact division gives the bits of a device that rounds correctly.
+    if (division == driver::Division::native && device->division() == driver::Division::exact) continue;
+    const Subjects divided = subjects_of(paths, division);
+    for (size_t i = 0; i < subjects.all.size(); ++i) {
+      const Subject& subject = divided.all[i];
+      texts[subject.runtime.name] =
+          glsl_program(subject, driver::text(*subject.shader, *targets::find("glsl")));
+      expect_same(subject, expected[i], evaluate(*device, subject, tables[i]),
+                  division == driver::Division::exact ? "vulkan, exact division" : "vulkan");
+    }
   }
 #endif
   expect_cpp_gives(subjects, tables, expected, "g++");
