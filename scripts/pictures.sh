@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Renders all images in the repository that isoshade makes: the patterns in graphs/textures, then the images of README.md.
+# Renders all images in the repository that isoshade makes: the patterns in graphs/textures, then the images of README.md,
+# then the screenshot of a page, for which the packages chromium and chromium-driver have to be installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/build.sh release isoshade
@@ -10,3 +11,7 @@ done
 for scene in material_balls cartoon_village fog_valley fog_village; do
   "$isoshade" --quiet render "graphs/scenes/$scene.json" --samples 16 -o "docs/$scene.png"
 done
+screenshots=$(mktemp -d)
+trap 'rm -rf "$screenshots"' EXIT
+python3 tests/page_test.py "$isoshade" graphs --screenshots "$screenshots"
+cp "$screenshots/cartoon_tub.png" docs/page.png

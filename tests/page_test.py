@@ -175,6 +175,7 @@ def check_scene(browser, command, graphs, folder, screenshots, failures, name, s
 
 
 def save(browser, path):
+    browser.run("scrollTo(0, 0)")
     with open(path, "wb") as file:
         file.write(base64.b64decode(browser.do("GET", "/screenshot")))
 

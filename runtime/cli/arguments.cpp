@@ -114,18 +114,19 @@ void add_precision(CLI::App& app, functions::Tier& precision) {
       ->default_str("default");
 }
 
-void add_choice(CLI::App& app, BackendChoice& choice, bool lanes = true) {
-  if (lanes)
-    app.add_option("--lanes", choice.lanes, "Lanes of the cpu backend (default: the widest that the machine has)")
-        ->check(lane_names);
+void add_lanes(CLI::App& app, BackendChoice& choice) {
+  app.add_option("--lanes", choice.lanes, "Lanes of the cpu backend (default: the widest that the machine has)")
+      ->check(lane_names);
+}
+
+void add_choice(CLI::App& app, BackendChoice& choice, bool has_vulkan = true) {
   app.add_option("--threads", choice.threads, "Threads of the cpu backend (default: one for each core)")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--device", choice.device,
-                 "Vulkan device: part of its name, or its number in `isoshade devices`");
+  app.add_option("--cxx", choice.compiler, "Compiler for generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
+  if (!has_vulkan) return;
+  app.add_option("--device", choice.device, "Vulkan device: part of its name, or its number in `isoshade devices`");
   app.add_option("--division", choice.division, "Division on vulkan: native or exact (default: as the probe decides)")
       ->check(division_names);
-  app.add_option("--cxx", choice.compiler,
-                 "Compiler for generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
 }
 
 void add_changes(CLI::App& app, SceneChanges& changes) {
@@ -274,6 +275,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   add_fail_on_nan(*render_app, render.fail_on_nan);
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
+  add_lanes(*render_app, render.choice);
   add_choice(*render_app, render.choice);
 
   VerifyArguments verify;
@@ -303,7 +305,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   add_fail_on_nan(*verify_app, verify.fail_on_nan);
   add_precision(*verify_app, verify.precision);
   add_changes(*verify_app, verify.changes);
-  add_choice(*verify_app, verify.choice, false);
+  add_choice(*verify_app, verify.choice);
 
   EvalArguments eval;
   CLI::App* eval_app = app.add_subcommand("eval", "Evaluate a function document for each row of a table");
@@ -319,6 +321,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->check(backend_names)
       ->capture_default_str();
   add_precision(*eval_app, eval.precision);
+  add_lanes(*eval_app, eval.choice);
   add_choice(*eval_app, eval.choice);
 
   CheckArguments check;
@@ -355,7 +358,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   page_app->add_option("-o,--output", page.output, "FILE.html")->required();
   add_precision(*page_app, page.precision);
   add_changes(*page_app, page.changes);
-  add_choice(*page_app, page.choice);
+  add_lanes(*page_app, page.choice);
+  add_choice(*page_app, page.choice, false);
 
   BenchArguments bench;
   CLI::App* bench_app = app.add_subcommand(
@@ -370,7 +374,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->add_option("--lanes", bench.lanes, "Lane counts of the cpu backend, separated by commas (default: all that the machine has)")
       ->delimiter(',')
       ->check(lane_names);
-  add_choice(*bench_app, bench.choice, false);
+  add_choice(*bench_app, bench.choice);
 
   CacheArguments cache;
   CLI::App* cache_app =
