@@ -269,8 +269,9 @@ std::optional<Program> compile_function(const support::Source& source, const Com
 
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, Diagnostics& diagnostics) {
-  if (const std::string& prefix = shader_options.prefix; !prefix.empty() && !graph::is_id(prefix)) {
-    diagnostics.report(support::Id::bad_id, support::quote(prefix) +
+  const std::string& wanted = shader_options.prefix;
+  if (!wanted.empty() && !graph::is_id(wanted)) {
+    diagnostics.report(support::Id::bad_id, support::quote(wanted) +
                                                 " is not a valid prefix: it must match [A-Za-z_][A-Za-z0-9_]{0,127}");
     return std::nullopt;
   }
@@ -284,7 +285,12 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   emit::PureShader& pure = shader.pure;
   pure.name = graph.name;
   pure.document = typed->document;
-  pure.prefix = emit::Names(emit::Scope::global).take(shader_options.prefix.empty() ? graph.name : shader_options.prefix);
+  pure.prefix = emit::prefix_of(wanted.empty() ? graph.name : wanted);
+  if (const std::string made = emit::name_prefix(pure); !wanted.empty() && made != wanted && made != wanted + "_") {
+    diagnostics.report(support::Id::bad_id, "names cannot begin with " + support::quote(wanted))
+        .suggest("--prefix " + pure.prefix);
+    return std::nullopt;
+  }
   if (options.tier != functions::Tier::standard) pure.tier = functions::tier_name(options.tier);
 
   lower::LoweredShader lowered = lower::lower_shader(*typed);

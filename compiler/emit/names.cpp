@@ -70,6 +70,14 @@ std::string Names::take(std::string_view wanted, Avoid avoid) {
   return numbered;
 }
 
+std::string prefix_of(std::string_view wanted) {
+  const std::string name = Names(Scope::global).take(wanted);
+  const std::string beginning = name.ends_with('_') ? name : name + "_";
+  const auto begins = [&](std::string_view word) { return beginning.starts_with(word); };
+  if (!has_taken_prefix(beginning) && !begins("iso_") && !begins("ISO_") && !begins("isoshade_")) return name;
+  return "n_" + name.substr(0, name.find_last_not_of('_') + 1);
+}
+
 namespace {
 
 std::string harmless(std::string_view text) {

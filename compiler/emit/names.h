@@ -35,6 +35,10 @@ class Names {
   NameTable used_;  ///< with the last number tried behind each
 };
 
+/// What all names of a text that others link begin with, before an underscore: the nearest to `wanted` with which they are
+/// neither words nor names of the library's functions or of the host's.
+std::string prefix_of(std::string_view wanted);
+
 /// Text made harmless for the rest of a line behind `//`: printable ASCII, no backslash, `??` or `*/`; at
 /// most 200 characters.
 std::string comment_text(std::string_view text);

@@ -327,14 +327,18 @@ void add_guarded(std::string& out, std::string& checks, const std::string& funct
   std::string macro = function_name;
   for (char& c : macro)
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
-  const std::string value = std::to_string(hash & 0x7fffffffu);
+  const std::string value = std::to_string(hash_of(text));
   out += "#ifndef " + macro + "\n#define " + macro + " " + value + "\n" + text + "#endif\n";
   checks += (checks.empty() ? "#if " : " || \\\n    ") + macro + " != " + value;
 }
 
 }  // namespace
+
+uint32_t hash_of(std::string_view text) {
+  uint32_t hash = 2166136261u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  return hash & 0x7fffffffu;
+}
 
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
                             std::vector<FunctionText>& texts) {

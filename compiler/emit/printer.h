@@ -172,6 +172,9 @@ struct TextContext {
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
                             std::vector<FunctionText>& texts);
 
+/// Tells texts apart: FNV-1a, without the sign bit.
+uint32_t hash_of(std::string_view text);
+
 /// The functions of a pure shader.
 struct LinkedText {
   std::string shared;  ///< functions of the library, each in a guard of its own

@@ -71,12 +71,13 @@ class PureLanguage {
   /// Whether names begin with the shader's prefix; otherwise they stand in a namespace of that name.
   virtual bool has_prefix() const = 0;
   /// Everything before the shared functions: guards, inclusions, prototypes of the host's functions. `signatures`: of the
-  /// shader's own functions, for its readers.
+  /// shader's own functions, for its readers. `hash`: of what stands behind.
   virtual std::string head(const PureShader& shader, const std::vector<std::string>& signatures,
-                           const std::vector<interface::HostCall>& calls, bool has_hidden_zero) const = 0;
+                           const std::vector<interface::HostCall>& calls, bool has_hidden_zero,
+                           uint32_t hash) const = 0;
   /// The shared functions, and what stands between them and the shader's own.
   virtual std::string shared(const PureShader& shader, const std::string& functions) const = 0;
-  virtual std::string tail(const PureShader& shader) const = 0;
+  virtual std::string tail(const PureShader& shader, uint32_t hash) const = 0;
 };
 
 /// The whole text.

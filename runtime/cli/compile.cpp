@@ -65,6 +65,22 @@ class Writer {
   /// The rule that says what the files depend on.
   bool depfile(const api::Artifacts& made) {
     if (arguments_.depfile.empty()) return true;
+    std::error_code error;
+    for (const std::string& path : written_)
+      if (std::filesystem::equivalent(path, arguments_.depfile, error)) {
+        diagnostics_
+            .report(support::Id::unwritable_file, "--depfile would overwrite " + support::quote(path) +
+                                                      ", which has just been written")
+            .suggest("choose another name for it");
+        return false;
+      }
+    for (const std::vector<std::string>& paths : {written_, made.read})
+      for (const std::string& path : paths)
+        if (std::ranges::any_of(path, [](char c) { return c >= 0 && c < ' '; })) {
+          diagnostics_.report(support::Id::unwritable_file,
+                              "make and ninja cannot read the path " + support::quote(path) + " in a rule");
+          return false;
+        }
     std::string rule;
     for (const std::string& path : written_) rule += escaped(path) + " ";
     rule.back() = ':';
@@ -91,13 +107,16 @@ class Writer {
     return file && std::equal(std::istreambuf_iterator<char>(file), {}, bytes.begin(), bytes.end());
   }
 
-  /// A path as make and ninja read it.
+  /// A path as ninja reads it. So does make, but for a backslash before # or a colon.
   static std::string escaped(const std::string& path) {
     std::string text;
+    size_t backslashes = 0;
     for (const char c : path) {
-      if (c == ' ' || c == '#') text += '\\';
+      if (c == ' ') text.append(backslashes, '\\');
+      if (c == ' ' || c == '#' || c == ':') text += '\\';
       if (c == '$') text += '$';
       text += c;
+      backslashes = c == '\\' ? backslashes + 1 : 0;
     }
     return text;
   }
@@ -137,10 +156,11 @@ int compile(const CompileArguments& arguments, const Common& common) {
   wanted.division = arguments.division == "exact" ? driver::Division::exact : driver::Division::native;
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
   const auto made = source ? api::make_artifacts(source, options, wanted, diagnostics) : std::nullopt;
-  const bool done = made && writer.all(*made);
-  if (done && !arguments.dump_after.empty() && !lists_stages && dumped == 0)
+  const bool has_stage = arguments.dump_after.empty() || lists_stages || dumped > 0;
+  if (made && !has_stage)
     diagnostics.report(support::Id::unknown_stage, "there is no stage \"" + arguments.dump_after + "\"")
         .suggest("`--dump-after help` lists the stages of this graph");
+  const bool done = made && has_stage && writer.all(*made);
   if (flush(diagnostics, common) || !done) return failure;
   if (!common.quiet)
     for (const std::string& path : writer.written())

@@ -82,7 +82,7 @@ TEST_F(Cli, CompiledTextsAreTheSameInEveryWorkingDirectory) {
 TEST_F(Cli, PureShadersHaveNoBinaryForm) {
   const Outcome outcome = run("compile " + ggx + " -o " + file("out") + " --target spirv");
   EXPECT_EQ(outcome.exit, 2);
-  EXPECT_NE(outcome.text.find("add --wrapper isoshade"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("add --wrapper forward or isoshade"), std::string::npos) << outcome.text;
 }
 
 TEST_F(Cli, LongestNamesGiveValidFileNames) {

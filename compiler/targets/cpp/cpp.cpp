@@ -145,7 +145,11 @@ class Cpp final : public Language {
     out.append(name).append(uniform ? "{" : "<F>{");
     for (size_t i = 0; i < fields.size(); ++i) {
       if (i != 0) out += ", ";
+      // `a & b` of bool is an int, and braces do not narrow.
+      const bool is_int = fields[i].type == ir::bool_type && fields[i].precedence != Precedence::primary;
+      if (is_int) out.append(type(fields[i].type, uniform)).append("(");
       exactly(out, fields[i], uniform);
+      if (is_int) out += ")";
     }
     out += "}";
   }
