@@ -2,7 +2,9 @@
 #include "compiler/emit/forward.h"
 
 #include <algorithm>
+#include <array>
 
+#include "compiler/interface/layout.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::emit {
@@ -36,17 +38,26 @@ constexpr Vertex vertex_fields[] = {
 #include "compiler/interface/records.def"
 };
 
-/// Size and alignment in bytes.
-std::pair<int, int> extent(std::string_view type) {
-  if (type == "float" || type == "int") return {4, 4};
-  if (type == "vec2") return {8, 8};
-  if (type == "vec3") return {12, 16};
-  if (type == "vec4") return {16, 16};
-  if (type == "mat4") return {64, 16};
-  support::bug("no such member of a uniform block");
+constexpr auto std140 = interface::Layout::std140;
+
+interface::Extent extent_of(const ForwardMember& member) {
+  if (const std::optional<ir::Type> type = ir::type_from_name(member.type)) return interface::extent_of(*type, std140);
+  support::assert_that(member.type == "mat4", member.type);
+  return interface::extent_of_array(interface::extent_of(ir::vector_type(4), std140), 4, std140);
 }
 
-int align(int offset, int to) { return (offset + to - 1) / to * to; }
+/// Places members one behind another; returns how much memory the struct or block takes.
+interface::Extent place(std::vector<ForwardMember>& members, std::span<const interface::Extent> extents) {
+  const interface::StructLayout layout = interface::lay_out(extents, std140);
+  for (size_t i = 0; i < members.size(); ++i) members[i].offset = static_cast<int>(layout.offsets[i]);
+  return layout.whole;
+}
+
+interface::Extent place(std::vector<ForwardMember>& members) {
+  std::vector<interface::Extent> extents;
+  for (const ForwardMember& member : members) extents.push_back(extent_of(member));
+  return place(members, extents);
+}
 
 class Layout {
  public:
@@ -115,23 +126,25 @@ class Layout {
           made.members.push_back({std::string(type.is_float() ? ir::name(type) : "int"), field.name, field.parameter.doc});
         }
         break;
-      case ForwardBlock::lights:
+      case ForwardBlock::lights: {
         if (!calls(HostCall::light_count) && !program_.light) return std::nullopt;
         made.name = "isoshade_Lights";
         layout_.light = members_of("light");
-        layout_.light_size = align(place_std140(layout_.light), 16);
-        made.members = {{"int", "count", "How many of the lights there are."}};
-        place_std140(made.members);
-        made.members.push_back({"isoshade_LightRecord", "lights", "The lights.", 16});
-        made.size = 16 + most_forward_lights * layout_.light_size;
+        const interface::Extent light = place(layout_.light);
+        layout_.light_size = static_cast<int>(light.size);
+        made.members = {{"int", "count", "How many of the lights there are."}, {"isoshade_LightRecord", "lights", "The lights."}};
+        const std::array extents{interface::extent_of(ir::int_type, std140),
+                                 interface::extent_of_array(light, most_forward_lights, std140)};
+        made.size = static_cast<int>(place(made.members, extents).size);
         break;
+      }
       case ForwardBlock::screen:
         if (!is_post()) return std::nullopt;
         made.name = "isoshade_Screen";
         made.members = members_of("screen");
         break;
     }
-    if (block != ForwardBlock::lights) made.size = align(place_std140(made.members), 16);
+    if (block != ForwardBlock::lights) made.size = static_cast<int>(place(made.members).size);
     made.instance = made.name;
     made.instance[std::string_view("isoshade_").size()] += 'a' - 'A';
     return made;
@@ -142,16 +155,6 @@ class Layout {
 };
 
 }  // namespace
-
-int place_std140(std::vector<ForwardMember>& members, int begin) {
-  int offset = begin;
-  for (ForwardMember& member : members) {
-    const auto [size, alignment] = extent(member.type);
-    member.offset = align(offset, alignment);
-    offset = member.offset + size;
-  }
-  return offset;
-}
 
 bool is_sampler(const PureShader& shader, const ir::Function& function) {
   const auto found = shader.host.find(function.name);

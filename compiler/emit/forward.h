@@ -89,9 +89,6 @@ bool is_sampler(const PureShader& shader, const ir::Function& function);
 
 ForwardLayout forward_layout(const ForwardProgram& program);
 
-/// Places members one behind another by the rules of std140; returns the size of the block.
-int place_std140(std::vector<ForwardMember>& members, int begin = 0);
-
 /// The text of each shader.
 struct ForwardText {
   std::string vertex, fragment;

@@ -20,6 +20,7 @@ using emit::PureFunction;
 using emit::PureKind;
 using emit::PureShader;
 using interface::HostCall;
+using interface::Layout;
 namespace place = interface::place;
 namespace source = interface::source;
 
@@ -38,10 +39,10 @@ static_assert(static_cast<int>(graph::PositionSpace::object) == static_cast<int>
 /// The layouts of a struct, in it and in its fields.
 void set_layouts(Struct& made, const std::vector<ir::Type>& types) {
   const auto set = [&](Layout layout, StructSize StructSizes::*whole, Place Places::*part) {
-    const StructLayout laid_out = lay_out(types, layout);
+    const interface::StructLayout laid_out = interface::lay_out(types, layout);
     made.bytes.*whole = {laid_out.whole.size, laid_out.whole.alignment};
     for (size_t i = 0; i < types.size(); ++i)
-      made.fields[i].bytes.*part = {laid_out.offsets[i], extent_of(types[i], layout).size};
+      made.fields[i].bytes.*part = {laid_out.offsets[i], interface::extent_of(types[i], layout).size};
   };
 #define LAYOUT(name, doc) set(Layout::name, &StructSizes::name, &Places::name);
   ISOSHADE_LAYOUTS(LAYOUT)

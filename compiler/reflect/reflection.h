@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/interface/layout.h"
 #include "compiler/interface/pass_state.h"
-#include "compiler/reflect/layout.h"
 
 namespace isoshade::reflect {
 

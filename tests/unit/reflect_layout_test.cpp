@@ -7,12 +7,12 @@
 #include <stdlib.h>
 
 #include "backends/cpu/compiler.h"
-#include "compiler/reflect/layout.h"
+#include "compiler/interface/layout.h"
 #include "compiler/targets/glsl/glsl.h"
 #include "compiler/targets/glsl/spirv.h"
 #include "tests/unit/spirv_layout.h"
 
-namespace isoshade::reflect {
+namespace isoshade::interface {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ TEST_F(CppLayout, IsThatOfTheCompilerForAArch64) {
 }
 
 }  // namespace
-}  // namespace isoshade::reflect
+}  // namespace isoshade::interface

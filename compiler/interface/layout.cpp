@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/reflect/layout.h"
+#include "compiler/interface/layout.h"
 
 #include <algorithm>
 
 #include "compiler/support/assert.h"
 
-namespace isoshade::reflect {
+namespace isoshade::interface {
 
 namespace {
 
@@ -30,12 +30,23 @@ Extent extent_of(ir::Type type, Layout layout) {
   support::bug("no such layout");
 }
 
+Extent extent_of_array(Extent element, uint32_t count, Layout layout) {
+  // Rule 4: the elements of std140 are aligned to 16 bytes.
+  if (layout == Layout::std140) element.alignment = rounded_up(element.alignment, 4 * word);
+  return {rounded_up(element.size, element.alignment) * count, element.alignment};
+}
+
 StructLayout lay_out(std::span<const ir::Type> fields, Layout layout) {
+  std::vector<Extent> extents;
+  for (const ir::Type type : fields) extents.push_back(extent_of(type, layout));
+  return lay_out(extents, layout);
+}
+
+StructLayout lay_out(std::span<const Extent> fields, Layout layout) {
   support::assert_that(!fields.empty(), "a struct without fields has no layout in GLSL");
   StructLayout made;
   uint32_t end = 0;
-  for (const ir::Type type : fields) {
-    const Extent extent = extent_of(type, layout);
+  for (const Extent extent : fields) {
     made.offsets.push_back(rounded_up(end, extent.alignment));
     end = made.offsets.back() + extent.size;
     made.whole.alignment = std::max(made.whole.alignment, extent.alignment);
@@ -46,4 +57,4 @@ StructLayout lay_out(std::span<const ir::Type> fields, Layout layout) {
   return made;
 }
 
-}  // namespace isoshade::reflect
+}  // namespace isoshade::interface

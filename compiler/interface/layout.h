@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the fields of a struct lie in memory, in each layout that a program may fill it in.
+// Where the fields of a struct and the members of a block lie in memory, in each layout that a program may fill them in.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 #include "compiler/ir/type.h"
 
-namespace isoshade::reflect {
+namespace isoshade::interface {
 
 /// The layouts, one a row: name, what it is for the manual.
 #define ISOSHADE_LAYOUTS(LAYOUT)                                                                             \
@@ -31,6 +31,8 @@ struct Extent {
 
 /// Of a field. A bool has 1 byte in C++ and 4 in GLSL, where every number but 0 is true.
 Extent extent_of(ir::Type type, Layout layout);
+/// Of an array of `count` such elements; in GLSL also of a matrix, whose columns are elements.
+Extent extent_of_array(Extent element, uint32_t count, Layout layout);
 
 struct StructLayout {
   std::vector<uint32_t> offsets;  ///< of the fields
@@ -40,5 +42,6 @@ struct StructLayout {
 /// The layout of a struct of these fields; at least one. Where a block of GLSL has the struct as its only member, the
 /// offsets are those in the block.
 StructLayout lay_out(std::span<const ir::Type> fields, Layout layout);
+StructLayout lay_out(std::span<const Extent> fields, Layout layout);
 
-}  // namespace isoshade::reflect
+}  // namespace isoshade::interface
