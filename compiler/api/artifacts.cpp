@@ -34,16 +34,6 @@ struct Stages {
   }
 };
 
-/// The common beginning of the file names of a pass. Two names of 128 characters with an extension exceed the length
-/// limit of file names; long names are therefore cut, and the number of the pass keeps them unique ("." is in no name).
-std::string pass_stem(const driver::Effect& effect, size_t pass) {
-  constexpr size_t limit = 200;
-  const std::string stem = effect.name + "." + effect.passes[pass].name;
-  if (stem.size() <= limit) return stem;
-  return effect.name.substr(0, 96) + "." + effect.passes[pass].name.substr(0, 96) + "." +
-         std::to_string(pass);
-}
-
 std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKind kind,
                                 const driver::CompileOptions& compile, Diagnostics& diagnostics) {
   Stages stages;
@@ -70,7 +60,7 @@ std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKi
   stages.record = reflect::record_of(effect->parameters, lower::object_word::parameters);
   for (size_t i = 0; i < effect->passes.size(); ++i) {
     driver::EffectPass& pass = effect->passes[i];
-    const std::string stem = pass_stem(*effect, i);
+    const std::string stem = driver::pass_stem(effect->name, pass.name, i);
     stages.add(std::move(pass.vertex), stem + ".vertex", pass.name);
     stages.add(std::move(pass.pixel), stem + ".pixel", pass.name);
   }

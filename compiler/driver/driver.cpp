@@ -267,6 +267,15 @@ std::optional<Program> compile_function(const support::Source& source, const Com
   return program;
 }
 
+std::string pass_stem(const std::string& effect, const std::string& pass, size_t number) {
+  // Two names of 128 characters with an extension exceed the length limit of file names. Long names are therefore cut,
+  // and the number of the pass keeps them unique ("." is in no name).
+  constexpr size_t limit = 200;
+  const std::string stem = effect + "." + pass;
+  if (stem.size() <= limit) return stem;
+  return effect.substr(0, 96) + "." + pass.substr(0, 96) + "." + std::to_string(number);
+}
+
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, Diagnostics& diagnostics) {
   const std::string& wanted = shader_options.prefix;

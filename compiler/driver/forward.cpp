@@ -97,7 +97,7 @@ std::vector<ForwardPair> forward_pairs(const Shader& shader, const emit::Target&
     program.position_space = pass.position_space;
     const bool has_several = shader.passes.size() > 1;
     if (has_several) program.name += ", pass " + pass.name;
-    add(has_several ? pure.name + "." + pass.name : pure.name, std::move(program));
+    add(has_several ? pass_stem(pure.name, pass.name, pairs.size()) : pure.name, std::move(program));
   }
   return pairs;
 }

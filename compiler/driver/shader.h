@@ -39,6 +39,9 @@ struct ShaderOptions {
   Division division = Division::native;
 };
 
+/// The common beginning of the names of the files of a pass of an effect; `number` is that of the pass.
+std::string pass_stem(const std::string& effect, const std::string& pass, size_t number);
+
 /// `source` is a function, effect or post document.
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, support::Diagnostics& diagnostics);

@@ -96,6 +96,23 @@ TEST(Forward, PairsThatSampleCompileForVulkan) { expect_pairs_accepted(emit::Tar
 TEST(Forward, PairsOfShippedDocumentsCompileForWebGl) { expect_pairs_accepted(emit::TargetId::glsl_es, fetch, ""); }
 TEST(Forward, PairsThatSampleCompileForWebGl) { expect_pairs_accepted(emit::TargetId::glsl_es, samplers, ""); }
 
+TEST(Forward, FilesOfPassesWithLongNamesHaveNamesThatFileSystemsTake) {
+  const std::string effect(128, 'e'), pass(127, 'p');
+  support::Diagnostics diagnostics;
+  check::Library library(ISOSHADE_GRAPHS "/library");
+  driver::CompileOptions options;
+  options.library = &library;
+  const auto source = std::make_shared<support::SourceFile>(
+      "long.json", R"({"isoshade": 1, "effect": ")" + effect + R"(", "passes": [{"name": ")" + pass +
+                       R"(1", "color": [1, 1, 1]}, {"name": ")" + pass + R"(2", "color": [0, 0, 0]}]})");
+  const auto shader = driver::compile_shader(source, options, {}, diagnostics);
+  ASSERT_TRUE(shader) << diagnostics.text();
+  const auto pairs = driver::forward_pairs(*shader, targets::get(emit::TargetId::glsl));
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_NE(pairs[0].stem, pairs[1].stem);
+  for (const driver::ForwardPair& pair : pairs) EXPECT_LE(pair.stem.size(), 255 - std::string_view(".es.frag.spv").size());
+}
+
 TEST(GlslEs, PureShadersOfShippedDocumentsCompile) {
   const emit::Target& target = targets::get(emit::TargetId::glsl_es);
   const Validator validator;
