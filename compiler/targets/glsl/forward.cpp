@@ -419,8 +419,9 @@ class Pair {
     std::string out = begin + "\n  ivec2 size = ivec2(1);\n  int smaller = 0;\n";
     for (size_t i = 0; i < program_.images.size(); ++i) {
       const std::string name = "isoshade_image" + number(i);
-      out += "  if (image / " + number(levels) + " == " + number(i) + ") {\n    size = textureSize(" + name + ", image % " +
-             number(levels) + ");\n";
+      // Not the size of level `image % 16`: lavapipe takes the level of one pixel for its neighbours.
+      out += "  if (image / " + number(levels) + " == " + number(i) + ") {\n    size = max(textureSize(" + name +
+             ", 0) >> image % " + number(levels) + ", ivec2(1));\n";
       // GLSL ES cannot ask: the image has all levels down to 1 x 1.
       if (program_.images[i].mips)
         out += is_es_ ? "    smaller = int(floor(log2(float(max(size.x, size.y)))));\n"
