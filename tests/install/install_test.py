@@ -11,10 +11,12 @@ import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 BUILD, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 HERE = pathlib.Path(__file__).resolve().parent
@@ -32,6 +34,34 @@ def run(*command, ok=True, **options):
 
 def configure(source, build, *definitions):
     return run("cmake", "-G", "Ninja", "-S", source, "-B", build, "-DCMAKE_BUILD_TYPE=Release", *LAUNCHER, *definitions)
+
+
+def pixels_of_png(path):
+    """Width, height, and the bytes of red, green, blue and alpha of a PNG file of 8 bits."""
+    data, at, packed = path.read_bytes(), 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", data[at + 8:at + 18])
+            assert (depth, color) == (8, 6), "not 8 bits of RGBA"
+        elif kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    rows, stride, above, pixels = zlib.decompress(packed), 4 * width, bytes(4 * width), b""
+    for y in range(height):
+        kind, row = rows[y * (stride + 1)], bytearray(rows[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            left, up, corner = (row[i - 4], above[i], above[i - 4]) if i >= 4 else (0, above[i], 0)
+            guess = left + up - corner
+            nearest = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))[2]
+            row[i] = row[i] + (0, left, up, (left + up) // 2, nearest)[kind] & 255
+        above = row
+        pixels += row
+    return width, height, pixels
+
+
+def has_vulkan():
+    return not re.search(r"^ISOSHADE_VULKAN:BOOL=(OFF|0|FALSE)$", (BUILD / "CMakeCache.txt").read_text(), re.MULTILINE)
 
 
 class Installed(unittest.TestCase):
@@ -101,6 +131,154 @@ class Installed(unittest.TestCase):
                     env={**os.environ, "PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")}).split()
         run("c++", "-std=c++20", HERE / "programs/in_process.cpp", "-o", with_pkg_config, *found)
         self.assertEqual(run(with_pkg_config, env=self.environment), run(build / "in_process", env=self.environment))
+
+    # The scene that bound_by_reflection draws.
+    BOX = """{"isoshade": 1, "scene": "box", "size": [480, 360], "background": [0.02, 0.025, 0.035, 0],
+      "camera": {"position": [1.2, 1.1, 1.9], "target": [0, 0, 0], "fov": 36},
+      "lights": {"a": {"type": "directional", "direction": [-0.5, -0.8, -0.6], "color": [0.9, 0.8, 0.7]},
+                 "b": {"type": "directional", "direction": [0.7, -0.2, -0.7], "color": [0.2, 0.3, 0.5]}},
+      "objects": {"box": {"mesh": "box", "effect": "EFFECT", "transform": {"rotate": [0, -10, 0]}}}}"""
+
+    @unittest.skipUnless(has_vulkan(), "isoshade is built without Vulkan")
+    def test_what_is_bound_by_reflection_is_close_to_the_picture_of_the_contract(self):
+        build = self.folder / "programs"
+        configure(HERE / "programs", build, f"-Disoshade_ROOT={self.prefix}")
+        run("cmake", "--build", build, "--target", "bound_by_reflection")
+        scene, drawn, expected = (self.folder / name for name in ("box.json", "drawn.ppm", "expected.png"))
+        materials = self.prefix / "share/isoshade/materials"
+        # The share of pixels that may differ by more than 1/255, and how much they may: colours of mip levels are rounded to
+        # 8 bits, and a step of every_type may lie at the middle of a pixel.
+        for effect, settings, far, most in (
+                (materials / "textured.json", {"tiles": "2,2"}, 0.02, 3),
+                (materials / "textured.json", {"color": "0.2,0.9,0.4"}, 0.02, 3),
+                (materials / "cook_torrance.json", {"metallic": "0.5", "roughness": "0.2"}, 1e-4, 2),
+                (HERE / "programs/every_type.json", {}, 1e-4, 32),
+                (HERE / "programs/every_type.json", {"shell": "false", "choice": "0", "steps": "3"}, 1e-4, 32)):
+            with self.subTest(effect=effect.stem, settings=settings):
+                scene.write_text(self.BOX.replace("EFFECT", str(effect)))
+                run(self.command, "--allow-outside", "render", scene, "-o", expected, env=self.environment,
+                    *[word for name, value in settings.items() for word in ("--set", f"{name}={value}")])
+                said = run(build / "bound_by_reflection", effect.stem, drawn, env=self.environment,
+                           *[f"{name}=[{value}]" if "," in value else f"{name}={value}" for name, value in settings.items()])
+                width, height, wanted = pixels_of_png(expected)
+                head, seen = f"P6\n{width} {height}\n255\n".encode(), drawn.read_bytes()
+                self.assertTrue(seen.startswith(head))
+                seen = seen[len(head):]
+                differences = [max(abs(seen[3 * i + c] - wanted[4 * i + c]) for c in range(3)) for i in range(width * height)]
+                mean, largest = sum(differences) / len(differences), max(differences)
+                distant = sum(difference > 1 for difference in differences)
+                print(f"{effect.stem} {settings}: mean difference {mean:.3f} / 255, largest {largest} / 255, {distant} pixels "
+                      f"differ by more than 1 / 255; {said.strip()}")
+                covered = sum(alpha != 0 for alpha in wanted[3::4])
+                self.assertEqual(said, f"{effect.stem} covers {covered} of {width * height} pixels\n")
+                self.assertGreater(covered, width * height // 4)
+                self.assertLess(mean, 0.5)
+                self.assertLessEqual(largest, most)
+                self.assertLessEqual(distant, far * width * height)
+
+    def test_cmake_names_every_file_that_compile_writes(self):
+        source, build = self.folder / "names", self.folder / "names/build"
+        source.mkdir()
+        documents = [self.prefix / "share/isoshade" / name for name in
+                     ("materials/cook_torrance.json", "effects/cartoon.json", "effects/height_fog.json", "library/brdf/ggx_d.json")]
+        lines, expected = "", {}
+        for wrapper, languages in (("none", "glsl cpp glsl-es"), ("forward", "glsl glsl-es spirv"), ("isoshade", "glsl cpp spirv")):
+            lines += f"add_library({wrapper} INTERFACE)\n"
+            for document in documents[:3] if wrapper == "forward" else documents:
+                lines += f"isoshade_add_graph({wrapper} {document} WRAPPER {wrapper} TARGETS {languages})\n"
+            folder = build / f"{wrapper}.isoshade" / (wrapper if wrapper != "none" else "")
+            lines += (f"get_target_property(files {wrapper} ISOSHADE_FILES)\n"
+                      f'file(WRITE ${{CMAKE_BINARY_DIR}}/{wrapper}.txt "${{files}}")\n')
+            expected[wrapper] = folder
+        (source / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(names LANGUAGES NONE)\n"
+                                               "find_package(isoshade CONFIG REQUIRED)\n" + lines)
+        configure(source, build, f"-Disoshade_ROOT={self.prefix}")
+        run("cmake", "--build", build, "--target", *expected)
+        for wrapper, folder in expected.items():
+            named = {pathlib.Path(file) for file in (build / f"{wrapper}.txt").read_text().split(";")}
+            written = {file for file in folder.iterdir() if file.is_file() and file.suffix != ".d"}
+            self.assertEqual(named, written, wrapper)
+
+    def test_cmake_says_what_is_wrong_with_a_graph(self):
+        source = self.folder / "wrong"
+        source.mkdir()
+        effect = self.prefix / "share/isoshade/materials/textured.json"
+        function = self.prefix / "share/isoshade/library/brdf/ggx_d.json"
+        texts = {"text.json": "no JSON",
+                 "scene.json": '{"isoshade": 1, "scene": "s"}',
+                 "unnamed.json": '{"isoshade": 1, "effect": 3}',
+                 "without_passes.json": '{"isoshade": 1, "effect": "e"}',
+                 "based.json": '{"isoshade": 1, "effect": "e", "extends": "f.json", "passes": [{"name": "base"}]}',
+                 "unnamed_pass.json": '{"isoshade": 1, "effect": "e", "passes": [{}]}',
+                 "long.json": '{"isoshade": 1, "effect": "e", "passes": [{"name": "' + 200 * "p" + '"}]}'}
+        for name, text in texts.items():
+            (source / name).write_text(text)
+        for arguments, message in (
+                (f"{effect} TARGETS spirv", "there is no spirv with WRAPPER none; there are glsl, cpp, glsl-es"),
+                (f"{effect} WRAPPER forward TARGETS cpp", "there is no cpp with WRAPPER forward; there are glsl, glsl-es, spirv"),
+                (f"{effect} WRAPPER isoshade TARGETS glsl-es", "there is no glsl-es with WRAPPER isoshade"),
+                (f"{effect} WRAPPER deferred", "there is no wrapper deferred; there are none, forward and isoshade"),
+                (f"{effect} WRAPPER", "unknown or incomplete arguments WRAPPER"),
+                (f"{effect} TARGET spirv", "unknown or incomplete arguments TARGET;spirv"),
+                (f"{function} WRAPPER forward", "is a function, which has no vertices and pixels for WRAPPER forward"),
+                ("missing.json", "missing.json"),
+                ("text.json", "is not a document of isoshade"),
+                ("scene.json", "is not an effect, a post or a function"),
+                ("unnamed.json", '"effect" in'),
+                ("without_passes.json WRAPPER forward", "does not list its own passes"),
+                ("based.json WRAPPER forward", "does not list its own passes"),
+                ("unnamed_pass.json WRAPPER forward", '"passes.0.name" in'),
+                ("long.json WRAPPER isoshade", "are too long for names of files")):
+            with self.subTest(arguments):
+                (source / "CMakeLists.txt").write_text(
+                    "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES NONE)\nfind_package(isoshade CONFIG REQUIRED)\n"
+                    f"add_library(wrong INTERFACE)\nisoshade_add_graph(wrong {arguments})\n")
+                said = run("cmake", "-S", source, "-B", source / "build", f"-Disoshade_ROOT={self.prefix}", ok=False)
+                self.assertIn(message, " ".join(said.split()))
+
+    def test_an_edited_function_makes_the_spirv_of_a_wrapper_again(self):
+        source, build = self.folder / "spirv", self.folder / "spirv/build"
+        source.mkdir()
+        (source / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(spirv LANGUAGES NONE)\nfind_package(isoshade CONFIG REQUIRED)\n"
+            "add_library(glow INTERFACE)\nisoshade_add_graph(glow glow.json WRAPPER forward TARGETS glsl spirv)\n"
+            "foreach(kind GLSL SPIRV)\n  get_target_property(files glow ISOSHADE_${kind})\n"
+            '  file(WRITE ${CMAKE_BINARY_DIR}/${kind}.txt "${files}")\nendforeach()\n')
+        function = source / "half.json"
+        function.write_text('{"isoshade": 1, "function": "half", "inputs": {"in": {"type": "float"}}, '
+                            '"nodes": {"y": {"type": "multiply", "in1": "in", "in2": 0.5}}, "outputs": {"out": "y"}}')
+        graph = ('{"isoshade": 1, "effect": "glow", "parameters": {"power": {"type": "float", "value": 1}}, '
+                 '"nodes": {"y": {"type": "half.json", "in": "power"}, "c": {"type": "convert", "in": "y", "to": "color3"}}, '
+                 '"passes": [{"name": "base", "color": "c"}]}')
+        (source / "glow.json").write_text(graph)
+        configure(source, build, f"-Disoshade_ROOT={self.prefix}")
+
+        def files(kind):
+            return [pathlib.Path(file) for file in (build / f"{kind}.txt").read_text().split(";")]
+
+        def build_all():
+            return run("cmake", "--build", build, "--target", "glow")
+
+        build_all()
+        self.assertEqual([file.name for file in files("GLSL")], ["glow.vert", "glow.frag"])
+        self.assertEqual([file.name for file in files("SPIRV")], ["glow.vert.spv", "glow.frag.spv"])
+        vertex, fragment = (file.read_bytes() for file in files("SPIRV"))
+        self.assertEqual(fragment[:4], struct.pack("<I", 0x07230203))
+        self.assertIn("no work to do", build_all())
+        function.write_text(function.read_text().replace("0.5", "0.25"))
+        self.assertIn("Compiling glow to glsl,spirv", build_all())
+        self.assertEqual(files("SPIRV")[0].read_bytes(), vertex)
+        self.assertNotEqual(files("SPIRV")[1].read_bytes(), fragment)
+        self.assertIn("no work to do", build_all())
+        # Another pass: the names of the files follow.
+        (source / "glow.json").write_text(graph.replace('"passes": [', '"passes": [{"name": "first", "color": "c"}, '))
+        build_all()
+        self.assertEqual([file.name for file in files("SPIRV")], ["glow.first.vert.spv", "glow.first.frag.spv",
+                                                                  "glow.base.vert.spv", "glow.base.frag.spv"])
+        self.assertTrue(all(file.is_file() for file in files("SPIRV")))
+        (source / "CMakeLists.txt").write_text((source / "CMakeLists.txt").read_text().replace("TARGETS glsl spirv", "TARGETS spirv"))
+        build_all()
+        self.assertIn("no work to do", build_all())
 
     def test_an_edited_function_rebuilds_what_uses_it_and_nothing_else(self):
         source, build = self.folder / "rebuild", self.folder / "rebuild/build"
