@@ -101,7 +101,7 @@ class PurePrinter {
     for (uint32_t i = 0; i < texts.size(); ++i)
       if (const auto found = shader_.host.find(shader_.module.functions[i].name); found != shader_.host.end())
         write_host(found->second, texts[i]);
-    LinkedNames names{prefix(), shader_.tier.empty() ? "" : "_" + shader_.tier, taken_names()};
+    LinkedNames names{prefix(), shader_.tier.empty() ? "" : "_" + shader_.tier, records()};
     const LinkedText text = print_linked(shader_.module, entries, language_, names, texts);
     bool zero = std::ranges::any_of(entries, [&](uint32_t e) { return uses_hidden_zero(shader_.module, e); });
     for (const FunctionText& function : texts)
@@ -120,13 +120,9 @@ class PurePrinter {
   std::string prefix() const { return pure_.has_prefix() ? name_prefix(shader_) : ""; }
   std::string record(std::string_view name) const { return prefix() + std::string(name); }
 
-  /// Names of structs, and of arguments: in a function with one, it would hide a function of its name.
-  std::vector<std::string> taken_names() const {
-    std::vector<std::string> names{record(parameters_record), record(results_record), "parameters"};
-    for (const PureKind kind : kinds_of_points) {
-      names.push_back(record(point_record(kind)));
-      names.emplace_back(point_name(kind));
-    }
+  std::vector<std::string> records() const {
+    std::vector<std::string> names{record(parameters_record), record(results_record)};
+    for (const PureKind kind : kinds_of_points) names.push_back(record(point_record(kind)));
     return names;
   }
 

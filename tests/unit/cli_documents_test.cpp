@@ -85,6 +85,27 @@ TEST_F(Cli, PureShadersHaveNoBinaryForm) {
   EXPECT_NE(outcome.text.find("add --wrapper forward or isoshade"), std::string::npos) << outcome.text;
 }
 
+TEST_F(Cli, DepfilesEscapeWhatMakeAndNinjaWouldReadOtherwise) {
+  std::filesystem::copy(ggx, file("a b#c$d:e.json"));
+  const Outcome outcome = run("compile '" + file("a b#c$d:e.json") + "' -o " + file("out") + " --target glsl --depfile " + file("rule.d"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  const std::string rule = read(file("rule.d"));
+  EXPECT_NE(rule.find(R"(a\ b\#c$$d\:e.json)"), std::string::npos) << rule;
+}
+
+TEST_F(Cli, DepfilesOverwriteNoOutput) {
+  const Outcome outcome = run("compile " + ggx + " -o " + file("out") + " --target glsl --depfile " + file("out/ggx_d.glsl"));
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.text.find("--depfile would overwrite"), std::string::npos) << outcome.text;
+  EXPECT_NE(read(file("out/ggx_d.glsl")).find("float ggx_d("), std::string::npos);
+}
+
+TEST_F(Cli, UnknownStagesAreReportedBeforeFilesAreWritten) {
+  const Outcome outcome = run("compile " + ggx + " -o " + file("out") + " --dump-after nonsense");
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_FALSE(std::filesystem::exists(file("out")));
+}
+
 TEST_F(Cli, LongestNamesGiveValidFileNames) {
   const std::string effect(128, 'e'), pass(127, 'p');
   std::string passes;

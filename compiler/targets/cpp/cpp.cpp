@@ -146,7 +146,7 @@ class Cpp final : public Language {
     for (size_t i = 0; i < fields.size(); ++i) {
       if (i != 0) out += ", ";
       // `a & b` of bool is an int, and braces do not narrow.
-      const bool is_int = fields[i].type == ir::bool_type && fields[i].precedence != Precedence::primary;
+      const bool is_int = fields[i].type == ir::bool_type && fields[i].precedence <= Precedence::bit_and;
       if (is_int) out.append(type(fields[i].type, uniform)).append("(");
       exactly(out, fields[i], uniform);
       if (is_int) out += ")";
