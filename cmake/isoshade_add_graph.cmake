@@ -14,14 +14,15 @@
 #   isoshade  the stages that isoshade's own backends run: glsl and cpp (the default), spirv
 #
 # - The C++ of functions is included by the document's name, #include "glow.h": its folder is an include directory of TARGET.
-#   For any C++, TARGET gets the headers and flags of isoshade::lanes.
+#   For any C++, TARGET and what links it get the headers and flags of isoshade::lanes: those without which the bits would
+#   depend on the compiler, such as -ffp-contract=off.
 # - The C++ of stages is made with TARGET, but not compiled into it: each file is a program to be loaded, and all of them have
 #   the same entry points.
 # - Properties of TARGET list the files of each kind: ISOSHADE_GLSL, ISOSHADE_CPP, ISOSHADE_GLSL_ES and ISOSHADE_SPIRV (with a
 #   wrapper, one file for each shader: .vert and .frag), ISOSHADE_REFLECTION, and all of them ISOSHADE_FILES.
 #
-# The files are made again when the graph, a function that it uses, an image that it names, or isoshade changes. Files whose
-# text stays the same keep their time, so that what is compiled from them is not compiled again. Their names follow from the
+# The files are made again when the graph, a function that it uses, an image that it names, or isoshade changes. With Ninja,
+# files whose text stays the same keep their time, so that what is compiled from them is not compiled again. Their names follow from the
 # document: CMake reads its name and, for a wrapper, its passes, and runs again when the document changes.
 
 # Policies of the functions, whatever those of the project that calls them.
@@ -147,6 +148,11 @@ function(isoshade_add_graph target graph)
     string(APPEND folder /${arg_WRAPPER})
   endif()
   set(files ${folder}/${name}.json)
+  get_property(added TARGET ${target} PROPERTY ISOSHADE_FILES)
+  if(files IN_LIST added)
+    message(FATAL_ERROR "isoshade_add_graph: ${target} already has a document of the name ${name} with WRAPPER ${arg_WRAPPER}; add "
+                        "this one to another target, such as an INTERFACE library that ${target} links")
+  endif()
   set_property(TARGET ${target} APPEND PROPERTY ISOSHADE_REFLECTION ${files})
   set(made_languages "")
   foreach(language ending IN ZIP_LISTS languages endings)
@@ -168,7 +174,14 @@ function(isoshade_add_graph target graph)
   string(MD5 depfile "${files}")
   set(depfile ${folder}/${name}.${depfile}.d)
   set(options --wrapper ${arg_WRAPPER} --target ${languages} --no-lanes --depfile ${depfile})
+  set(words_of_PRECISION fast default precise)
+  set(words_of_DIVISION native exact)
+  set(words_of_SAMPLING fetch samplers)
   foreach(option PREFIX PRECISION DIVISION SAMPLING)
+    if(arg_${option} AND words_of_${option} AND NOT arg_${option} IN_LIST words_of_${option})
+      list(JOIN words_of_${option} ", " there_are)
+      message(FATAL_ERROR "isoshade_add_graph: there is no ${option} ${arg_${option}}; there are ${there_are}")
+    endif()
     if(arg_${option})
       string(TOLOWER ${option} word)
       list(APPEND options --${word} ${arg_${option}})

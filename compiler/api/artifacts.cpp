@@ -2,6 +2,7 @@
 #include "compiler/api/artifacts.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "compiler/driver/forward.h"
@@ -104,8 +105,10 @@ class Maker {
       for (const Stages::Stage& stage : stages->all) reflection->stages->programs.push_back(stage.stage);
     }
     add(reflection->name + ".json", reflect::json(*reflection));
-    for (reflect::ReadFile& read : reflect::files_of(*shader.typed, rule))
-      if (read.file.sha256) made_.read.push_back(std::move(read.path));
+    for (reflect::ReadFile& read : reflect::files_of(*shader.typed, rule)) {
+      if (!read.file.sha256) note_unread(read);
+      made_.read.push_back(read.file.sha256 ? std::move(read.path) : nearest_folder(read.path));
+    }
     const bool done = stages ? std::ranges::all_of(stages->all, [&](const auto& s) { return add_stage(s); })
                       : is_forward ? add_forward(shader)
                                    : add_pure(shader);
@@ -113,6 +116,20 @@ class Maker {
   }
 
  private:
+  void note_unread(const reflect::ReadFile& image) {
+    diagnostics_
+        .report(support::Id::unread_image, image.where,
+                "the image " + support::quote(image.file.path) + " cannot be read, so the reflection has no hash of it")
+        .note("`isoshade render` would not accept it");
+  }
+
+  static std::string nearest_folder(std::filesystem::path path) {
+    std::error_code error;
+    do path = path.parent_path();
+    while (path.has_relative_path() && !std::filesystem::is_directory(path, error));
+    return path.empty() ? "." : path.string();
+  }
+
   void add(std::string name, std::string bytes) {
     made_.files.push_back({std::move(name), std::move(bytes)});
   }
@@ -206,6 +223,11 @@ class Maker {
 
 std::optional<Artifacts> make_artifacts(const support::Source& source, const driver::CompileOptions& compile,
                                         const ArtifactOptions& options, Diagnostics& diagnostics) {
+  if (options.hardware_samplers && options.wrapper != Wrapper::forward) {
+    diagnostics.report(support::Id::unsupported, "only forward shaders read images by samplers")
+        .suggest("add --wrapper forward, or leave out --sampling");
+    return std::nullopt;
+  }
   Maker maker(options, diagnostics);
   const auto kind = maker.check_targets() ? driver::kind_of(source, diagnostics) : std::nullopt;
   if (!kind) return std::nullopt;

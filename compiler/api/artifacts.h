@@ -23,8 +23,9 @@ struct ArtifactOptions {
 
 struct Artifacts {
   std::vector<File> files;  ///< the reflection, NAME.json, comes first
-  std::vector<std::string>
-      read;  ///< paths of the document, of the functions that it uses and of its images that exist
+  /// Paths of the document, of the functions that it uses and of its images; for an image that is missing, the folder in
+  /// which it would appear.
+  std::vector<std::string> read;
 };
 
 /// `source` is a function, effect or post document. Reports targets that do not exist or do not have what is wanted.

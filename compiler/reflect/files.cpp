@@ -38,7 +38,7 @@ std::vector<ReadFile> files_of(const check::TypedGraph& graph, const graph::File
   std::vector<ReadFile> files;
   const auto add_document = [&](const support::SourceFile& source, FileRole role) {
     const std::string name = file_name(graph, source.path(), rule);
-    files.push_back({source.path(), {name, role, support::sha256(source.text())}});
+    files.push_back({source.path(), {name, role, support::sha256(source.text())}, {}});
   };
   add_document(*graph.graph.source, FileRole::document);
   std::map<std::string, const check::TypedGraph*> functions;
@@ -46,17 +46,22 @@ std::vector<ReadFile> files_of(const check::TypedGraph& graph, const graph::File
   add_functions(graph, functions, seen);
   for (const auto& [path, function] : functions) add_document(*function->graph.source, FileRole::function);
   const std::string& document = graph.graph.source->path();
-  std::map<std::string, std::string> images;  // by canonical path, as to be opened
+  struct Named {
+    std::string path;  // as to be opened
+    support::Span where;
+  };
+  std::map<std::string, Named> images;  // by canonical path
   for (const lower::ImageSlot& slot : lower::image_slots(graph).slots) {
     if (slot.path.empty()) continue;
     const std::string path = graph::path_beside(document, slot.path);
-    images.emplace(graph::canonical_path(path), path);
+    images.emplace(graph::canonical_path(path), Named{path, graph.graph.span(slot.place)});
   }
-  for (const auto& [canonical, path] : images) {
-    ReadFile& read = files.emplace_back(ReadFile{path, {file_name(graph, path, rule), FileRole::image, {}}});
+  for (const auto& [canonical, image] : images) {
+    const auto& [path, where] = image;
+    ReadFile& read = files.emplace_back(ReadFile{path, {file_name(graph, path, rule), FileRole::image, {}}, where});
     if (!rule.permits(canonical, graph::home_of(document, rule))) continue;
-    if (const auto image = support::read_file(path, most_image_bytes); image.bytes)
-      read.file.sha256 = support::sha256(*image.bytes);
+    if (const auto text = support::read_file(path, most_image_bytes); text.bytes)
+      read.file.sha256 = support::sha256(*text.bytes);
   }
   std::ranges::stable_sort(files, {}, [](const ReadFile& file) {
     return std::pair(file.file.role, std::string_view(file.file.path));

@@ -14,6 +14,7 @@ namespace isoshade::reflect {
 struct ReadFile {
   std::string path;  ///< to open it; of a document as it was opened
   File file;         ///< as the reflection tells of it
+  support::Span where = {};  ///< of an image: where the document names it
 };
 
 /// The document, then the functions that it uses, then the images that its nodes and parameters name, each by path. Reads

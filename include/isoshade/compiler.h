@@ -49,7 +49,9 @@ struct File {
 
 struct Compilation : Outcome {
   std::vector<File> files;
-  std::vector<std::string> read;  ///< paths of the documents and images that decide the result
+  /// Paths of the documents and images that decide the result; for an image that is missing, the folder in which it would
+  /// appear.
+  std::vector<std::string> read;
 
   /// Null if there is no file of this name.
   const File* find(std::string_view name) const {

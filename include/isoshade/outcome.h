@@ -2,6 +2,10 @@
 // What every function of the library returns beside its result: whether it succeeded, and messages as data.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "isoshade needs C++20: compile with -std=c++20"
+#endif
+
 #include <string>
 #include <vector>
 

@@ -13,6 +13,9 @@
 #ifndef ISOSHADE_LANES_FLOAT_RULES_H
 #define ISOSHADE_LANES_FLOAT_RULES_H
 
+#if __cplusplus < 202002L
+#error "isoshade/lanes is C++20: compile with -std=c++20"
+#endif
 #if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__ || defined(__ASSOCIATIVE_MATH__) || \
     defined(__RECIPROCAL_MATH__)
 #error "isoshade/lanes computes exact bits: compile without -ffast-math and its parts"
@@ -64,7 +67,7 @@ namespace isoshade::lanes {
 ///
 /// Compilers do not see that arithmetic depends on the mode, and may move it past a guard. They cannot move
 /// loads and stores: what is read from memory after the guard begins and written before it ends is safe. So
-/// guard a function that works from memory to memory, not single expressions.
+/// guard loops that work from memory to memory; guarded() does it for a single call.
 class FpGuard {
  public:
   ISOSHADE_INLINE FpGuard() : former_(get()) { set((former_ & ~cleared) | flush); }
@@ -106,6 +109,23 @@ class FpGuard {
 
   Mode former_;
 };
+
+/// The result of work(), computed under an FpGuard from beginning to end. `work` is a lambda that captures by
+/// reference, and so reads what it captures from memory while the guard is alive. Literals in it, and what is
+/// constexpr outside of it, the compiler may still compute with at compile time.
+template <class Work>
+ISOSHADE_INLINE auto guarded(const Work& work) {
+  const FpGuard guard;
+  const Work* hidden = &work;
+#if defined(__GNUC__)
+  asm volatile("" : "+r"(hidden) : : "memory");
+#endif
+  const auto result = (*hidden)();
+#if defined(__GNUC__)
+  asm volatile("" : : "r"(&result) : "memory");
+#endif
+  return result;
+}
 
 }  // namespace isoshade::lanes
 

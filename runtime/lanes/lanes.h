@@ -14,8 +14,8 @@
 // of its own.
 //
 // Rules for the includer:
-// - Compile with -ffp-contract=off -frounding-math -fwrapv (g++ also -fsignaling-nans); see float_rules.h.
-// - Compute only where an FpGuard is alive on the thread: every thread has a mode of its own.
+// - Compile with -std=c++20 -ffp-contract=off -frounding-math -fwrapv (g++ also -fsignaling-nans); see float_rules.h.
+// - Compute only in guarded(), or where an FpGuard is alive on the thread: every thread has a mode of its own.
 // - Mark functions of lanes ISOSHADE_INLINE, and lambdas __attribute__((always_inline)): values
 //   of two registers are passed through memory, which costs more than the pair gains.
 // - Compile for each instruction set in files of its own. All that is here is always inlined, so no linker

@@ -242,6 +242,15 @@ TEST_F(OneLane, LoadsClampTheIndex) {
 
 // ---- the processor's mode
 
+TEST(FpGuard, GuardsACallFromBeginningToEnd) {
+  float a = 1e-30f, b = 1e-9f, c = 1e10f;
+  const auto product = [&] { return a * b * c; };  // a * b is a denormal
+  EXPECT_EQ(guarded(product), 0.0f);
+  EXPECT_NE(product(), 0.0f) << "the mode is restored";
+  const auto two = [&](float x, float y) { return guarded([&] { return x * y * 1e10f; }); };
+  EXPECT_EQ(two(1e-30f, 1e-9f), 0.0f) << "arguments that are literals";
+}
+
 TEST(FpGuard, FlushesDenormalsWhileAliveAndRestoresTheMode) {
   volatile float least = std::numeric_limits<float>::min();
   volatile float half = 0.5f;

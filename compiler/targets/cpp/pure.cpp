@@ -52,8 +52,9 @@ class Pure final : public PureLanguage {
         "// They stand in namespace " +
         space(shader) +
         ". F is float, or the Float of isoshade/lanes/vector.h for several points at once. Compile with\n"
-        "// -ffp-contract=off -frounding-math -fwrapv (g++: also -fsignaling-nans), and call where an\n"
-        "// isoshade::lanes::FpGuard is alive: then the bits are those of the GLSL.\n";
+        "// -std=c++20 -ffp-contract=off -frounding-math -fwrapv (g++: also -fsignaling-nans), and call in\n"
+        "// isoshade::lanes::guarded([&] { ... }), or in a loop around which an FpGuard is alive: then the bits are\n"
+        "// those of the GLSL.\n";
     if (!calls.empty()) {
       out += "//\n// The host is an object of yours with these members (isoshade/lanes/host.h):\n";
       out += members(calls);
