@@ -44,6 +44,7 @@ class Browser:
                             "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--window-size=1280,900",
                             f"--user-data-dir={folder}"]}
         made = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
+            "timeouts": {"script": 300000, "pageLoad": 300000},  # milliseconds; the machine may be busy
             "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}}})
         self.session = "/session/" + made["sessionId"]
 
