@@ -56,6 +56,7 @@ class Flattener {
   void block(CallFrame& frame, ir::BlockId id);
   void instruction(CallFrame& frame, const ir::Instruction& i);
   Words primitive(const ir::Instruction& i, ir::Type type, const std::vector<Words>& in, uint32_t place);
+  void keep_units(ir::Opcode op, const std::vector<Words>& in, const Words& out);
   void branch(CallFrame& frame, const ir::Instruction& i, uint32_t condition, uint32_t place);
   void loop(CallFrame& frame, const ir::Instruction& i, const std::vector<Words>& in, uint32_t place);
   uint32_t summed(uint32_t initial, uint32_t carried, uint32_t next, const Side& turns, uint32_t place);
@@ -306,7 +307,18 @@ Words Flattener::primitive(const ir::Instruction& i, ir::Type type, const std::v
     out.push_back(
         pool_.make({.kind = Kind::op, .op = i.op, .scalar = type.scalar, .place = place}, operands));
   }
+  keep_units(i.op, in, out);
   return out;
+}
+
+/// A unit vector that is turned round is one, and so is one of two (the normal of the side that is seen).
+void Flattener::keep_units(Opcode op, const std::vector<Words>& in, const Words& out) {
+  const auto has = [&](const std::set<Words>& units) {
+    if (op == Opcode::fneg) return units.contains(in[0]);
+    return op == Opcode::select && units.contains(in[1]) && units.contains(in[2]);
+  };
+  for (std::set<Words>* units : {&pool_.units, &pool_.at_most_units})
+    if (has(*units)) units->insert(out);
 }
 
 void Flattener::branch(CallFrame& frame, const ir::Instruction& i, uint32_t condition, uint32_t place) {

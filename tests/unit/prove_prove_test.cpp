@@ -200,6 +200,17 @@ TEST(Proof, UsesThatInputsAreUnitVectors) {
       checked(function_of(inputs(unit), code("sqrt(4.001 - dot(x + y, x + y))"))).proof.unproved.empty());
 }
 
+TEST(Proof, UnitVectorsStayThatWhenTurnedRoundOrChosen) {
+  const std::string inputs = R"("x": {"type": "vector3", "unit": true}, "y": {"type": "vector3", "unit": true},
+      "z": {"type": "vector3", "min": -1, "max": 1}, "f": {"type": "boolean"})";
+  const auto is_proved = [&](const std::string& text, const std::string& ports) {
+    return checked(function_of(inputs, code(text, ports))).proof.unproved.empty();
+  };
+  EXPECT_TRUE(is_proved("1 / (1.001 - dot(-y, x))", "xy"));
+  EXPECT_TRUE(is_proved("1 / (1.001 - dot(f ? y : -y, x))", "xyf"));
+  EXPECT_FALSE(is_proved("1 / (1.001 - dot(f ? y : z, x))", "xyzf"));
+}
+
 TEST(Proof, SquaresAreNotNegative) {
   const std::string inputs = R"("x": {"type": "vector3"}, "y": {"type": "float"})";
   EXPECT_TRUE(checked(function_of(inputs, code("1 / (dot(x, x) + y * y + 1)"))).proof.unproved.empty());
