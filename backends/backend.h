@@ -35,7 +35,9 @@ struct Draw {
   uint32_t first_vertex = 0;  ///< its vertices in Frame::vertices
   uint32_t vertex_count = 0;
   std::span<const uint32_t> indices;  ///< triples, relative to first_vertex
-  interface::PassState state;         ///< as its vertices are wound, whatever the transform does
+  interface::PassState state;
+  bool mirrored = false;  ///< by its transform: its front faces are those whose vertices turn clockwise
+  bool cutout = false;    ///< drawn only where the cut-out of its pixel program holds
 };
 
 /// What a view is drawn into.
@@ -71,6 +73,10 @@ struct Window {
 /// All that is drawn for one picture: programs, the arrays of lower/frame_layout.h, and the views.
 struct Frame {
   std::vector<const driver::Program*> programs;
+  static constexpr uint32_t no_program = ~0u;
+  /// For each program, if it is a pixel program: the one of Stage::cutout that belongs to it, or no_program. Empty if no
+  /// pixel program has any.
+  std::vector<uint32_t> cutouts;
   std::vector<float> vertices;
   std::vector<float> objects;
   std::vector<float> lights;
@@ -110,7 +116,7 @@ class ViewRenderer {
  public:
   virtual ~ViewRenderer() = default;
   /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order, in pixels of the target) over the
-  /// background, and runs the pixel program once for each pixel of the window that they cover, if the target has color.
+  /// background, those with triangle_flag::cutout where their cut-out holds, and runs the pixel program once for each pixel of the window that they cover, if the target has color.
   /// `image` gets the size of the window. Its bits do not depend on how a view is divided into windows.
   virtual bool draw(const Window& window, std::span<const int32_t> triangles, Image& image,
                     support::Diagnostics& diagnostics) = 0;

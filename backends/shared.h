@@ -50,6 +50,14 @@ inline size_t pixel_program_of(const Frame& frame, int object) {
   return program;
 }
 
+/// The program that cuts out the triangles of the object whose record begins at this word.
+inline size_t cutout_program_of(const Frame& frame, int object) {
+  const size_t pixel = pixel_program_of(frame, object);
+  support::assert_that(pixel < frame.cutouts.size() && frame.cutouts[pixel] < frame.programs.size(),
+                       "a triangle has a cut-out that the frame lacks");
+  return frame.cutouts[pixel];
+}
+
 /// The words of a record of these fields.
 size_t word_count(std::span<const driver::Field> fields);
 

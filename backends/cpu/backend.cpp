@@ -184,14 +184,17 @@ std::unique_ptr<backends::ViewRenderer> CpuBackend::begin(const ViewPass& pass,
 
 std::vector<bool> CpuViewRenderer::programs_of(std::span<const int32_t> triangles) const {
   std::vector<bool> seen(pass_.frame.programs.size());
-  if (!pass_.view.target.has_color) return seen;
+  const bool has_color = pass_.view.target.has_color;
+  if (!has_color && pass_.frame.cutouts.empty()) return seen;
   const size_t count = triangles.size() / lower::triangle_word::stride;
   int last_object = -1;
   for (size_t i = 0; i < count; ++i) {
-    const int object = raster::triangle_at(triangles.data(), static_cast<int>(i)).object();
+    const raster::Triangle triangle = raster::triangle_at(triangles.data(), static_cast<int>(i));
+    const int object = triangle.object();
     if (object == last_object) continue;
     last_object = object;
-    seen[backends::pixel_program_of(pass_.frame, object)] = true;
+    if (has_color) seen[backends::pixel_program_of(pass_.frame, object)] = true;
+    if (triangle.cutout()) seen[backends::cutout_program_of(pass_.frame, object)] = true;
   }
   return seen;
 }

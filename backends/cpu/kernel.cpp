@@ -60,6 +60,10 @@ std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stag
       function = dlsym(library, "isoshade_vertex");
       kernel->vertex = reinterpret_cast<VertexFunction*>(function);
       break;
+    case driver::Stage::cutout:
+      function = dlsym(library, "isoshade_cutout");
+      kernel->cutout = reinterpret_cast<CutoutFunction*>(function);
+      break;
     case driver::Stage::pixel:
       function = dlsym(library, "isoshade_pixel");
       kernel->pixel = reinterpret_cast<PixelFunction*>(function);

@@ -61,11 +61,43 @@ void TilePainter::collect(const DrawJob& job, int tile) {
     const std::span<const int32_t> listed = bins.of(tile);
     if (listed.empty()) continue;
     if (runs_.empty()) tile_.clear();
-    raster::rasterize_tile(job.triangles.data(), listed, x_, y_, tile_);
+    rasterize(job, listed);
     for (const int32_t triangle : listed) {
       const int object = raster::triangle_at(job.triangles.data(), triangle).object();
       if (runs_.empty() || runs_.back().object != object) runs_.push_back({triangle, object, 0});
     }
+  }
+}
+
+void TilePainter::rasterize(const DrawJob& job, std::span<const int32_t> listed) {
+  const int32_t* const triangles = job.triangles.data();
+  if (job.frame.cutouts.empty()) return raster::rasterize_tile(triangles, listed, x_, y_, tile_);
+  while (!listed.empty()) {
+    const raster::Triangle first = raster::triangle_at(triangles, listed.front());
+    size_t count = 1;
+    for (; count < listed.size(); ++count) {
+      const raster::Triangle next = raster::triangle_at(triangles, listed[count]);
+      if (next.cutout() != first.cutout() || (first.cutout() && next.object() != first.object())) break;
+    }
+    if (first.cutout())
+      cut_out(job, listed.first(count), first);
+    else
+      raster::rasterize_tile(triangles, listed.first(count), x_, y_, tile_);
+    listed = listed.subspan(count);
+  }
+}
+
+void TilePainter::cut_out(const DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first) {
+  if (!candidates_) candidates_ = std::make_unique<raster::Candidates>();
+  raster::Candidates& found = *candidates_;
+  const int object = first.object();
+  const Kernel& kernel = *job.kernels[backends::cutout_program_of(job.frame, object)];
+  while (!listed.empty()) {
+    const int taken =
+        raster::list_candidates(job.triangles.data(), listed, x_, y_, job.grid.area, tile_, found);
+    if (found.count > 0) kernel.cutout(job.buffers, object, found.count, found.x, found.y, found.triangle, found.drawn);
+    raster::draw_candidates(found, first.over(), tile_);
+    listed = listed.subspan(static_cast<size_t>(taken));
   }
 }
 

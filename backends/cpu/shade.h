@@ -2,6 +2,7 @@
 // One tile of a view: which triangle each pixel shows, then its color.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,9 @@ class TilePainter {
   };
 
   void collect(const DrawJob& job, int tile);
+  void rasterize(const DrawJob& job, std::span<const int32_t> listed);
+  /// Draws triangles of one object that has a cut-out.
+  void cut_out(const DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first);
   void segment();
   void list_pixels();
   void shade(const DrawJob& job);
@@ -53,6 +57,7 @@ class TilePainter {
 
   int x_ = 0, y_ = 0;  ///< the tile's first pixel
   raster::Tile tile_;
+  std::unique_ptr<raster::Candidates> candidates_;  ///< made when a tile first has a cut-out
   std::vector<Run> runs_;
   std::vector<Segment> segments_;
 

@@ -103,13 +103,27 @@ class InterpreterViewRenderer final : public backends::ViewRenderer {
             Diagnostics& diagnostics) override {
     buffers_.bind(FrameBuffer::triangles, triangles);
     image.resize(window.width, window.height, pass_.view.target.has_color);
+    const Frame& frame = pass_.frame;
+    std::map<size_t, StageRunner> pixels, cutouts;
+    for (int i = 0; i < static_cast<int>(triangles.size()) / lower::triangle_word::stride; ++i) {
+      const raster::Triangle triangle = raster::triangle_at(triangles.data(), i);
+      if (!triangle.cutout()) continue;
+      const size_t program = backends::cutout_program_of(frame, triangle.object());
+      if (cutouts.contains(program)) continue;
+      if (!is_within_limits(*frame.programs[program], diagnostics)) return false;
+      cutouts.try_emplace(program, make_, *frame.programs[program], buffers_);
+    }
+    const auto is_drawn = [&](int triangle, int x, int y) {
+      const int object = raster::triangle_at(triangles.data(), triangle).object();
+      std::array<uint32_t, 2> result;  // drawn, depth
+      cutouts.at(backends::cutout_program_of(frame, object)).run({x, y, triangle, object}, result);
+      return result[0] != 0;
+    };
     std::vector<int32_t> visible(image.depth.size());
     raster::rasterize_reference(triangles, raster::box_at(window.x, window.y, window.width, window.height),
-                                visible, image.depth);
+                                visible, image.depth, is_drawn);
     if (!pass_.view.target.has_color) return true;
 
-    const Frame& frame = pass_.frame;
-    std::map<size_t, StageRunner> pixels;
     for (size_t i = 0; i < visible.size(); ++i) {
       float* color = image.rgba.data() + 4 * i;
       if (visible[i] < 0) {

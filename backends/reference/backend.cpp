@@ -36,9 +36,9 @@ class EvaluatingMachine final : public interpreter::Machine {
   std::vector<Cell> arguments_, results_;
 };
 
-/// Positions are computed in floats: otherwise a pixel might show another triangle.
+/// What decides visibility is computed in floats: otherwise a pixel might show another triangle.
 std::unique_ptr<interpreter::Machine> make_machine(const driver::Program& program) {
-  if (program.stage == driver::Stage::vertex) return interpreter::make_machine(program);
+  if (lower::decides_visibility(program.stage)) return interpreter::make_machine(program);
   return std::make_unique<EvaluatingMachine>(program.module);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawing the windows of a view.
 #include <algorithm>
+#include <map>
 
 #include "backends/shared.h"
 #include "backends/vulkan/backend.h"
@@ -34,18 +35,22 @@ std::vector<Box> bounds_of_programs(const Frame& frame, const Window& window,
   return bounds;
 }
 
-/// Consecutive triangles with the same depth test.
+/// Consecutive triangles with the same depth test and the same cut-out.
 struct Run {
   uint32_t first, count;
   bool over;
+  const driver::Program* cutout;  ///< or null
 };
 
-std::vector<Run> runs_of(std::span<const int32_t> triangles) {
+std::vector<Run> runs_of(const Frame& frame, std::span<const int32_t> triangles) {
   std::vector<Run> runs;
   const auto count = static_cast<uint32_t>(triangles.size() / lower::triangle_word::stride);
   for (uint32_t i = 0; i < count; ++i) {
-    const bool over = raster::triangle_at(triangles.data(), static_cast<int>(i)).over();
-    if (runs.empty() || runs.back().over != over) runs.push_back({i, 0, over});
+    const raster::Triangle triangle = raster::triangle_at(triangles.data(), static_cast<int>(i));
+    const driver::Program* const cutout =
+        triangle.cutout() ? frame.programs[backends::cutout_program_of(frame, triangle.object())] : nullptr;
+    if (runs.empty() || runs.back().over != triangle.over() || runs.back().cutout != cutout)
+      runs.push_back({i, 0, triangle.over(), cutout});
     ++runs.back().count;
   }
   return runs;
@@ -68,8 +73,8 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
       if (!backend_.check_size(window.width, window.height, diagnostics)) return false;
       if (!triangles.empty() && !upload(triangles, diagnostics)) return false;
       std::vector<Call> visibility, color;
-      for (const Run& run : runs_of(triangles)) {
-        const auto pipeline = visibility_pipeline(run.over, diagnostics);
+      for (const Run& run : runs_of(pass_.frame, triangles)) {
+        const auto pipeline = visibility_pipeline(run, diagnostics);
         if (!pipeline) return false;
         visibility.push_back({.pipeline = *pipeline,
                               .push = {.light_count = light_count},
@@ -94,23 +99,27 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   }
 
  private:
-  /// Uploads the triangles; the first time, also everything that pixel programs read.
+  /// Uploads the triangles; the first time, also everything that cut-outs and pixel programs read.
   bool upload(std::span<const int32_t> triangles, Diagnostics& diagnostics) {
-    uploaded_ = uploaded_ || !pass_.view.target.has_color ||
+    uploaded_ = uploaded_ || (!pass_.view.target.has_color && pass_.frame.cutouts.empty()) ||
                 (backend_.upload(pass_, vertices_, diagnostics) &&
                  backend_.upload_textures(pass_.frame, diagnostics));
     return uploaded_ && backend_.upload_triangles(pass_.frame, triangles, diagnostics);
   }
 
-  std::optional<PipelineIndex> visibility_pipeline(bool over, Diagnostics& diagnostics) {
-    std::optional<PipelineIndex>& pipeline = visibility_[over ? 1 : 0];
-    if (!pipeline) {
-      pipeline = backend_.device_->pipeline(
-          {Output::visibility, 1, triangle_vertex(),
-           backend_.options_.glsl(driver::depth_program(), backend_.division_), over},
-          diagnostics);
+  std::optional<PipelineIndex> visibility_pipeline(const Run& run, Diagnostics& diagnostics) {
+    std::optional<PipelineIndex>& pipeline = visibility_[{run.cutout, run.over}];
+    if (pipeline) return pipeline;
+    PipelineSource source{Output::visibility, 1, triangle_vertex(), {}, run.over};
+    if (run.cutout != nullptr) {
+      auto text = backend_.text_of(*run.cutout, diagnostics);
+      if (!text) return std::nullopt;
+      source.fragment_glsl = std::move(*text);
+      source.what = driver::description(*run.cutout);
+    } else {
+      source.fragment_glsl = backend_.options_.glsl(driver::depth_program(), backend_.division_);
     }
-    return pipeline;
+    return pipeline = backend_.device_->pipeline(source, diagnostics);
   }
 
   std::optional<PipelineIndex> pixel_pipeline(const driver::Program& program, Diagnostics& diagnostics) {
@@ -125,7 +134,8 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   const ViewPass pass_;
   std::span<const float> vertices_;
   bool uploaded_ = false;
-  std::optional<PipelineIndex> visibility_[2];  ///< with the depth test, without it
+  /// By the program of the cut-out, or null, and whether the depth test always passes.
+  std::map<std::pair<const driver::Program*, bool>, std::optional<PipelineIndex>> visibility_;
   std::vector<std::optional<PipelineIndex>>
       shading_;  ///< one for each program of the frame, made when needed
 };

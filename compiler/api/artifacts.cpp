@@ -63,6 +63,7 @@ std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKi
     driver::EffectPass& pass = effect->passes[i];
     const std::string stem = driver::pass_stem(effect->name, pass.name, i);
     stages.add(std::move(pass.vertex), stem + ".vertex", pass.name);
+    if (pass.cutout) stages.add(*std::move(pass.cutout), stem + ".cutout", pass.name);
     stages.add(std::move(pass.pixel), stem + ".pixel", pass.name);
   }
   return stages;

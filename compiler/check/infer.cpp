@@ -296,6 +296,35 @@ void infer_output(Work& work, size_t i) {
       .suggest(conversion_hint(link, Type::color3));
 }
 
+/// Takes the type of a cutout, or of a cutoff, from what its link names; float for numbers.
+bool infer_threshold(Work& work, const Link& link, bool may_be_boolean, Operand& operand) {
+  if (!select(work, link, operand)) return false;
+  operand.needed = operand.type;
+  if (may_be_boolean && operand.type == Type::boolean) return true;
+  operand.needed = Type::floating;
+  if (operand.type == Type::floating || converts(operand.type, Type::floating)) return true;
+  work.report(Id::type_mismatch, link.place,
+              std::string(may_be_boolean ? "\"cutout\" must be boolean or float, not " : "\"cutoff\" must be float, not ") +
+                  name_of(operand.type));
+  return false;
+}
+
+/// `first`: the index of the cutout of a pass in the outputs; its cutoff follows.
+void infer_cutout(Work& work, size_t first) {
+  Operand &cutout = work.typed.outputs[first], &cutoff = work.typed.outputs[first + 1];
+  const Link* const given = work.roots[first + 1];
+  if (!infer_threshold(work, *work.roots[first], true, cutout)) return;
+  if (cutout.type != Type::boolean) {
+    graph::Literal usual;
+    usual.number = graph::default_cutoff;
+    given != nullptr ? void(infer_threshold(work, *given, false, cutoff)) : place(work.typed, usual, Type::floating, cutoff);
+  } else if (given != nullptr) {
+    work.report(Id::type_mismatch, given->place, "\"cutoff\" belongs to a float \"cutout\", and this one is a boolean")
+        .note(work.span(work.roots[first]->place), "the cutout is here")
+        .suggest("remove \"cutoff\"");
+  }
+}
+
 }  // namespace
 
 void infer(Work& work) {
@@ -303,7 +332,9 @@ void infer(Work& work) {
   work.untyped.resize(work.typed.nodes.size());
   for (const uint32_t node : work.typed.order)
     if (!work.broken[node]) NodeInference(work, node).infer();
-  for (size_t i = 0; i < work.typed.outputs.size(); ++i) infer_output(work, i);
+  const size_t cutouts = work.typed.outputs.size() - work.typed.cutouts().size();
+  for (size_t i = 0; i < cutouts; ++i) infer_output(work, i);
+  for (size_t i = cutouts; i < work.typed.outputs.size(); i += 2) infer_cutout(work, i);
 }
 
 }  // namespace isoshade::check

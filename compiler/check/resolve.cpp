@@ -296,8 +296,14 @@ void resolve(Work& work) {
   for (const graph::Pass& pass : graph.passes) work.roots.push_back(&pass.color);
   for (const graph::Pass& pass : graph.passes)
     if (pass.position) work.roots.push_back(&*pass.position);
+  for (const graph::Pass& pass : graph.passes) {
+    if (!pass.cutout) continue;
+    work.roots.push_back(&*pass.cutout);
+    work.roots.push_back(pass.cutoff ? &*pass.cutoff : nullptr);
+  }
   work.typed.outputs.resize(work.roots.size());
-  for (size_t i = 0; i < work.roots.size(); ++i) resolve_link(work, *work.roots[i], work.typed.outputs[i]);
+  for (size_t i = 0; i < work.roots.size(); ++i)
+    if (work.roots[i] != nullptr) resolve_link(work, *work.roots[i], work.typed.outputs[i]);
 }
 
 void order(Work& work) {

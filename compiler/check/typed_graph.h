@@ -2,6 +2,7 @@
 // A graph with all links resolved and all types inferred.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -65,16 +66,24 @@ struct TypedGraph {
   std::vector<uint32_t> words;    ///< bits of literals: floats, booleans, integers
   std::vector<File> files;        ///< named in ports
   /// One per Graph::outputs of a function or post; for an effect, the color of each pass, then the position of each
-  /// pass that has one.
+  /// pass that has one, then the cutout and the cutoff (nothing if the cutout is a boolean) of each pass that has them.
   std::vector<Operand> outputs;
   uint64_t expanded_nodes = 0;  ///< the number of nodes with all calls and sums expanded
 
   std::span<const Operand> operands_of(const Node& node) const {
     return {operands.data() + node.first_operand, node.operand_count};
   }
-  /// The outputs without the positions of passes.
+  /// The outputs of a function or post, or the colors of passes.
   std::span<const Operand> values() const {
     return std::span(outputs).first(graph.passes.empty() ? outputs.size() : graph.passes.size());
+  }
+  std::span<const Operand> positions() const {
+    const std::span<const Operand> rest = std::span(outputs).subspan(values().size());
+    return rest.first(static_cast<size_t>(
+        std::ranges::count_if(graph.passes, [](const graph::Pass& pass) { return pass.position.has_value(); })));
+  }
+  std::span<const Operand> cutouts() const {
+    return std::span(outputs).subspan(values().size() + positions().size());
   }
   /// The vertex position of a pass; null if it keeps the position of the mesh.
   const Operand* position_of(size_t pass) const {
@@ -82,6 +91,13 @@ struct TypedGraph {
     size_t index = graph.passes.size();
     for (size_t i = 0; i < pass; ++i) index += graph.passes[i].position ? 1 : 0;
     return &outputs[index];
+  }
+  /// Where a pass is drawn: a boolean, or a float and its cutoff; empty if it is drawn everywhere.
+  std::span<const Operand> cutout_of(size_t pass) const {
+    if (!graph.passes[pass].cutout) return {};
+    size_t index = 0;
+    for (size_t i = 0; i < pass; ++i) index += graph.passes[i].cutout ? 2 : 0;
+    return cutouts().subspan(index, cutouts()[index + 1].from == Operand::From::nothing ? 1 : 2);
   }
   std::span<const Type> types_of(const Node& node) const {
     return {types.data() + node.first_type, node.output_count};

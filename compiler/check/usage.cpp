@@ -65,6 +65,12 @@ bool is_trilinear_image(const TypedGraph& typed, const Node& node) {
              static_cast<uint32_t>(nodes::Filter::trilinear);
 }
 
+/// The stages in which the node of a surface attribute is available.
+interface::SurfaceStages available_at(const nodes::Row& row) {
+  const auto* attribute = std::get_if<nodes::Surface>(&row.lowering);
+  return attribute != nullptr ? interface::row(*attribute).stages : interface::SurfaceStages::all;
+}
+
 /// Why a node is not available in the vertex stage; nullptr if it is.
 const char* missing_at_vertices(const TypedGraph& typed, const Node& node) {
   const nodes::Row& row = *node.row;
@@ -72,6 +78,7 @@ const char* missing_at_vertices(const TypedGraph& typed, const Node& node) {
   if (is_trilinear_image(typed, node))
     return "its mip level exists only for pixels; \"closest\" and \"linear\" filtering need none";
   if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "lights exist only for pixels";
+  if (available_at(row) == interface::SurfaceStages::pixels) return "it is known only for pixels";
   return nullptr;
 }
 
@@ -83,7 +90,7 @@ void check_positions(Work& work) {
   const auto reach = [&](const Operand& operand) {
     if (operand.from == From::node) reached[operand.index] = true;
   };
-  std::ranges::for_each(std::span(typed.outputs).subspan(typed.values().size()), reach);
+  std::ranges::for_each(typed.positions(), reach);
   for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
     if (!reached[*it]) continue;
     const Node& node = typed.nodes[*it];
@@ -97,24 +104,32 @@ void check_positions(Work& work) {
   }
 }
 
-/// Reports nodes that a pass's color depends on, but that are available only in the vertex stage.
-void check_colors(Work& work) {
+/// Reports nodes that a part of a pass, computed per pixel, depends on, but that are not available there. Visibility
+/// does not depend on lights, because shadows depend on visibility.
+void check_pixels(Work& work, std::span<const Operand> outputs, const std::string& part, bool has_lights) {
   const TypedGraph& typed = work.typed;
   std::vector<bool> reached(typed.nodes.size());
   const auto reach = [&](const Operand& operand) {
     if (operand.from == From::node) reached[operand.index] = true;
   };
-  std::ranges::for_each(typed.values(), reach);
+  std::ranges::for_each(outputs, reach);
   for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
     if (!reached[*it]) continue;
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
-    const auto* attribute = node.row != nullptr ? std::get_if<nodes::Surface>(&node.row->lowering) : nullptr;
-    if (attribute == nullptr || interface::row(*attribute).stages != interface::SurfaceStages::vertices) continue;
+    if (node.row == nullptr) continue;
+    const bool is_light = node.row->is<nodes::Light>() || node.row->is<nodes::SumLights>();
+    const bool at_vertices = available_at(*node.row) == interface::SurfaceStages::vertices;
+    if (!at_vertices && (has_lights || !is_light)) continue;
     const graph::Node& source = work.graph().nodes[*it];
-    work.report(Id::misplaced_node, source.type_place,
-                "the \"color\" of a pass cannot depend on " + quote(source.label()))
-        .suggest("it is available only for vertices: use it for \"position\"");
+    support::Diagnostic& report =
+        work.report(Id::misplaced_node, source.type_place,
+                    "the " + quote(part) + " of a pass cannot depend on " + quote(source.label()));
+    if (at_vertices)
+      report.suggest("it is available only for vertices: use it for \"position\"");
+    else
+      report.note("it decides what is seen, and lights exist only for what is seen")
+          .suggest("compute " + quote(part) + " without lights; only \"color\" may depend on them");
   }
 }
 
@@ -206,7 +221,8 @@ void check_usage(Work& work) {
   mark_per_iteration(work.typed);
   check_summands(work);
   check_positions(work);
-  check_colors(work);
+  check_pixels(work, work.typed.values(), "color", true);
+  check_pixels(work, work.typed.cutouts(), "cutout", false);
   check_derivatives(work);
   check_size(work);
   if (!work.is_instance()) warn_unused(work);

@@ -26,7 +26,7 @@ struct Work {
   Library& library;
   support::Diagnostics& diagnostics;
   std::vector<Given> given = {};               ///< parallel to TypedGraph::operands
-  std::vector<const graph::Link*> roots = {};  ///< parallel to TypedGraph::outputs
+  std::vector<const graph::Link*> roots = {};  ///< parallel to TypedGraph::outputs; null for a cutoff that is not given
   std::deque<graph::Link> links = {};          ///< parsed from strings in ports
   /// The function documents that the graph uses, by node type.
   std::unordered_map<std::string_view, std::shared_ptr<const TypedGraph>> functions = {};

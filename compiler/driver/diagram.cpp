@@ -76,7 +76,12 @@ class Diagram {
     for (const graph::Pass& pass : graph.graph.passes) names_of_passes.push_back(pass.name + " color");
     for (const graph::Pass& pass : graph.graph.passes)
       if (pass.position) names_of_passes.push_back(pass.name + " position");
+    for (const graph::Pass& pass : graph.graph.passes)
+      if (pass.cutout)
+        names_of_passes.insert(names_of_passes.end(), {pass.name + " cutout", pass.name + " cutoff"});
     for (size_t i = 0; i < graph.outputs.size() && !full(); ++i) {
+      const check::Operand::From from = graph.outputs[i].from;  // a cutoff may be the default, or missing
+      if (from == check::Operand::From::nothing || from == check::Operand::From::words) continue;
       const bool has_outputs = graph.graph.kind != graph::DocumentKind::effect;
       const std::string name = has_outputs ? graph.graph.outputs[i].name : names_of_passes[i];
       edge(source_of(graph.outputs[i], drawn, inputs), output_box(name, graph.outputs[i].needed),

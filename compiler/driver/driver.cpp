@@ -42,13 +42,13 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
   return typed;
 }
 
-/// Runs all passes on a lowered program. The reference leaves it as lowered, except for vertex positions, which must be
-/// those of every backend.
+/// Runs all passes on a lowered program. The reference leaves it as lowered, except for what decides visibility, which
+/// must be the same on every backend.
 void finish(Program& program, uint32_t kernel, const CompileOptions& options,
             support::Source source = nullptr) {
   program.entry = kernel;
   program.source = std::move(source);
-  if (options.reference && program.stage != Stage::vertex) return passes::derivatives(program.module);
+  if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);
   passes::Entries entries{kernel};
   const auto dump = [&](std::string_view pass, const ir::Module& after) {
     options.dump(pass, [&] { return dump_module(after); });
@@ -191,6 +191,25 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect&
   return program;
 }
 
+/// The index of the parameter that is the cutoff of a pass; none if another value is, or if it has no cutoff.
+std::optional<size_t> cutoff_parameter(const check::TypedGraph& typed, size_t pass) {
+  const std::span<const check::Operand> cutout = typed.cutout_of(pass);
+  const bool is_parameter = cutout.size() > 1 && cutout[1].from == check::Operand::From::input;
+  return is_parameter && cutout[1].swizzle_count == 0 ? std::optional<size_t>(cutout[1].index) : std::nullopt;
+}
+
+std::optional<Program> cutout_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
+                                      const CompileOptions& options) {
+  if (!lower::has_part(typed, pass, lower::PassPart::coverage)) return std::nullopt;
+  lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::coverage});
+  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
+  const uint32_t kernel = lower::add_cutout_kernel(lowered.module, lowered.interface, layout_of(effect));
+  Program program{lower::Stage::cutout, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {}};
+  program.bindings = std::move(lowered.interface.bindings);
+  finish(program, kernel, options, typed.graph.source);
+  return program;
+}
+
 }  // namespace
 
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, Diagnostics& diagnostics) {
@@ -211,9 +230,9 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), pass.enabled,
-                             vertex_program(*typed, i, effect, options),
-                             pixel_program(*typed, i, effect, options)});
+    effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), pass.enabled, pass.double_sided,
+                             cutoff_parameter(*typed, i), vertex_program(*typed, i, effect, options),
+                             pixel_program(*typed, i, effect, options), cutout_program(*typed, i, effect, options)});
   }
   return effect;
 }
@@ -329,11 +348,22 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
       case graph::DocumentKind::post: kind = emit::PureKind::post_process; break;
       case graph::DocumentKind::effect:
       case graph::DocumentKind::scene:
-        const bool moves = entry.part == lower::PassPart::position;
-        kind = moves ? emit::PureKind::move_vertex : emit::PureKind::shade;
         const graph::Pass& pass = graph.passes[entry.pass];
-        if (!moves) shader.passes.push_back({pass.name, pass.state, i, {}, pass.position_space, pass.enabled});
-        if (moves) shader.passes.back().move_vertex = i;
+        switch (entry.part) {
+          case lower::PassPart::color:
+            kind = emit::PureKind::shade;
+            shader.passes.push_back(
+                {pass.name, pass.state, i, {}, {}, pass.position_space, pass.enabled, pass.double_sided});
+            break;
+          case lower::PassPart::position:
+            kind = emit::PureKind::move_vertex;
+            shader.passes.back().move_vertex = i;
+            break;
+          case lower::PassPart::coverage:
+            kind = emit::PureKind::coverage;
+            shader.passes.back().coverage = i;
+            break;
+        }
     }
     pure.functions.push_back({kind, entries[i], entry.interface.bindings});
   }

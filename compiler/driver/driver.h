@@ -26,7 +26,8 @@ struct CompileOptions {
   /// For backends/reference: eval and pixel programs stay as lowered, with calls of functions.def and without
   /// optimisation; only ddx and ddy are replaced.
   bool reference = false;
-  /// Of eval and pixel programs. Vertex programs always use the default tier, so that every tier shows the same pixels.
+  /// Of eval and pixel programs. What decides visibility always uses the default tier, so that every tier shows the same
+  /// pixels.
   functions::Tier tier = functions::Tier::standard;
   Dump dump;  ///< may be empty
 };
@@ -36,9 +37,12 @@ struct EffectPass {
   std::string name;
   interface::PassState state;
   bool moves_vertices = false;
-  std::optional<size_t> enabled;  ///< index of a parameter field; the pass is drawn if it is not 0
+  std::optional<size_t> enabled;       ///< index of a parameter field; the pass is drawn if it is not 0
+  std::optional<size_t> double_sided;  ///< index of a parameter field; no face is culled if it is not 0
+  std::optional<size_t> cutoff;        ///< index of a parameter field; there is no cut-out if it is 0 or less
   Program vertex;
   Program pixel;
+  std::optional<Program> cutout;  ///< whether a pixel is drawn; every pixel is if there is none
 };
 
 struct Effect {

@@ -98,8 +98,10 @@ std::string dump_graph(const graph::Graph& graph) {
   for (const graph::Output& output : graph.outputs)
     out += fmt::format("  output {} {}\n", output.name, text(output.link));
   for (const graph::Pass& pass : graph.passes)
-    out += fmt::format("  pass {} {}{}\n", pass.name, text(pass.color),
-                       pass.position ? " position " + text(*pass.position) : "");
+    out += fmt::format("  pass {} {}{}{}{}\n", pass.name, text(pass.color),
+                       pass.position ? " position " + text(*pass.position) : "",
+                       pass.cutout ? " cutout " + text(*pass.cutout) : "",
+                       pass.cutoff ? " cutoff " + text(*pass.cutoff) : "");
   return out;
 }
 
@@ -116,7 +118,7 @@ std::string dump_typed(const check::TypedGraph& graph) {
     out += node.per_iteration ? "  each iteration\n" : "\n";
   }
   for (const check::Operand& operand : graph.outputs)
-    out += fmt::format("output ({})\n", text(graph, operand));
+    if (operand.from != check::Operand::From::nothing) out += fmt::format("output ({})\n", text(graph, operand));
   return out;
 }
 

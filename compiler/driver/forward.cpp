@@ -12,11 +12,11 @@ namespace {
 using emit::PureFunction;
 using emit::PureKind;
 
-/// What the functions of a kind are given for each point, without the derivatives.
+/// What the functions that take the point of a kind are given for it, without the derivatives.
 std::vector<interface::Binding> point_bindings(const emit::PureShader& shader, PureKind kind) {
   std::vector<interface::Binding> bindings;
   for (const PureFunction& function : shader.functions) {
-    if (function.kind != kind) continue;
+    if (emit::point_record(function.kind) != emit::point_record(kind)) continue;
     for (const interface::Binding& binding : function.bindings) {
       const bool is_known = std::ranges::any_of(bindings, [&](const interface::Binding& other) {
         return other.parameter.name == binding.parameter.name;
@@ -41,11 +41,13 @@ void forget_samplers(emit::PureShader& shader) {
 }
 
 emit::ForwardProgram program_of(const Shader& shader, const emit::PureShader& pure, const emit::Target& target,
-                                size_t main, std::optional<size_t> move_vertex) {
+                                size_t main, std::optional<size_t> move_vertex = {},
+                                std::optional<size_t> coverage = {}) {
   emit::ForwardProgram program;
   program.pure = &pure;
   program.main = main;
   program.move_vertex = move_vertex;
+  program.coverage = coverage;
   program.name = pure.name;
   for (const Image& image : shader.parameters.images) {
     // Images are the last of the parameters, in the same order.
@@ -91,9 +93,9 @@ std::vector<ForwardPair> forward_pairs(const Shader& shader, const emit::Target&
     program.sampling = sampling;
     pairs.push_back({std::move(stem), target.forward(program), emit::forward_layout(program)});
   };
-  if (shader.kind == graph::DocumentKind::post) add(pure.name, program_of(shader, pure, target, 0, {}));
+  if (shader.kind == graph::DocumentKind::post) add(pure.name, program_of(shader, pure, target, 0));
   for (const ShaderPass& pass : shader.passes) {
-    emit::ForwardProgram program = program_of(shader, pure, target, pass.shade, pass.move_vertex);
+    emit::ForwardProgram program = program_of(shader, pure, target, pass.shade, pass.move_vertex, pass.coverage);
     program.position_space = pass.position_space;
     const bool has_several = shader.passes.size() > 1;
     if (has_several) program.name += ", pass " + pass.name;

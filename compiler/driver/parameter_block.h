@@ -42,6 +42,14 @@ struct ParameterBlock {
   bool is_off(std::optional<size_t> enabled, std::span<const float> record) const {
     return enabled && record[word_of(*enabled)] == 0;
   }
+  /// Whether there is such a field, and it is not 0 in this record.
+  bool is_on(std::optional<size_t> field, std::span<const float> record) const {
+    return field && record[word_of(*field)] != 0;
+  }
+  /// Whether the field that is the cutoff of a pass, if there is one, is above 0 in this record.
+  bool cuts_out(std::optional<size_t> cutoff, std::span<const float> record) const {
+    return !cutoff || record[word_of(*cutoff)] > 0;
+  }
 };
 
 /// The type of a field of a parameter block.

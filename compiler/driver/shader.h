@@ -16,9 +16,10 @@ struct ShaderPass {
   std::string name;
   interface::PassState state;
   size_t shade = 0;
-  std::optional<size_t> move_vertex;
+  std::optional<size_t> move_vertex, coverage;
   graph::PositionSpace position_space{};  ///< of what move_vertex returns
   std::optional<size_t> enabled;          ///< index of a parameter field; the pass is drawn if it is not 0
+  std::optional<size_t> double_sided;     ///< index of a parameter field; no face is culled if it is not 0
 };
 
 /// A document that is compiled to be linked.

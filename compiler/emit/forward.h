@@ -37,7 +37,7 @@ enum class ForwardSampling : uint8_t {
 struct ForwardProgram {
   const PureShader* pure = nullptr;
   size_t main = 0;                    ///< in pure->functions: `shade` of a pass, or a post
-  std::optional<size_t> move_vertex;  ///< in pure->functions
+  std::optional<size_t> move_vertex, coverage;  ///< in pure->functions
   graph::PositionSpace position_space{};
   std::vector<ForwardImage> images;
   ForwardSampling sampling = ForwardSampling::fetch;  ///< samplers: the functions of `pure` that sample have no body

@@ -14,12 +14,14 @@ using interface::HostCall;
 using interface::HostRow;
 namespace place = interface::place;
 
+/// One for each struct of points.
 constexpr std::array kinds_of_points{PureKind::shade, PureKind::move_vertex, PureKind::post_process};
 
 /// The local that holds a function's point.
 std::string_view point_name(PureKind kind) {
   switch (kind) {
-    case PureKind::shade: return "surface";
+    case PureKind::shade:
+    case PureKind::coverage: return "surface";
     case PureKind::move_vertex: return "vertex";
     case PureKind::post_process: return "screen";
     case PureKind::function: break;
@@ -54,11 +56,11 @@ std::string doc_of(const interface::Binding& binding) {
                     binding.source);
 }
 
-/// The entries of a kind, and the parameters that are fields of their point.
+/// Calls `add` for each parameter that is a field of the struct of points of a kind.
 template <class Add>
 void for_each_point_parameter(const PureShader& shader, PureKind kind, Add add) {
   for (const PureFunction& function : shader.functions) {
-    if (function.kind != kind) continue;
+    if (point_record(function.kind) != point_record(kind)) continue;
     const std::vector<ir::Parameter>& parameters = shader.module.functions[function.entry].parameters;
     for (size_t i = 0; i < parameters.size(); ++i) {
       const interface::Binding* binding = i < function.bindings.size() ? &function.bindings[i] : nullptr;
@@ -127,7 +129,8 @@ class PurePrinter {
   }
 
   const std::vector<PureField>& point(PureKind kind) const {
-    return points_[static_cast<size_t>(std::ranges::find(kinds_of_points, kind) - kinds_of_points.begin())];
+    const auto found = std::ranges::find(kinds_of_points, point_record(kind), point_record);
+    return points_[static_cast<size_t>(found - kinds_of_points.begin())];
   }
 
   std::string structs() const {
@@ -250,7 +253,8 @@ std::string name_prefix(const PureShader& shader) {
 
 std::string_view point_record(PureKind kind) {
   switch (kind) {
-    case PureKind::shade: return "Surface";
+    case PureKind::shade:
+    case PureKind::coverage: return "Surface";
     case PureKind::move_vertex: return "Vertex";
     case PureKind::post_process: return "Screen";
     case PureKind::function: break;

@@ -17,7 +17,7 @@
 namespace isoshade::emit {
 
 /// What a function of a pure shader computes.
-enum class PureKind : uint8_t { shade, move_vertex, post_process, function };
+enum class PureKind : uint8_t { shade, move_vertex, coverage, post_process, function };
 
 struct PureFunction {
   PureKind kind{};
@@ -47,9 +47,10 @@ struct PureShader {
 std::string name_prefix(const PureShader& shader);
 /// The structs of the parameters, and of the results of a function document that has several.
 inline constexpr std::string_view parameters_record = "Parameters", results_record = "Result";
-/// The struct whose fields a function is given for each point that it is called for; empty for functions.
+/// The struct whose fields a function is given for each point that it is called for; empty for functions. Kinds with the
+/// same struct take the same points.
 std::string_view point_record(PureKind kind);
-/// Its fields: all that the functions of this kind read, with the derivatives that they need.
+/// Its fields: all that the functions that take it read, with the derivatives that they need.
 std::vector<PureField> point_fields(const PureShader& shader, PureKind kind);
 /// The fields of results_record.
 std::vector<PureField> result_fields(const PureShader& shader, const PureFunction& function);

@@ -141,6 +141,9 @@ struct Output {
 /// The coordinate space of a pass's `position`.
 enum class PositionSpace : uint8_t { world, object, view };
 
+/// The cutoff of a cut-out that names none.
+inline constexpr float default_cutoff = 0.5f;
+
 /// One pass of an effect over the mesh.
 struct Pass {
   std::string name;
@@ -148,7 +151,10 @@ struct Pass {
   std::optional<Link> position;  ///< vertex output; default: the position of the mesh
   PositionSpace position_space = PositionSpace::world;
   std::optional<uint32_t> enabled;  ///< in Graph::inputs: the pass is drawn if this parameter is not 0
-  Link color;                       ///< surface output
+  std::optional<uint32_t> double_sided;  ///< in Graph::inputs: no face is culled if this parameter is not 0
+  std::optional<Link> cutout;  ///< the pass is drawn where it holds: a boolean, or a float of at least `cutoff`
+  std::optional<Link> cutoff;  ///< of a float; 0 and less: drawn everywhere
+  Link color;                  ///< surface output
   TextRange place;
 };
 

@@ -59,18 +59,21 @@ std::optional<Link> GraphBuilder::color(const Json& json) {
                         "\"color\" must have 3 or 4 numbers, not " + std::to_string(count));
     return std::nullopt;
   }
-  Literal type;
-  type.kind = Literal::Kind::string;
-  type.string = count == 3 ? "color3" : "color4";
-  const TextRange place = place_of(json);
+  return constant(*std::move(value), "color", count == 3 ? Type::color3 : Type::color4, place_of(json));
+}
+
+Link GraphBuilder::constant(Literal value, std::string_view key, Type type, TextRange place) {
+  Literal name;
+  name.kind = Literal::Kind::string;
+  name.string = type_name(type);
   Node node;
-  node.id = node.shown = "color";
+  node.id = node.shown = key;
   node.type = "constant";
   node.origin = Node::Origin::operation;
   node.id_place = node.type_place = node.place = place;
-  node.ports = {{"value", *std::move(value), place, place}, {"to", std::move(type), place, place}};
+  node.ports = {{"value", std::move(value), place, place}, {"to", std::move(name), place, place}};
   graph_.nodes.push_back(std::move(node));
-  return Link{"color", {}, place, static_cast<uint32_t>(graph_.nodes.size() - 1)};
+  return Link{std::string(key), {}, place, static_cast<uint32_t>(graph_.nodes.size() - 1)};
 }
 
 void GraphBuilder::read_node(const Member& member) {

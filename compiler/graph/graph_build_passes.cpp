@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The passes of an effect, and the images and outputs of a post.
 #include <algorithm>
+#include <utility>
 
 #include "compiler/graph/graph_builder.h"
 #include "compiler/support/visible.h"
@@ -11,10 +12,10 @@ using support::Id;
 using support::quote;
 using Need = ObjectReader::Need;
 
-std::optional<uint32_t> GraphBuilder::read_enabled(const Json& json) {
+std::optional<uint32_t> GraphBuilder::read_switch(const Json& json, std::string_view key) {
   if (json.kind != Json::Kind::string) {
     diagnostics_.report(Id::wrong_type, document_.span(json),
-                        "\"enabled\" must be the name of a parameter, not " + std::string(kind_name(json.kind)));
+                        quote(key) + " must be the name of a parameter, not " + std::string(kind_name(json.kind)));
     return std::nullopt;
   }
   std::vector<std::string_view> names;
@@ -27,7 +28,7 @@ std::optional<uint32_t> GraphBuilder::read_enabled(const Json& json) {
     if (one) return i;
     diagnostics_
         .report(Id::type_mismatch, document_.span(json),
-                "\"enabled\" of a " + std::string(graph_.kind == DocumentKind::post ? "post" : "pass") +
+                quote(key) + " of a " + std::string(graph_.kind == DocumentKind::post ? "post" : "pass") +
                     " must name a boolean, integer or float parameter, not a " +
                     std::string(type_name(input.type)))
         .note(graph_.span(input.name_place), "the parameter is declared here");
@@ -38,6 +39,22 @@ std::optional<uint32_t> GraphBuilder::read_enabled(const Json& json) {
       "the " + std::string(kind_name(graph_.kind)) + " has no parameter " + quote(json.string), json.string,
       names);
   return std::nullopt;
+}
+
+void GraphBuilder::read_cutout(ObjectReader& reader, Pass& pass) {
+  const Json* cutout = reader.value("cutout", Need::optional);
+  if (cutout != nullptr) pass.cutout = link(*cutout, "cutout");
+  const Json* cutoff = reader.value("cutoff", Need::optional);
+  if (cutoff == nullptr) return;
+  if (cutout == nullptr) {
+    diagnostics_
+        .report(Id::missing_key, document_.span(*cutoff), "\"cutoff\" has no effect without \"cutout\"")
+        .suggest("add \"cutout\", or remove this key");
+  } else if (cutoff->kind != Json::Kind::number) {
+    pass.cutoff = link(*cutoff, "cutoff");
+  } else if (auto value = parse_literal(document_, *cutoff, "cutoff", diagnostics_)) {
+    pass.cutoff = constant(*std::move(value), "cutoff", Type::floating, place_of(*cutoff));
+  }
 }
 
 void GraphBuilder::read_pass(const Json& json) {
@@ -57,7 +74,9 @@ void GraphBuilder::read_pass(const Json& json) {
                 "\"position_space\" has no effect without \"position\"")
         .suggest("add \"position\", or remove this key");
   }
-  if (const Json* enabled = reader.value("enabled", Need::optional)) pass.enabled = read_enabled(*enabled);
+  for (const auto& [key, parameter] : {std::pair("enabled", &pass.enabled), std::pair("double_sided", &pass.double_sided)})
+    if (const Json* named = reader.value(key, Need::optional)) *parameter = read_switch(*named, key);
+  read_cutout(reader, pass);
   if (const Json* color = reader.value("color")) {
     if (std::optional<Link> found = this->color(*color)) pass.color = std::move(*found);
   }
@@ -119,7 +138,7 @@ void GraphBuilder::read_images(const Json& images) {
 
 void GraphBuilder::read_post(ObjectReader& reader) {
   if (const Json* images = reader.array("images", Need::optional)) read_images(*images);
-  if (const Json* enabled = reader.value("enabled", Need::optional)) graph_.enabled = read_enabled(*enabled);
+  if (const Json* enabled = reader.value("enabled", Need::optional)) graph_.enabled = read_switch(*enabled, "enabled");
   for (const Output& output : graph_.outputs) {
     if (output.name == post_output) continue;
     diagnostics_

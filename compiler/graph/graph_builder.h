@@ -30,6 +30,8 @@ class GraphBuilder {
   std::optional<Link> link(const Json& json, std::string_view key);
   /// A link or a literal colour.
   std::optional<Link> color(const Json& json);
+  /// Adds a node for a literal that stands where a link may stand.
+  Link constant(Literal value, std::string_view key, Type type, TextRange place);
 
   void read_inputs(const Json& inputs, bool are_parameters);
   void read_input(const Member& member, bool is_parameter);
@@ -43,8 +45,10 @@ class GraphBuilder {
   void read_outputs(const Json& outputs);
   void read_passes(const Json& passes);
   void read_pass(const Json& json);
-  /// The parameter that "enabled" of a pass or post names.
-  std::optional<uint32_t> read_enabled(const Json& json);
+  /// Where a pass is drawn: "cutout" and "cutoff".
+  void read_cutout(ObjectReader& reader, Pass& pass);
+  /// The parameter that a key of a pass or post names ("enabled"), which is switched on where it is not 0.
+  std::optional<uint32_t> read_switch(const Json& json, std::string_view key);
   void read_post(ObjectReader& reader);
   void read_images(const Json& images);
 

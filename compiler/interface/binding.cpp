@@ -53,7 +53,7 @@ const std::vector<SurfaceValue>& surface_values() {
 Binding bind(SurfaceValue value) {
   const SurfaceRow& attribute = row(value.attribute);
   return {source::Attribute{value},
-          {name(value), ir::vector_type(attribute.width), "surface", false},
+          {name(value), attribute.type(), "surface", false},
           attribute.assumed};
 }
 

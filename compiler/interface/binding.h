@@ -81,16 +81,18 @@ struct SurfaceValue {
 };
 inline constexpr size_t surface_value_count = space_count * surface_count;  ///< of SurfaceValue::index
 
-enum class SurfaceStages : uint8_t { all, vertices };
+enum class SurfaceStages : uint8_t { all, vertices, pixels };
 
 struct SurfaceRow {
   std::string_view name, node;
-  int width;
+  int width;  ///< 0 of a boolean
   bool has_spaces;
   SurfaceStages stages;
   Assumption assumed;
   std::string_view sets;  ///< what the node's port "index" counts; empty: it has no such port
   std::string_view doc;
+
+  ir::Type type() const { return width == 0 ? ir::bool_type : ir::vector_type(width); }
 };
 const SurfaceRow& row(Surface attribute);
 /// "normal_object"; world space has no suffix.

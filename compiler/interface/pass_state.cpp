@@ -3,16 +3,6 @@
 
 namespace isoshade::interface {
 
-PassState PassState::mirrored() const {
-  PassState state = *this;
-  switch (cull) {
-    case Cull::none: break;
-    case Cull::back: state.cull = Cull::front; break;
-    case Cull::front: state.cull = Cull::back; break;
-  }
-  return state;
-}
-
 #define ISOSHADE_NAME(name, doc) #name,
 #define ISOSHADE_DOC(name, doc) doc,
 #define ISOSHADE_ROW(Type, member, fallback, VALUES, doc)                                 \

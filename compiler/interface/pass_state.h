@@ -36,9 +36,6 @@ struct PassState {
   ISOSHADE_PASS_STATES(ISOSHADE_MEMBER)
 #undef ISOSHADE_MEMBER
 
-  /// The same faces of a mesh that a mirroring transform turns inside out.
-  PassState mirrored() const;
-
   friend bool operator==(const PassState&, const PassState&) = default;
 };
 

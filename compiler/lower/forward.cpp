@@ -20,6 +20,7 @@ ir::Type type_of(const ForwardInput& input) {
     case Kind::pixel:
     case Kind::index: return ir::int_type;
     case Kind::position: return ir::vector_type(3);
+    case Kind::front: return ir::bool_type;
   }
   support::bug("no such input");
 }
@@ -34,6 +35,7 @@ std::string name_of(const ForwardInput& input) {
     case Kind::pixel: return input.word == 0 ? "x" : "y";
     case Kind::index: return "index";
     case Kind::position: return "position";
+    case Kind::front: return "front";
     case Kind::words: break;
   }
   for (const ir::RecordField& field : fields_of(input.buffer))
@@ -64,6 +66,7 @@ class Inputs {
     if (found == list_.end()) list_.push_back(input);
     const ir::Type type = type_of(input);
     if (type == ir::int_type) return k_.b.constant(0);
+    if (type == ir::bool_type) return k_.b.constant(false);
     const ir::ValueId zero = k_.b.constant(0.0f);
     return type.width == 1 ? zero : k_.b.construct(std::vector<ir::ValueId>(type.width, zero));
   }
@@ -112,7 +115,7 @@ ForwardFunction add_forward_surface(ir::Module& module, std::span<const interfac
   return add(module, name, {}, results_of(bindings), [&](Kernel& k, Inputs& inputs) {
     SurfacePoint surface(k, k.constant(0), [&](int width, int word) {
       return inputs.of({Kind::attribute, FrameBuffer::vertices, word, width});
-    });
+    }, [&] { return Bool(k.b, inputs.of({Kind::front, {}, 0, 1})); });
     std::vector<ir::ValueId> values;
     for (const interface::Binding& binding : bindings)
       values.push_back(k.named(binding.parameter.name,

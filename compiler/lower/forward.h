@@ -19,7 +19,8 @@ struct ForwardInput {
     words,      ///< of a record of `buffer`, which the pair has as uniforms
     pixel,      ///< x (word 0) or y (word 1) of the pixel, an int
     index,      ///< of a light
-    position    ///< in world space
+    position,   ///< in world space
+    front       ///< whether the front of the triangle is seen
   } kind{};
   FrameBuffer buffer{};
   int word = 0, width = 0;

@@ -72,9 +72,11 @@ inline constexpr int stride = sizeof(Words);
 static_assert(stride == 16);
 }  // namespace triangle_word
 namespace triangle_flag {
-inline constexpr int wide = 1;  ///< an edge spans 2^15 or more
-inline constexpr int over = 2;  ///< the depth test always passes
-inline constexpr int bits = 2;
+inline constexpr int wide = 1;    ///< an edge spans 2^15 or more
+inline constexpr int over = 2;    ///< the depth test always passes
+inline constexpr int back = 4;    ///< its back is seen
+inline constexpr int cutout = 8;  ///< a pixel shows it only where the effect's cut-out holds
+inline constexpr int bits = 4;
 }  // namespace triangle_flag
 
 namespace object_word {

@@ -66,6 +66,43 @@ ir::ValueId with_alpha(ir::Builder& b, ir::ValueId color) {
       std::array{b.extract(color, 0), b.extract(color, 1), b.extract(color, 2), b.constant(1.0f)});
 }
 
+/// Whether a float reaches its cutoff; a cutoff of 0 or less is reached everywhere, by NaN too.
+ir::ValueId reaches(ir::Builder& b, ir::ValueId value, ir::ValueId cutoff) {
+  const ir::ValueId is_off = b.op(ir::Opcode::fle, {cutoff, b.constant(0.0f)});
+  return b.op(ir::Opcode::bor, {is_off, b.op(ir::Opcode::fge, {value, cutoff})});
+}
+
+/// What the function of a part of a pass is called, and its result.
+std::string_view function_of(PassPart part) {
+  switch (part) {
+    case PassPart::color: return names::shade;
+    case PassPart::position: return names::move_vertex;
+    case PassPart::coverage: return names::coverage;
+  }
+  support::bug("no such part of a pass");
+}
+ir::Result result_of(PassPart part) {
+  switch (part) {
+    case PassPart::color: return {"color", ir::vector_type(4)};
+    case PassPart::position: return {"position", ir::vector_type(3)};
+    case PassPart::coverage: return {"drawn", ir::bool_type};
+  }
+  support::bug("no such part of a pass");
+}
+
+/// The outputs of the document that a part of a pass consists of; none if the pass lacks it.
+std::span<const Operand> outputs_of(const TypedGraph& graph, size_t pass, PassPart part) {
+  switch (part) {
+    case PassPart::color: return graph.values().subspan(pass, 1);
+    case PassPart::position: {
+      const Operand* position = graph.position_of(pass);
+      return {position, position != nullptr ? size_t{1} : 0};
+    }
+    case PassPart::coverage: return graph.cutout_of(pass);
+  }
+  support::bug("no such part of a pass");
+}
+
 Assumption assumed_of(const graph::Input& input) {
   if (input.type == Type::boolean) return assume::boolean;
   Assumption assumed = input.unit ? assume::direction : assume::anywhere;
@@ -128,7 +165,8 @@ class ModuleLowering {
   /// Lowers the documents that the needed nodes call.
   void add_callees(const TypedGraph& graph, const Needs& needs);
   uint32_t add_function(const TypedGraph& graph, std::string name, Bindings& bindings);
-  /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are wanted.
+  /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are
+  /// wanted, and a cut-out is compared with its cutoff where a boolean is wanted.
   uint32_t build(const TypedGraph& graph, std::string name, const Bindings& bindings, const Needs& needs,
                  std::span<const Operand> roots, std::vector<ir::Result> results,
                  const ImageSlots& images = {});
@@ -183,6 +221,7 @@ uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const 
   for (const Value& value : build_body(b, graph, needs, environment, roots))
     values.insert(values.end(), value.ids().begin(), value.ids().end());
   const std::vector<ir::Result>& wanted = module_.functions[index].results;
+  if (wanted.size() == 1 && values.size() == 2) values = {reaches(b, values[0], values[1])};
   for (size_t i = 0; i < values.size(); ++i)
     if (wanted[i].type == ir::vector_type(4) && b.type(values[i]).width == 3)
       values[i] = with_alpha(b, values[i]);
@@ -242,14 +281,10 @@ void ModuleLowering::add_parameters(const TypedGraph& graph, const Needs& needs,
 
 interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pass, PassPart part,
                                               const std::string& prefix) {
-  const bool is_color = part == PassPart::color;
-  const Operand* root = is_color ? &graph.outputs[pass] : graph.position_of(pass);
-  support::assert_that(root != nullptr, "the pass moves no vertices");
-  const ir::Result result =
-      is_color ? ir::Result{"color", ir::vector_type(4)} : ir::Result{"position", ir::vector_type(3)};
-  const std::span<const Operand> roots(root, 1);
+  const std::span<const Operand> roots = outputs_of(graph, pass, part);
+  support::assert_that(!roots.empty(), "the pass has no such part");
   const Needs needs(graph, roots);
-  const std::string name = unique_name(prefix + (is_color ? names::shade : names::move_vertex));
+  const std::string name = unique_name(prefix + std::string(function_of(part)));
   add_callees(graph, needs);
   if (needs.light_at) declare_light_at();
 
@@ -269,7 +304,7 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
   for (uint32_t i = 0; i < reads.size(); ++i)
     if (reads[i]) bindings.push_back(interface::bind_image(i, images.slots[i].name));
   if (needs.lights) bindings.push_back(interface::bind_light_count());
-  const uint32_t entry = build(graph, name, bindings, needs, roots, {result}, images);
+  const uint32_t entry = build(graph, name, bindings, needs, roots, {result_of(part)}, images);
   return interface_of(entry, std::move(bindings));
 }
 
@@ -290,6 +325,10 @@ interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
 }
 
 }  // namespace
+
+bool has_part(const TypedGraph& graph, size_t pass, PassPart part) {
+  return !outputs_of(graph, pass, part).empty();
+}
 
 std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
   std::vector<std::pair<std::string, Type>> inputs;
@@ -337,10 +376,8 @@ LoweredShader lower_shader(const TypedGraph& graph) {
       const std::vector<graph::Pass>& passes = graph.graph.passes;
       for (size_t i = 0; i < passes.size(); ++i) {
         const std::string prefix = passes.size() > 1 ? passes[i].name + "_" : "";
-        made.entries.push_back({PassPart::color, i, lowering.add_pass(graph, i, PassPart::color, prefix)});
-        if (graph.position_of(i) != nullptr)
-          made.entries.push_back(
-              {PassPart::position, i, lowering.add_pass(graph, i, PassPart::position, prefix)});
+        for (const PassPart part : pass_parts)
+          if (has_part(graph, i, part)) made.entries.push_back({part, i, lowering.add_pass(graph, i, part, prefix)});
       }
   }
   made.module = lowering.take_module();

@@ -2,6 +2,7 @@
 // TypedGraph -> ir::Module.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -12,8 +13,11 @@
 
 namespace isoshade::lower {
 
-/// What is lowered of a pass of an effect: the colour of its pixels, or where its vertices go.
-enum class PassPart : uint8_t { color, position };
+/// What is lowered of a pass of an effect: the colour of its pixels, where its vertices go, or where it is drawn.
+enum class PassPart : uint8_t { color, position, coverage };
+inline constexpr std::array pass_parts{PassPart::color, PassPart::position, PassPart::coverage};
+/// Every pass has a colour.
+bool has_part(const check::TypedGraph& graph, size_t pass, PassPart part);
 
 /// By function of a module and origin of that function: the node in the Graph of its document, or ir::none.
 using NodesOfOrigins = std::vector<std::vector<uint32_t>>;
@@ -39,7 +43,7 @@ struct LowerOptions {
 ///
 /// A pass becomes `shade` -> (color: vec4) with these parameters, as far as they are used:
 ///   surface.position vec3, .normal vec3, .texcoord vec2, .view_direction vec3, .tangent vec3,
-///     .bitangent vec3, .color vec4, .outline_normal vec3, .pixel_size float; directions have length 1. In
+///     .bitangent vec3, .color vec4, .outline_normal vec3, .pixel_size float, .front_facing bool; directions have length 1. In
 ///     world space; in others .position_object, .normal_view ...
 ///   spaces.world_from_object_0 ...  uniform; columns of the matrices between world, object and view space,
 ///     of which the fourth is the translation
@@ -52,6 +56,8 @@ struct LowerOptions {
 ///
 /// Its position, if the pass has one, becomes `move_vertex` -> (position: vec3), with the same parameters but for
 /// light_count; the surface is that of the mesh at a vertex.
+///
+/// Its cut-out, if the pass has one, becomes `coverage` -> (drawn: bool), with the same parameters but for light_count.
 ///
 /// A post becomes `post_process` -> (color: vec4) with these parameters, as far as they are used:
 ///   screen.pixel, .coordinate vec2, .view_ray, .relative_origin vec3 (the ray begins there, from the camera's position)
@@ -78,8 +84,8 @@ struct LoweredShader {
   std::vector<ShaderEntry> entries;
 };
 
-/// All functions of a document in one module: of an effect, each pass's `shade` and, where it moves vertices,
-/// `move_vertex`, with the pass's name in front ("base_shade") if there is more than one pass.
+/// All functions of a document in one module: of an effect, each pass's `shade`, `move_vertex` where it moves vertices,
+/// and `coverage` where it is cut out; with the pass's name in front ("base_shade") if there is more than one pass.
 LoweredShader lower_shader(const check::TypedGraph& graph);
 
 /// All parameters of an effect or a post, needed or not, and of an effect the numbers of its images.

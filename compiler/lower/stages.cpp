@@ -168,7 +168,7 @@ ir::ValueId load_field(Kernel& k, ir::Type type, Int object, int offset) {
 }
 
 std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"vertex", "depth", "pixel", "eval", "post"};
+  constexpr std::string_view names[] = {"vertex", "depth", "cutout", "pixel", "eval", "post"};
   return names[static_cast<size_t>(stage)];
 }
 
@@ -254,16 +254,42 @@ uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface
   return k.index;
 }
 
-uint32_t add_depth_kernel(ir::Module& module) {
-  add_edges(module);
-  Kernel k(module, "depth", {int_parameter("x"), int_parameter("y"), int_parameter("triangle")},
-           {{"depth", ir::float_type}});
+namespace {
+
+/// Of the triangle at the pixel, in a kernel whose first parameters are x, y and the triangle.
+Float depth_of_pixel(Kernel& k) {
   const Vec3 edges(k.b, k.call("edges_at", {k.b.parameter(0), k.b.parameter(1), k.b.parameter(2)})[0]);
   const Int record = k.integer(2) * Int(triangle_word::stride);
   const auto z = [&](int i) {
     return from_bits_normal(k.load_int(FrameBuffer::triangles, record + Int(triangle_word::depth + i)));
   };
-  k.b.finish(std::array{functions::interpolate_depth<Float>(edges, z(0), z(1), z(2)).value});
+  return functions::interpolate_depth<Float>(edges, z(0), z(1), z(2));
+}
+
+}  // namespace
+
+uint32_t add_depth_kernel(ir::Module& module) {
+  add_edges(module);
+  Kernel k(module, "depth", {int_parameter("x"), int_parameter("y"), int_parameter("triangle")},
+           {{"depth", ir::float_type}});
+  k.b.finish(std::array{depth_of_pixel(k).value});
+  return k.index;
+}
+
+uint32_t add_cutout_kernel(ir::Module& module, const interface::Interface& interface,
+                           const interface::RecordLayout& record) {
+  add_edges(module);
+  if (ir::asks_for_derivatives(module)) add_edge_gradients(module);
+  define_texture_reads(module, interface);
+  Kernel k(module, "cutout",
+           {int_parameter("x"), int_parameter("y"), int_parameter("triangle"), uniform_int("object")},
+           {{"drawn", ir::bool_type}, {"depth", ir::float_type}});
+  const Int object = k.integer(3);
+  SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
+                       [&] { return front_facing(k, k.integer(2)); });
+  SurfaceArguments arguments(k, surface, object, record, ir::none);
+  const ir::ValueId drawn = k.named("drawn", k.b.call(interface.entry, arguments.of(interface))[0]);
+  k.b.finish(std::array{drawn, depth_of_pixel(k).value});
   return k.index;
 }
 
@@ -279,7 +305,8 @@ uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interf
             uniform_int("light_count")},
            {{"color", ir::vector_type(4)}});
   const Int object = k.integer(3);
-  SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
+  SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
+                       [&] { return front_facing(k, k.integer(2)); });
   SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4));
   k.b.finish(k.b.call(interface.entry, arguments.of(interface)));
   return k.index;

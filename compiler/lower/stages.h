@@ -15,13 +15,26 @@ namespace isoshade::lower {
 /// Each kernel is a function of the module named as the enumerator:
 ///   vertex (vertex: int, object: int uniform, projected: int uniform) -> (clip: vec4)
 ///   depth  (x: int, y: int, triangle: int) -> (depth: float)                      the same for every scene
+///   cutout (x: int, y: int, triangle: int, object: int uniform) -> (drawn: bool, depth: float)
 ///   pixel  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform) -> (color: vec4)
 ///   eval   (row: int) -> (the function's results)
 ///   post   (x: int, y: int uniform) -> (color: vec4)
 /// `object` is the first word of the object's record, and `projected` that of its matrix in `view`; x and y are whole
 /// pixels.
-enum class Stage : uint8_t { vertex, depth, pixel, eval, post };
+enum class Stage : uint8_t { vertex, depth, cutout, pixel, eval, post };
 std::string_view name(Stage stage);
+/// Whether it decides which triangle a pixel shows. The result must not depend on the precision or the number type.
+constexpr bool decides_visibility(Stage stage) {
+  switch (stage) {
+    case Stage::vertex:
+    case Stage::depth:
+    case Stage::cutout: return true;
+    case Stage::pixel:
+    case Stage::eval:
+    case Stage::post: break;
+  }
+  return false;
+}
 
 /// Which kinds of light a scene has: the others are not asked about.
 struct LightKinds {
@@ -42,6 +55,11 @@ uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface
 
 /// Adds `depth`; returns its index.
 uint32_t add_depth_kernel(ir::Module& module);
+
+/// Adds `cutout` around the document's `coverage`, and the bodies of the functions that it asks its host for. What it
+/// computes of a pixel that the triangle covers is what `depth` and the effect's graph give there.
+uint32_t add_cutout_kernel(ir::Module& module, const interface::Interface& interface,
+                           const interface::RecordLayout& record);
 
 /// Adds `pixel` around the document's `shade`, and the bodies of the functions that it asks its host for.
 uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interface,

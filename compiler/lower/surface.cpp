@@ -73,6 +73,12 @@ Attributes attributes_of_vertex(Kernel& k, Int vertex) {
   };
 }
 
+Bool front_facing(Kernel& k, Int triangle) {
+  const Int record = triangle * Int(triangle_word::stride);
+  const Int flags = k.load_int(FrameBuffer::triangles, record + Int(triangle_word::object));
+  return (flags & Int(triangle_flag::back)) == Int(0);
+}
+
 ir::ValueId SurfacePoint::once(ir::ValueId& value, int width, int word) {
   if (value == ir::none) value = attributes_(width, word);
   return value;
@@ -117,6 +123,9 @@ ir::ValueId SurfacePoint::value(interface::SurfaceValue value) {
     case Surface::corner_normal1: return normal_in(value.space, local_corner_normal(0)).value;
     case Surface::corner_normal2: return normal_in(value.space, local_corner_normal(1)).value;
     case Surface::corner_normal3: return normal_in(value.space, local_corner_normal(2)).value;
+    case Surface::front_facing:
+      support::assert_that(front_facing_ != nullptr, "a vertex has no side");
+      return front_facing_().value;
   }
   support::bug("no such attribute");
 }

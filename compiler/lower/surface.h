@@ -18,11 +18,19 @@ Attributes attributes_of_pixel(Kernel& kernel, Int x, Int y, Int triangle);
 /// Of the vertex with this number.
 Attributes attributes_of_vertex(Kernel& kernel, Int vertex);
 
+/// Whether the front of the triangle is seen.
+Bool front_facing(Kernel& kernel, Int triangle);
+/// Where a point has that from; empty for a vertex, which has no side.
+using FrontFacing = std::function<Bool()>;
+
 class SurfacePoint {
  public:
   /// Of the object whose record begins at `object`.
-  SurfacePoint(Kernel& kernel, Int object, Attributes attributes)
-      : k_(kernel), object_(object), attributes_(std::move(attributes)) {}
+  SurfacePoint(Kernel& kernel, Int object, Attributes attributes, FrontFacing front_facing = {})
+      : k_(kernel),
+        object_(object),
+        attributes_(std::move(attributes)),
+        front_facing_(std::move(front_facing)) {}
 
   ir::ValueId value(interface::SurfaceValue value);
   Vec3 column(interface::SpaceMatrix matrix, uint32_t number);
@@ -59,6 +67,7 @@ class SurfacePoint {
   Kernel& k_;
   Int object_;
   Attributes attributes_;
+  FrontFacing front_facing_;
   ir::ValueId local_position_ = ir::none;
   ir::ValueId local_normal_ = ir::none;
   ir::ValueId local_outline_normal_ = ir::none;

@@ -23,9 +23,9 @@ void facing_ratio(Site& s) {
 
 /// The node of an attribute.
 Row surface_row(Surface attribute) {
-  constexpr PortType types[] = {Float, Vector2, Vector3, Color4};
+  constexpr PortType types[] = {Boolean, Float, Vector2, Vector3, Color4};  // by width
   const interface::SurfaceRow& row = interface::row(attribute);
-  Row node{row.node, row.doc, {}, types[row.width - 1], attribute};
+  Row node{row.node, row.doc, {}, types[row.width], attribute};
   if (row.has_spaces)
     node.ports.push_back({"space", Choice, "the coordinate space; \"model\" is \"object\"", "world", space_names});
   if (row.sets.empty()) return node;

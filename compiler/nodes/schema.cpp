@@ -157,6 +157,12 @@ SchemaJson pass_schema() {
   keys.insert(keys.end(), {{"position", described(reference("link"), "where vertices go; else they stay")},
                            {"position_space", one_of({"world", "object", "view"})},
                            {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
+                           {"double_sided",
+                            described(string_schema(), "a parameter: nothing is culled where it is not 0 or false")},
+                           {"cutout", described(reference("link"),
+                                                "drawn where it holds: a boolean, or a float of at least \"cutoff\"")},
+                           {"cutoff", described(any_of({reference("link"), number_schema()}),
+                                                "of a float \"cutout\": default 0.5; 0: drawn everywhere")},
                            {"color", color_schema(), true}});
   return object_schema(keys);
 }

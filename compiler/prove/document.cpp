@@ -2,6 +2,7 @@
 #include "compiler/prove/document.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/lower/lower.h"
 
@@ -91,10 +92,10 @@ std::optional<std::vector<Subject>> subjects_of(const TypedGraph& graph, support
   }
   for (size_t i = 0; i < graph.graph.passes.size(); ++i) {
     const std::string name = "pass " + graph.graph.passes[i].name;
-    if (graph.position_of(i) != nullptr &&
-        !add(name + ", position", {i, lower::PassPart::position}))
-      return std::nullopt;
-    if (!add(name, {i})) return std::nullopt;
+    for (const auto& [part, suffix] : {std::pair{lower::PassPart::position, ", position"},
+                                       {lower::PassPart::coverage, ", cutout"},
+                                       {lower::PassPart::color, ""}})
+      if (lower::has_part(graph, i, part) && !add(name + suffix, {i, part})) return std::nullopt;
   }
   return subjects;
 }

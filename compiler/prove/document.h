@@ -17,9 +17,10 @@ namespace isoshade::prove {
 /// Inputs without "min" or "max" go so far, and so do positions; see graphs/README.md for what else is assumed.
 inline constexpr double default_limit = interface::assume::limit;
 
-/// One thing that a document computes: a function, or the colour of a pass, or where it moves vertices to.
+/// One thing that a document computes: a function, or the colour of a pass, where it moves vertices to, or where it is
+/// drawn.
 struct Subject {
-  std::string name;  ///< of a function or post, its own; else "pass base", "pass outline, position"
+  std::string name;  ///< of a function or post, its own; else "pass base", "pass outline, position", "pass base, cutout"
   Tape tape;
   lower::NodesOfOrigins nodes;     ///< where the places of the tape are
   interface::Interface interface;  ///< of the tape's module

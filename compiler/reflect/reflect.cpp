@@ -121,7 +121,8 @@ class Reflector {
 
   static StructRole role_of_point(PureKind kind) {
     switch (kind) {
-      case PureKind::shade: return StructRole::surface;
+      case PureKind::shade:
+      case PureKind::coverage: return StructRole::surface;
       case PureKind::move_vertex: return StructRole::vertex;
       case PureKind::post_process: return StructRole::screen;
       case PureKind::function: break;
@@ -195,8 +196,8 @@ class Reflector {
     made.role = role_of(function.kind);
     for (size_t i = 0; i < shader_.passes.size(); ++i) {
       const driver::ShaderPass& pass = shader_.passes[i];
-      const bool is_move = pass.move_vertex && &pure_.functions[*pass.move_vertex] == &function;
-      if (is_move || &pure_.functions[pass.shade] == &function) made.pass = pass.name;
+      for (const std::optional<size_t>& part : {std::optional(pass.shade), pass.move_vertex, pass.coverage})
+        if (part && &pure_.functions[*part] == &function) made.pass = pass.name;
     }
     made.glsl = emit::function_name(pure_, function, true);
     made.cpp = cpp_name(emit::function_name(pure_, function, false));
@@ -227,6 +228,7 @@ class Reflector {
     switch (kind) {
       case PureKind::shade: return FunctionRole::shade;
       case PureKind::move_vertex: return FunctionRole::move_vertex;
+      case PureKind::coverage: return FunctionRole::coverage;
       case PureKind::post_process: return FunctionRole::process;
       case PureKind::function: return FunctionRole::function;
     }
@@ -262,6 +264,8 @@ class Reflector {
       made.name = pass.name;
       made.states.state = pass.state;
       if (pass.enabled) made.enabled = shader_.parameters.fields[*pass.enabled].name;
+      if (pass.double_sided) made.double_sided = shader_.parameters.fields[*pass.double_sided].name;
+      made.cut_out = pass.coverage.has_value();
       made.moves_vertices = pass.move_vertex.has_value();
       if (made.moves_vertices)
         made.position_space = space_name(static_cast<interface::Space>(pass.position_space));

@@ -191,9 +191,11 @@ class Data {
                        {"images", effect.parameters.word_of_image(0)},
                        {"first", first_index(draw)},
                        {"count", draw.indices.size()},
-                       {"enabled", word_of(effect.parameters, origin.pass->enabled)}};
+                       {"enabled", word_of(effect.parameters, origin.pass->enabled)},
+                       {"double_sided", word_of(effect.parameters, origin.pass->double_sided)},
+                       {"mirrored", draw.mirrored}};
       for (const interface::PassStateRow& state : interface::pass_states())
-        row[std::string(state.key)] = state.values[state.get(draw.state)];
+        row[std::string(state.key)] = state.values[state.get(origin.pass->state)];
       draws.push_back(std::move(row));
       ordered_json& known = owners[origin.object];
       if (known.is_null()) known = object_owner(origin.object, e, record(draw, effect.parameters));

@@ -247,7 +247,7 @@ class Assembler {
     const int64_t area =
         static_cast<int64_t>(b.x - a.x) * (c.y - a.y) - static_cast<int64_t>(b.y - a.y) * (c.x - a.x);
     if (area == 0) return;
-    const bool front = area < 0;  // y points down
+    const bool front = (area < 0) != surface_.mirrored;  // y points down
     if (is_culled(front)) return;
     if (area < 0) {
       std::swap(corners[1], corners[2]);
@@ -270,7 +270,8 @@ class Assembler {
       record[word::inverse_w + i] = corners[i].inverse_w;
     }
     record[word::object] =
-        (surface_.object << flag::bits) | depth_flag(surface_.state.depth) | (wide ? flag::wide : 0);
+        (surface_.object << flag::bits) | depth_flag(surface_.state.depth) | (wide ? flag::wide : 0) |
+        (front ? 0 : flag::back) | (surface_.cutout ? flag::cutout : 0);
     triangles_.insert(triangles_.end(), record.begin(), record.end());
   }
 

@@ -22,9 +22,12 @@ struct Surface {
       clip;  ///< x y z w of each vertex; y up; z = w is the near plane, z = 0 infinitely far
   std::span<const uint32_t> indices;  ///< triples of vertices, each below clip.size() / 4
   uint32_t first_vertex = 0;          ///< where the records of its vertices begin in `vertices`
-  /// Triangles are front-facing where their vertices turn counter-clockwise in the image.
   interface::PassState state;
   int object = 0;  ///< the first word of its record in the array of objects
+  /// Triangles are front-facing where their vertices turn counter-clockwise in the image; if the surface is mirrored,
+  /// clockwise.
+  bool mirrored = false;
+  bool cutout = false;  ///< its triangles get triangle_flag::cutout
 };
 
 /// Appends the surface's triangles to `triangles` (records of lower/frame_layout.h), in the order of its indices, and

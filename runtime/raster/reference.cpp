@@ -27,7 +27,8 @@ bool inside(Position from, Position to, Position centre) {
   return edge > 0 || (edge == 0 && (left || top));
 }
 
-void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids, std::span<float> depth) {
+void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids, std::span<float> depth,
+          const IsDrawn& is_drawn) {
   Position corner[3];
   float z[3];
   for (int i = 0; i < 3; ++i) {
@@ -36,6 +37,7 @@ void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids
   }
   const bool wide = record[word::object] & lower::triangle_flag::wide;
   const bool over = record[word::object] & lower::triangle_flag::over;
+  const bool cutout = record[word::object] & lower::triangle_flag::cutout;
 
   const auto [left, right] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
   const auto [top, bottom] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
@@ -53,6 +55,7 @@ void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids
       const float nearness = functions::interpolate_depth<float>(edges, z[0], z[1], z[2]);
       const size_t pixel = static_cast<size_t>(y - area.y0) * width + static_cast<size_t>(x - area.x0);
       if (!over && !(nearness > depth[pixel])) continue;
+      if (cutout && !is_drawn(id, x, y)) continue;
       depth[pixel] = nearness;
       ids[pixel] = id;
     }
@@ -61,13 +64,13 @@ void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids
 }  // namespace
 
 void rasterize_reference(std::span<const int32_t> triangles, const Box& area, std::span<int32_t> ids,
-                         std::span<float> depth) {
+                         std::span<float> depth, const IsDrawn& is_drawn) {
   const lanes::FpGuard guard_floats;
   std::fill(ids.begin(), ids.end(), -1);
   std::fill(depth.begin(), depth.end(), 0.0f);
   const int count = static_cast<int>(triangles.size() / word::stride);
   for (int i = 0; i < count; ++i)
-    draw(triangles.data() + static_cast<size_t>(i) * word::stride, i, area, ids, depth);
+    draw(triangles.data() + static_cast<size_t>(i) * word::stride, i, area, ids, depth, is_drawn);
 }
 
 }  // namespace isoshade::raster

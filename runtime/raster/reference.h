@@ -4,16 +4,21 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "runtime/raster/triangle.h"
 
 namespace isoshade::raster {
 
+/// Whether the cut-out of a triangle holds at a pixel.
+using IsDrawn = std::function<bool(int triangle, int x, int y)>;
+
 /// Draws the triangles (records of lower/frame_layout.h) in their order. Each pixel of the area, rows top down,
 /// receives the index and the depth of the triangle with the greatest depth above 0 (of equal ones the first), or -1
-/// and 0. A triangle with triangle_flag::over takes every pixel that it covers.
+/// and 0. A triangle with triangle_flag::over takes every pixel that it covers. One with triangle_flag::cutout takes only
+/// pixels where `is_drawn`, which is asked where the triangle would be seen otherwise.
 void rasterize_reference(std::span<const int32_t> triangles, const Box& area, std::span<int32_t> ids,
-                         std::span<float> depth);
+                         std::span<float> depth, const IsDrawn& is_drawn = {});
 
 }  // namespace isoshade::raster

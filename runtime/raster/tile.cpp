@@ -29,4 +29,25 @@ void rasterize_tile(const int32_t* triangles, std::span<const int32_t> which, in
   }
 }
 
+int list_candidates(const int32_t* triangles, std::span<const int32_t> which, int x, int y, const Box& area,
+                    Tile& tile, Candidates& candidates) {
+  const int count = static_cast<int>(which.size());
+  candidates.count = 0;
+  switch (rasterizer_lanes()) {
+    case 16: return detail::list_candidates_16(triangles, which.data(), count, x, y, area, tile, candidates);
+    case 8: return detail::list_candidates_8(triangles, which.data(), count, x, y, area, tile, candidates);
+    default: return detail::list_candidates_4(triangles, which.data(), count, x, y, area, tile, candidates);
+  }
+}
+
+void draw_candidates(const Candidates& candidates, bool over, Tile& tile) {
+  for (int i = 0; i < candidates.count; ++i) {
+    const int place = candidates.place[i];
+    // A candidate before this one may have been drawn there.
+    if (candidates.drawn[i] == 0 || !(over || candidates.depth[i] > tile.depth[place])) continue;
+    tile.depth[place] = candidates.depth[i];
+    tile.triangles[place] = candidates.triangle[i];
+  }
+}
+
 }  // namespace isoshade::raster

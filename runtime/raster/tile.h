@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime/raster/triangle.h"
+
 namespace isoshade::raster {
 
 inline constexpr int tile_size = 64;  ///< pixels each way
@@ -33,6 +35,23 @@ constexpr int tile_index(int x, int y) {
 /// drawn); a triangle with triangle_flag::over takes every pixel that it covers. The caller holds an FpGuard.
 void rasterize_tile(const int32_t* triangles, std::span<const int32_t> which, int x, int y, Tile& tile);
 
+/// Pixels of a tile that triangles cover and that no nearer triangle covers yet; cut-outs decide whether they are drawn.
+struct Candidates {
+  static constexpr int capacity = 2 * tile_pixels;
+  int count = 0;
+  int32_t place[capacity];  ///< in the storage of the tile
+  int32_t x[capacity], y[capacity], triangle[capacity];
+  float depth[capacity];
+  int32_t drawn[capacity];  ///< what the cut-out decides: 0 or 1
+};
+
+/// Lists the candidates of triangles, in their order, in the part of the tile that lies in `area`. The triangles have the
+/// same depth test and do not see each other. Returns how many of them fit; at least one.
+int list_candidates(const int32_t* triangles, std::span<const int32_t> which, int x, int y, const Box& area,
+                    Tile& tile, Candidates& candidates);
+/// Draws the candidates that are `drawn`, by the depth test of their triangles.
+void draw_candidates(const Candidates& candidates, bool over, Tile& tile);
+
 /// The number of lanes that `rasterize_tile` uses on this machine: 4, 8 or 16.
 int rasterizer_lanes();
 
@@ -41,6 +60,12 @@ namespace detail {
 void rasterize_tile_4(const int32_t* triangles, const int32_t* which, int count, int x, int y, Tile& tile);
 void rasterize_tile_8(const int32_t* triangles, const int32_t* which, int count, int x, int y, Tile& tile);
 void rasterize_tile_16(const int32_t* triangles, const int32_t* which, int count, int x, int y, Tile& tile);
+int list_candidates_4(const int32_t* triangles, const int32_t* which, int count, int x, int y, const Box& area,
+                      Tile& tile, Candidates& candidates);
+int list_candidates_8(const int32_t* triangles, const int32_t* which, int count, int x, int y, const Box& area,
+                      Tile& tile, Candidates& candidates);
+int list_candidates_16(const int32_t* triangles, const int32_t* which, int count, int x, int y, const Box& area,
+                       Tile& tile, Candidates& candidates);
 }  // namespace detail
 
 }  // namespace isoshade::raster

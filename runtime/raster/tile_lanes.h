@@ -9,7 +9,8 @@
 
 namespace isoshade::raster::detail {
 
-template <int W>
+/// Draws triangles; with `lists`, lists what it would draw in the area instead.
+template <int W, bool lists>
 class TileRasterizer {
   using Float = lanes::Float<W, 1>;
   using Int = lanes::Int<W, 1>;
@@ -24,7 +25,8 @@ class TileRasterizer {
   static constexpr int64_t far_inside = 1 << 30;
 
  public:
-  ISOSHADE_INLINE TileRasterizer(int x, int y, Tile& tile) : x_(x), y_(y), tile_(tile) {
+  ISOSHADE_INLINE TileRasterizer(int x, int y, Tile& tile, Box area = {}, Candidates* candidates = nullptr)
+      : x_(x), y_(y), tile_(tile), area_(area), candidates_(candidates) {
     const Int lane = lanes::lane_index<Int>();
     column_ = lane & 7;
     row_ = shift_right(lane, 3);
@@ -36,6 +38,7 @@ class TileRasterizer {
     if (box.empty()) return;
 
     triangle_ = triangle;
+    number_ = id;
     id_ = Int(id);
     wide_ = triangle.wide();
     over_ = triangle.over();
@@ -94,13 +97,34 @@ class TileRasterizer {
     const Float former = lanes::load_lanes<Float>(tile_.depth + storage);
     const Bool seen = covered & (over_ | (depth > former));
     if (!any(seen)) return;
+    if constexpr (lists) return list(seen, depth, x, y, storage);
     lanes::store_lanes(tile_.depth + storage, select(seen, depth, former));
     const Int former_id = lanes::load_lanes<Int>(tile_.triangles + storage);
     lanes::store_lanes(tile_.triangles + storage, select(seen, id_, former_id));
   }
 
+  ISOSHADE_INLINE void list(Bool seen, Float depth, int x, int y, int storage) {
+    int is_seen[W];
+    float depths[W];
+    lanes::store_lanes(is_seen, select(seen, Int(1), Int(0)));
+    lanes::store_lanes(depths, depth);
+    for (int lane = 0; lane < W; ++lane) {
+      const int at_x = x + (lane & 7), at_y = y + (lane >> 3);
+      if (is_seen[lane] == 0 || at_x > area_.x1 || at_y > area_.y1) continue;
+      const int next = candidates_->count++;
+      candidates_->place[next] = storage + lane;
+      candidates_->x[next] = at_x;
+      candidates_->y[next] = at_y;
+      candidates_->triangle[next] = number_;
+      candidates_->depth[next] = depths[lane];
+    }
+  }
+
   int x_, y_;
   Tile& tile_;
+  Box area_;
+  Candidates* candidates_;
+  int number_ = 0;
   Int column_, row_;  ///< of each lane in its register
 
   Triangle triangle_;
@@ -114,8 +138,20 @@ class TileRasterizer {
 template <int W>
 ISOSHADE_INLINE void rasterize(const int32_t* triangles, const int32_t* which, int count, int x, int y,
                                Tile& tile) {
-  TileRasterizer<W> rasterizer(x, y, tile);
+  TileRasterizer<W, false> rasterizer(x, y, tile);
   for (int i = 0; i < count; ++i) rasterizer.draw(triangle_at(triangles, which[i]), which[i]);
+}
+
+template <int W>
+ISOSHADE_INLINE int list(const int32_t* triangles, const int32_t* which, int count, int x, int y, const Box& area,
+                         Tile& tile, Candidates& candidates) {
+  TileRasterizer<W, true> rasterizer(x, y, tile, area, &candidates);
+  int next = 0;
+  while (next < count && candidates.count + tile_pixels <= Candidates::capacity) {
+    rasterizer.draw(triangle_at(triangles, which[next]), which[next]);
+    ++next;
+  }
+  return next;
 }
 
 }  // namespace isoshade::raster::detail

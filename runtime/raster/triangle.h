@@ -24,6 +24,9 @@ struct Triangle {
   ISOSHADE_INLINE bool over() const {
     return words[lower::triangle_word::object] & lower::triangle_flag::over;
   }
+  ISOSHADE_INLINE bool cutout() const {
+    return words[lower::triangle_word::object] & lower::triangle_flag::cutout;
+  }
   /// The first word of its object's record.
   ISOSHADE_INLINE int object() const {
     return words[lower::triangle_word::object] >> lower::triangle_flag::bits;

@@ -76,7 +76,7 @@ NonFinite find_non_finite(std::span<const float> rgba, int width) {
   return found;
 }
 
-int object_at(std::span<const int32_t> triangles, int x, int y) {
+int object_at(std::span<const int32_t> triangles, int x, int y, float depth) {
   const lanes::FpGuard guard;
   const raster::Box sample = raster::box_at(x, y, 1, 1);
   const int count = static_cast<int>(triangles.size() / lower::triangle_word::stride);
@@ -84,10 +84,16 @@ int object_at(std::span<const int32_t> triangles, int x, int y) {
   for (int i = 0; i < count; ++i)
     if (!raster::bounds(raster::triangle_at(triangles.data(), i)).within(sample).empty()) reaching.push_back(i);
   const auto tile = std::make_unique<raster::Tile>();
-  tile->clear();
-  raster::rasterize_tile(triangles.data(), reaching, x, y, *tile);
-  const int32_t seen = tile->triangles[raster::tile_index(0, 0)];
-  return seen < 0 ? -1 : raster::triangle_at(triangles.data(), seen).object();
+  constexpr int place = raster::tile_index(0, 0);
+  while (true) {
+    tile->clear();
+    raster::rasterize_tile(triangles.data(), reaching, x, y, *tile);
+    const int32_t seen = tile->triangles[place];
+    if (seen < 0) return -1;
+    const raster::Triangle triangle = raster::triangle_at(triangles.data(), seen);
+    if (!triangle.cutout() || tile->depth[place] == depth) return triangle.object();
+    std::erase(reaching, seen);  // the sample lies in a hole of it
+  }
 }
 
 void warn_non_finite(const scene::Scene& scene, const Plan& plan, const NonFiniteReport& report,

@@ -36,8 +36,9 @@ struct NonFiniteReport {
   bool none() const { return drawn.count == 0 && posts.empty() && result.count == 0; }
 };
 
-/// The first word of the record of the object that a sample shows; -1 if it shows none.
-int object_at(std::span<const int32_t> triangles, int x, int y);
+/// The first word of the record of the object that a sample shows; -1 if it shows none. `depth`: of the sample as it was
+/// drawn, which tells whether a cut-out let it show what is behind.
+int object_at(std::span<const int32_t> triangles, int x, int y, float depth);
 
 /// Warns of pixels that are not finite, at the object or post that made them. `plan`: the plan of `scene`.
 void warn_non_finite(const scene::Scene& scene, const Plan& plan, const NonFiniteReport& report,

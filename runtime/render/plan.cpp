@@ -57,7 +57,8 @@ class Planner {
   bool compile_effects();
   bool compile_posts();
   support::Source read_document(const std::string& path, const support::Span& where);
-  uint32_t add_program(const driver::Program& program);
+  /// `cutout`: of a pixel program, the index of the one that belongs to it.
+  uint32_t add_program(const driver::Program& program, uint32_t cutout = backends::Frame::no_program);
   bool may_read(const std::string& path, const support::Span& where);
   bool make_objects();
   std::optional<size_t> find_mesh(const Object& object);
@@ -123,8 +124,11 @@ bool Planner::compile_effects() {
   // Only now, because the effects no longer move.
   for (const driver::Effect& effect : plan_.effects) {
     std::vector<PassPrograms>& programs = programs_of_effect_.emplace_back();
-    for (const driver::EffectPass& pass : effect.passes)
-      programs.push_back({add_program(pass.vertex), add_program(pass.pixel)});
+    for (const driver::EffectPass& pass : effect.passes) {
+      const uint32_t vertex = add_program(pass.vertex);
+      const uint32_t cutout = pass.cutout ? add_program(*pass.cutout) : backends::Frame::no_program;
+      programs.push_back({vertex, add_program(pass.pixel, cutout)});
+    }
   }
   return true;
 }
@@ -164,12 +168,17 @@ bool Planner::compile_posts() {
 }
 
 /// Equal programs share an index: most effects have the same vertex program.
-uint32_t Planner::add_program(const driver::Program& program) {
-  std::string text = std::to_string(static_cast<int>(program.stage)) + "\n" + std::to_string(program.entry) +
-                     "\n" + ir::print(program.module);
+uint32_t Planner::add_program(const driver::Program& program, uint32_t cutout) {
+  std::string text = std::to_string(static_cast<int>(program.stage)) + "\n" + std::to_string(cutout) + "\n" +
+                     std::to_string(program.entry) + "\n" + ir::print(program.module);
   const auto next = static_cast<uint32_t>(plan_.frame.programs.size());
   const auto [found, is_new] = program_by_text_.try_emplace(std::move(text), next);
+  std::vector<uint32_t>& cutouts = plan_.frame.cutouts;
   if (is_new) plan_.frame.programs.push_back(&program);
+  if (is_new && (cutout != backends::Frame::no_program || !cutouts.empty())) {
+    cutouts.resize(plan_.frame.programs.size(), backends::Frame::no_program);
+    cutouts.back() = cutout;
+  }
   return found->second;
 }
 
@@ -277,7 +286,11 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
       } else {
         backends::Draw draw = make_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p],
                                         mesh.parts[part], parameters[part]);
-        draw.state = mirrored ? pass.state.mirrored() : pass.state;
+        draw.state = pass.state;
+        if (effect.parameters.is_on(pass.double_sided, parameters[part])) draw.state.cull = interface::Cull::none;
+        draw.mirrored = mirrored;
+        draw.cutout = pass.cutout && effect.parameters.cuts_out(pass.cutoff, parameters[part]);
+        if (pass.cutout && !draw.cutout) ++skipped[p].uncut;
         plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
         for (size_t v = 0; v < copy.views.size(); ++v)
           if (may_see(copy.views[v])) place_draw(draw, copy.views[v], plan_.frame.views[v]);

@@ -92,7 +92,9 @@ bool note_non_finite(int side, std::span<const int32_t> triangles, backends::Vie
   Image drawn;
   if (!renderer.draw(pixel, selected, drawn, diagnostics)) return false;
   const NonFinite sample = find_non_finite(drawn.rgba, side);
-  if (sample.count > 0) report.object = object_at(selected, pixel.x + sample.x, pixel.y + sample.y);
+  if (sample.count == 0) return true;
+  const float depth = drawn.depth[static_cast<size_t>(sample.y) * static_cast<size_t>(side) + static_cast<size_t>(sample.x)];
+  report.object = object_at(selected, pixel.x + sample.x, pixel.y + sample.y, depth);
   return true;
 }
 

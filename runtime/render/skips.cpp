@@ -27,9 +27,14 @@ void report_skips(const scene::Object& object, const driver::Effect& effect, int
   for (size_t p = 0; p < passes.size(); ++p) {
     const driver::EffectPass& pass = effect.passes[p];
     if (!alike) report(passes[p].unseen, copies, "copies", pass.name, "outside of the view");
+    const std::string unit = parts == 1 ? "copies" : "parts";
+    if (pass.cutoff) {
+      const driver::Field& field = effect.parameters.fields[*pass.cutoff];
+      report(passes[p].uncut, copies * parts, unit, "cut-out of " + pass.name, field.name + " is not above 0");
+    }
     if (!pass.enabled) continue;
     const driver::Field& field = effect.parameters.fields[*pass.enabled];
-    report(passes[p].disabled, copies * parts, parts == 1 ? "copies" : "parts", pass.name,
+    report(passes[p].disabled, copies * parts, unit, pass.name,
            field.name + " is " + (field.type == "boolean" ? "false" : "0"));
   }
 }

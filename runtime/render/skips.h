@@ -16,6 +16,7 @@ namespace isoshade::render {
 struct PassSkips {
   int64_t unseen = 0;    ///< copies
   int64_t disabled = 0;  ///< parts of copies
+  int64_t uncut = 0;     ///< parts of copies that are drawn without their cut-out
 };
 
 /// Adds to `skips` what the passes of its effect, at least one, left out of an object whose mesh has `parts`.

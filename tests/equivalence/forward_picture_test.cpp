@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <tuple>
 
 #include "compiler/driver/forward.h"
 #include "compiler/targets/targets.h"
@@ -64,14 +65,14 @@ TEST_P(ForwardPicture, IsCloseToTheContracts) {
   ASSERT_GE(index, 0) << diagnostics.text();
   forward::Renderer renderer(instance.devices[static_cast<size_t>(index)], width, height);
   const auto made = pairs_of(plan);
-  // The transform of a copy may mirror it, which changes what is culled.
-  std::map<std::pair<const driver::EffectPass*, interface::Cull>, forward::Pair> pairs;
+  // The transform of a copy may mirror it, and a parameter may switch culling off.
+  std::map<std::tuple<const driver::EffectPass*, interface::Cull, bool>, forward::Pair> pairs;
   std::vector<const forward::Pair*> of_draws;
   for (const backends::Draw& draw : plan.frame.picture().draws) {
     const auto origin = std::ranges::find(plan.origins, draw.object, &render::RecordOrigin::record);
     ASSERT_NE(origin, plan.origins.end());
-    const std::pair key(origin->pass, draw.state.cull);
-    if (!pairs.contains(key)) pairs.emplace(key, renderer.pair(made.at(origin->pass), draw.state));
+    const std::tuple key(origin->pass, draw.state.cull, draw.mirrored);
+    if (!pairs.contains(key)) pairs.emplace(key, renderer.pair(made.at(origin->pass), draw.state, draw.mirrored));
     of_draws.push_back(&pairs.at(key));
   }
   const std::vector<float> rgba = renderer.draw(plan, of_draws);

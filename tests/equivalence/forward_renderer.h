@@ -26,6 +26,7 @@ struct Target {
 struct Pair {
   ForwardLayout layout;
   interface::PassState state;
+  bool mirrored = false;
   vk::raii::DescriptorSetLayout set{nullptr};
   vk::raii::PipelineLayout pipeline_layout{nullptr};
   vk::raii::Pipeline pipeline{nullptr};
@@ -49,10 +50,11 @@ class Renderer {
     make_render_pass();
   }
 
-  Pair pair(const driver::ForwardPair& made, const interface::PassState& state) {
+  Pair pair(const driver::ForwardPair& made, const interface::PassState& state, bool mirrored) {
     Pair pair;
     pair.layout = made.layout;
     pair.state = state;
+    pair.mirrored = mirrored;
     std::vector<vk::DescriptorSetLayoutBinding> bindings;
     for (const ForwardLayout::Block& block : made.layout.blocks)
       bindings.push_back({.binding = static_cast<uint32_t>(block.binding),
@@ -333,7 +335,9 @@ class Renderer {
                                      : pair.state.cull == interface::Cull::back ? vk::CullModeFlagBits::eBack
                                                                                 : vk::CullModeFlagBits::eFront;
     const vk::PipelineRasterizationStateCreateInfo rasterization{
-        .cullMode = culled, .frontFace = vk::FrontFace::eCounterClockwise, .lineWidth = 1};
+        .cullMode = culled,
+        .frontFace = pair.mirrored ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise,
+        .lineWidth = 1};
     const vk::PipelineMultisampleStateCreateInfo samples{};
     const vk::PipelineDepthStencilStateCreateInfo depth{
         .depthTestEnable = true,

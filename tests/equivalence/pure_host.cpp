@@ -106,6 +106,10 @@ int_of<F> lane_ints(const int* in, int stride, int word) {
   for (int i = 0; i < lane_count<F>; ++i) words[i] = in[i * stride + word];
   return load_lanes<int_of<F>>(words);
 }
+template <class I>
+void store_ints(int* out, I value) {
+  store_lanes(out, value);
+}
 template <class F>
 void store_words(int* out, int stride, int word, F value) {
   int words[lane_count<F>];

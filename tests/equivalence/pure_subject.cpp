@@ -124,7 +124,8 @@ Subjects subjects_of(const std::vector<std::filesystem::path>& paths, driver::Di
       subject.parameters = kept.pure.parameters;
       subject.shader = &kept;
       subject.stride = words_of(subject.points) + words_of(subject.parameters);
-      subject.words = function.kind == PureKind::move_vertex ? 3 : 4;
+      subject.result = kept.pure.module.functions[function.entry].results.at(0).type;
+      subject.words = subject.result.width;
       if (subject.stride == 0) continue;
       subject.runtime = runtime_program(kept, i, subject);
       made.all.push_back(std::move(subject));

@@ -22,6 +22,7 @@ struct Subject {
   std::vector<emit::PureField> points, parameters;
   const driver::Shader* shader = nullptr;
   driver::Program runtime;
+  ir::Type result;
   int stride = 0, words = 0;
 };
 

@@ -72,9 +72,9 @@ std::string glsl_program(const Subject& subject, const std::string& pure) {
   };
   fill(subject.point, "point", subject.points);
   fill("Parameters", "parameters", subject.parameters);
-  const std::string type = "vec" + std::to_string(subject.words);
-  text += "  precise " + type + " value = " + prefix + subject.function + "(" + arguments +
-          ");\n  result_0 = ivec4(";
+  const std::string call = prefix + subject.function + "(" + arguments + ");\n";
+  if (subject.result == ir::bool_type) return text + "  bool value = " + call + "  result_0 = ivec4(int(value), 0, 0, 0);\n}\n";
+  text += "  precise " + std::string(ir::name(subject.result)) + " value = " + call + "  result_0 = ivec4(";
   for (int i = 0; i < 4; ++i)
     text += (i == 0 ? "" : ", ") +
             (i < subject.words ? "canonical(value[" + std::to_string(i) + "])" : std::string("0"));
@@ -90,6 +90,7 @@ std::string cpp_caller(const Subject& subject, size_t number) {
   const auto lanes = [&](const ir::Type type) {
     const auto at = [&](int i) { return "(in, " + stride + ", " + std::to_string(word + i) + ")"; };
     if (type == ir::int_type) return "lane_ints<F>" + at(0);
+    if (type == ir::bool_type) return "lane_ints<F>" + at(0) + " != int_of<F>(0)";
     std::string list;
     for (int i = 0; i < type.width; ++i) list += (i == 0 ? "" : ", ") + ("lane_floats<F>" + at(i));
     return type.width == 1 ? list : "{" + list + "}";
@@ -115,6 +116,8 @@ std::string cpp_caller(const Subject& subject, size_t number) {
   fill(subject.point + "<F>", "point", subject.points, lanes);
   fill("Parameters", "parameters", subject.parameters, one);
   text += "  const auto value = " + space + subject.function + "<F>(Host{}" + arguments + ");\n";
+  if (subject.result == ir::bool_type)
+    return text + "  store_ints(out, select(value, int_of<F>(1), int_of<F>(0)));\n}\n";
   for (int i = 0; i < subject.words; ++i)
     text += "  store_words(out, " + std::to_string(subject.words) + ", " + std::to_string(i) + ", value." +
             "xyzw"[i] + ");\n";

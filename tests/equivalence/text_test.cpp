@@ -62,6 +62,7 @@ const std::vector<Texts>& shipped() {
           for (const driver::EffectPass& pass : effect->passes) {
             add(place + effect->name + "_" + pass.name + "_vertex", pass.vertex);
             add(place + effect->name + "_" + pass.name + "_pixel", pass.pixel);
+            if (pass.cutout) add(place + effect->name + "_" + pass.name + "_cutout", *pass.cutout);
           }
         }
       }

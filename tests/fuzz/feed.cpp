@@ -19,6 +19,9 @@ void feed_effect(const support::Source& source, const driver::CompileOptions& op
   for (const driver::EffectPass& pass : effect->passes) {
     support::assert_that(!driver::glsl(pass.pixel, driver::Division::exact).empty(), "no GLSL");
     support::assert_that(!driver::cpp(pass.pixel).empty(), "no C++");
+    if (!pass.cutout) continue;
+    support::assert_that(!driver::glsl(*pass.cutout, driver::Division::exact).empty(), "no GLSL");
+    support::assert_that(!driver::cpp(*pass.cutout).empty(), "no C++");
   }
 }
 

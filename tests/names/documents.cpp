@@ -52,6 +52,7 @@ class Compiler {
     auto effect = driver::compile_effect(source(members), options_, diagnostics_);
     if (!effect) return;
     if (effect->passes[0].moves_vertices) made_.programs.push_back(std::move(effect->passes[0].vertex));
+    if (effect->passes[0].cutout) made_.programs.push_back(*std::move(effect->passes[0].cutout));
     made_.programs.push_back(std::move(effect->passes[0].pixel));
     if (effect->passes.size() > 1) made_.programs.push_back(std::move(effect->passes.back().pixel));
     shader(members);
@@ -307,12 +308,14 @@ std::vector<std::string> sample_texts() {
   std::vector<const char*> effects = {"materials/moved_vertices.json"}, posts = {"effects/height_fog.json"};
   if (is_full())
     effects.insert(effects.end(),
-                   {"materials/gltf_pbr.json", "materials/derivatives.json", "effects/terrain.json"});
+                   {"materials/gltf_pbr.json", "materials/derivatives.json", "effects/terrain.json",
+                    "effects/dissolve.json"});
   for (const char* path : effects)
     if (const auto effect = driver::compile_effect(read(path), options, diagnostics))
       for (const driver::EffectPass& pass : effect->passes) {
         add(pass.vertex);
         add(pass.pixel);
+        if (pass.cutout) add(*pass.cutout);
       }
   for (const char* path : posts)
     if (const auto post = driver::compile_post(read(path), options, diagnostics)) add(post->program);

@@ -47,7 +47,7 @@ struct TestFrame {
     vertices = frame.vertices;
     for (size_t d = 0; d < view().draws.size(); ++d) {
       const Draw& draw = view().draws[d];
-      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object},
+      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout},
                             view().target.width, view().target.height, vertices, triangles);
     }
   }

@@ -101,7 +101,7 @@ TEST(Build, ReadsParametersAndPassesOfAnEffect) {
   "nodes": {"lit": {"type": "image", "file": {"link": "map"}}},
   "passes": [{"name": "base", "color": "lit"},
              {"name": "shell", "cull": "front", "depth": "always", "position": "lit.xyz", "color": "tint",
-              "position_space": "view", "enabled": "outline"}]})");
+              "position_space": "view", "enabled": "outline", "double_sided": "on", "cutout": "lit.a", "cutoff": 0.25}]})");
   ASSERT_EQ(graph.inputs.size(), 5u);
   EXPECT_EQ(graph.inputs[1].value->numbers.size(), 3u);
   EXPECT_EQ(graph.inputs[2].value->string, "a.png");
@@ -119,6 +119,10 @@ TEST(Build, ReadsParametersAndPassesOfAnEffect) {
   EXPECT_EQ(graph.passes[1].position->selectors, std::vector<std::string>{"xyz"});
   EXPECT_EQ(graph.passes[1].position_space, PositionSpace::view);
   EXPECT_EQ(graph.passes[1].enabled, 0u);
+  EXPECT_EQ(graph.passes[1].double_sided, 4u);
+  EXPECT_FALSE(graph.passes[0].cutout.has_value());
+  EXPECT_EQ(graph.passes[1].cutout->selectors, std::vector<std::string>{"a"});
+  EXPECT_EQ(std::get<Literal>(graph.nodes.at(graph.passes[1].cutoff->node).ports[0].value).number, 0.25f);
 }
 
 TEST(Build, ReadsOutputsOfAPost) {
@@ -316,6 +320,12 @@ TEST(Build, RejectsInvalidPasses) {
   EXPECT_EQ(
       first(with_pass(R"({"name": "b", "color": "x", "position": "x", "position_space": "clip"})")),
       "unknown-choice: \"position_space\" of a pass must be one of world, object, view, not \"clip\" | \"clip\"");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cutoff": 0.5})")),
+            "missing-key: \"cutoff\" has no effect without \"cutout\" | 0.5 | add \"cutout\", or remove this key");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cutout": 0.5})")),
+            "wrong-type: \"cutout\" must be a link, not a number | 0.5");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "double_sided": true})")),
+            "wrong-type: \"double_sided\" must be the name of a parameter, not a boolean | true");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "enabled": true})")),
             "wrong-type: \"enabled\" must be the name of a parameter, not a boolean | true");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "enabled": "hull"})")),

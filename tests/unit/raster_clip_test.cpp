@@ -84,6 +84,45 @@ TEST(ClipAndSnap, SnapsVerticesToTheGrid) {
   EXPECT_EQ(result.at(0, word::object), 40 << lower::triangle_flag::bits);
 }
 
+TEST(ClipAndSnap, FlagsBackFacesMirroredOnesAndCutOuts) {
+  const std::vector<float> clip = {-1, -1, 0.5f, 1, 1, -1, 0.5f, 1, -1, 1, 0.5f, 1};
+  namespace flag = lower::triangle_flag;
+  const auto flags = [&](std::vector<uint32_t> indices, bool mirrored, bool cutout) {
+    std::vector<float> vertices(3 * stride);
+    std::vector<int32_t> triangles;
+    Surface surface;
+    surface.clip = clip;
+    surface.indices = indices;
+    surface.state.cull = Cull::none;
+    surface.mirrored = mirrored;
+    surface.cutout = cutout;
+    clip_and_snap(surface, 8, 8, vertices, triangles);
+    return triangles.at(word::object);
+  };
+  EXPECT_EQ(flags({0, 1, 2}, false, false), 0);
+  EXPECT_EQ(flags({0, 2, 1}, false, false), flag::back);
+  EXPECT_EQ(flags({0, 1, 2}, true, false), flag::back);
+  EXPECT_EQ(flags({0, 2, 1}, true, true), flag::cutout);
+  EXPECT_EQ(flags({0, 2, 1}, false, true), flag::back | flag::cutout);
+}
+
+TEST(ClipAndSnap, MirroredSurfacesCullTheOtherWinding) {
+  const std::vector<float> clip = {-1, -1, 0.5f, 1, 1, -1, 0.5f, 1, -1, 1, 0.5f, 1};
+  for (const Cull cull : {Cull::back, Cull::front})
+    for (const bool turned : {false, true}) {
+      std::vector<float> vertices(3 * stride);
+      std::vector<int32_t> triangles;
+      const std::vector<uint32_t> indices = turned ? std::vector<uint32_t>{0, 2, 1} : one_triangle;
+      Surface surface;
+      surface.clip = clip;
+      surface.indices = indices;
+      surface.state.cull = cull;
+      surface.mirrored = true;
+      clip_and_snap(surface, 8, 8, vertices, triangles);
+      EXPECT_EQ(triangles.empty(), turned == (cull == Cull::front)) << turned;
+    }
+}
+
 TEST(ClipAndSnap, RoundsTiesToEven) {
   // A 2x2 image: x in units is 256 * x + 256.
   const auto snapped = [](float unit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <gtest/gtest.h>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ using shapes::Position;
 using shapes::Shapes;
 
 using Rasterize = void (*)(const int32_t*, const int32_t*, int, int, int, Tile&);
+using List = int (*)(const int32_t*, const int32_t*, int, int, int, const Box&, Tile&, Candidates&);
 
 struct Visible {
   std::vector<int32_t> ids;
@@ -47,9 +49,62 @@ Visible by_tiles(Rasterize rasterize, const std::vector<int32_t>& triangles, int
   return result;
 }
 
+/// A cut-out without a pattern that a rasteriser might share.
+bool is_hole(int triangle, int x, int y) {
+  return (static_cast<unsigned>(triangle) * 2654435761u ^ static_cast<unsigned>(x) * 40503u ^
+          static_cast<unsigned>(y) * 9176u) >> 7 & 1;
+}
+
+/// Draws runs of triangles of one kind, as backends do: those with cut-outs by way of candidates.
+Visible by_candidates(Rasterize rasterize, List list, const std::vector<int32_t>& triangles, int width, int height) {
+  Visible result(width, height);
+  const Box area = box_at(0, 0, width, height);
+  const TileGrid grid(area);
+  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  const lanes::FpGuard guard_floats;
+  const auto tile = std::make_unique<Tile>();
+  const auto found = std::make_unique<Candidates>();
+  for (int i = 0; i < grid.count(); ++i) {
+    const int left = grid.x(i), top = grid.y(i);
+    tile->clear();
+    std::span<const int32_t> listed = bins.of(i);
+    while (!listed.empty()) {
+      const Triangle first = triangle_at(triangles.data(), listed.front());
+      size_t count = 1;
+      while (count < listed.size()) {
+        const Triangle next = triangle_at(triangles.data(), listed[count]);
+        if (next.cutout() != first.cutout() || next.over() != first.over()) break;
+        ++count;
+      }
+      if (!first.cutout()) {
+        rasterize(triangles.data(), listed.data(), static_cast<int>(count), left, top, *tile);
+        listed = listed.subspan(count);
+        continue;
+      }
+      found->count = 0;
+      const int taken = list(triangles.data(), listed.data(), static_cast<int>(count), left, top, area, *tile, *found);
+      EXPECT_GT(taken, 0);
+      for (int c = 0; c < found->count; ++c) {
+        EXPECT_TRUE(found->x[c] < width && found->y[c] < height) << "candidates outside of the image";
+        found->drawn[c] = is_hole(found->triangle[c], found->x[c], found->y[c]) ? 0 : 1;
+      }
+      draw_candidates(*found, first.over(), *tile);
+      listed = listed.subspan(static_cast<size_t>(taken));
+    }
+    for (int pixel = 0; pixel < tile_pixels; ++pixel) {
+      const int x = left + tile_x(pixel), y = top + tile_y(pixel);
+      if (x >= width || y >= height) continue;
+      result.ids[static_cast<size_t>(y) * width + x] = tile->triangles[pixel];
+      result.depth[static_cast<size_t>(y) * width + x] = tile->depth[pixel];
+    }
+  }
+  return result;
+}
+
 Visible plainly(const std::vector<int32_t>& triangles, int width, int height) {
   Visible result(width, height);
-  rasterize_reference(triangles, box_at(0, 0, width, height), result.ids, result.depth);
+  rasterize_reference(triangles, box_at(0, 0, width, height), result.ids, result.depth,
+                      [](int triangle, int x, int y) { return !is_hole(triangle, x, y); });
   return result;
 }
 
@@ -64,6 +119,7 @@ int differences(const Visible& a, const Visible& b) {
 struct Variant {
   int lanes;
   Rasterize rasterize;
+  List list;
 };
 
 void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.lanes << " lanes"; }
@@ -97,6 +153,28 @@ TEST_P(TileAtLanes, MatchesTheReferenceRasterizer) {
       }
       const Visible expected = plainly(triangles, width, height);
       const Visible actual = by_tiles(GetParam().rasterize, triangles, width, height);
+      EXPECT_EQ(differences(expected, actual), 0) << kind << " at " << width << "x" << height;
+    }
+}
+
+TEST_P(TileAtLanes, CutOutsMatchTheReferenceRasterizer) {
+  for (const auto& [width, height] : {std::pair{64, 64}, std::pair{150, 131}, std::pair{1, 1}})
+    for (const std::string kind : shapes::kinds) {
+      Shapes shapes(width, height, 99u + static_cast<unsigned>(width));
+      std::vector<int32_t> triangles;
+      for (const auto& t : shapes.of(kind, 300)) {
+        const float flat = shapes.fraction();
+        const bool is_flat = shapes.between(0, 5) == 0;
+        if (!shapes::append(triangles, t,
+                            is_flat ? std::array{0.5f, 0.5f, 0.5f}
+                                    : std::array{flat, shapes.fraction(), shapes.fraction()}))
+          continue;
+        int32_t& flags = triangles[triangles.size() - word::stride + word::object];
+        if (shapes.between(0, 2) != 0) flags |= lower::triangle_flag::cutout;
+        if (shapes.between(0, 9) == 0) flags |= lower::triangle_flag::over;
+      }
+      const Visible expected = plainly(triangles, width, height);
+      const Visible actual = by_candidates(GetParam().rasterize, GetParam().list, triangles, width, height);
       EXPECT_EQ(differences(expected, actual), 0) << kind << " at " << width << "x" << height;
     }
 }
@@ -171,9 +249,9 @@ TEST_P(TileAtLanes, InterpolatesNarrowTrianglesLikeWideOnes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Raster, TileAtLanes,
-                         testing::Values(Variant{4, detail::rasterize_tile_4},
-                                         Variant{8, detail::rasterize_tile_8},
-                                         Variant{16, detail::rasterize_tile_16}),
+                         testing::Values(Variant{4, detail::rasterize_tile_4, detail::list_candidates_4},
+                                         Variant{8, detail::rasterize_tile_8, detail::list_candidates_8},
+                                         Variant{16, detail::rasterize_tile_16, detail::list_candidates_16}),
                          [](const auto& info) { return std::to_string(info.param.lanes); });
 
 TEST(Tile, IndexInvertsItsCoordinates) {

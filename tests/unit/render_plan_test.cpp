@@ -134,15 +134,42 @@ TEST_F(PlanTest, MovedPlanKeepsItsPointersValid) {
   EXPECT_EQ(moved.frame.programs[0], &moved.effects[0].passes[0].vertex);
 }
 
-TEST_F(PlanTest, MirroringSwapsTheCulledSide) {
+TEST_F(PlanTest, MirroringIsNotedAtTheDraws) {
   const auto made = plan(R"("objects": {
     "a": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [1, -1, 1]}},
     "b": {"mesh": "box", "effect": "twice.json", "transform": {"scale": [-1, -1, 1]}}})");
   ASSERT_TRUE(made) << diagnostics_.text();
-  EXPECT_EQ(made->frame.picture().draws[0].state.cull, interface::Cull::back);  // the pass that culls fronts
-  EXPECT_EQ(made->frame.picture().draws[1].state.cull, interface::Cull::front);
-  EXPECT_EQ(made->frame.picture().draws[2].state.cull, interface::Cull::front);
-  EXPECT_EQ(made->frame.picture().draws[3].state.cull, interface::Cull::back);
+  const std::vector<backends::Draw>& draws = made->frame.picture().draws;
+  EXPECT_EQ(draws[0].state.cull, interface::Cull::front);
+  EXPECT_EQ(draws[1].state.cull, interface::Cull::back);
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(draws[i].mirrored, i < 2) << i;  // two factors mirror nothing
+}
+
+TEST_F(PlanTest, ParametersSwitchCutOutsAndCullingOfEachDraw) {
+  write("leaf.json", R"({"isoshade": 1, "effect": "leaf",
+    "parameters": {"cutoff": {"type": "float", "value": 0.5}, "both": {"type": "boolean", "value": false}},
+    "nodes": {"uv": {"type": "texcoord"}},
+    "passes": [{"name": "base", "cutout": "uv.x", "cutoff": "cutoff", "double_sided": "both", "color": [1, 1, 1]},
+               {"name": "plain", "color": [1, 1, 1]}]})");
+  const auto made = plan(R"("objects": {
+    "cut": {"mesh": "box", "effect": "leaf.json"},
+    "whole": {"mesh": "box", "effect": "leaf.json", "parameters": {"cutoff": 0, "both": true}}})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  const std::vector<backends::Draw>& draws = made->frame.picture().draws;
+  ASSERT_EQ(draws.size(), 4u);
+  EXPECT_TRUE(draws[0].cutout);
+  EXPECT_EQ(draws[0].state.cull, interface::Cull::back);
+  EXPECT_FALSE(draws[1].cutout);
+  EXPECT_FALSE(draws[2].cutout);
+  EXPECT_EQ(draws[2].state.cull, interface::Cull::none);
+  EXPECT_EQ(draws[3].state.cull, interface::Cull::back);
+  // The colours are the same, but only one of the passes has a cut-out.
+  EXPECT_NE(draws[0].pixel_program, draws[1].pixel_program);
+  ASSERT_GT(made->frame.cutouts.size(), draws[0].pixel_program);
+  EXPECT_EQ(made->frame.programs[made->frame.cutouts[draws[0].pixel_program]]->stage, lower::Stage::cutout);
+  EXPECT_EQ(made->frame.cutouts[draws[1].pixel_program], backends::Frame::no_program);
+  ASSERT_EQ(made->stats.skips.size(), 1u);
+  EXPECT_EQ(made->stats.skips[0].reason, "cutoff is not above 0");
 }
 
 TEST_F(PlanTest, ReportsUnknownAndMistypedParameters) {

@@ -64,8 +64,8 @@ constexpr std::string_view vertex_main =
     "      for (int word = 0; word < 4; ++word) clip[4 * (begin + lane) + word] = words[word][lane];\n"
     "  }\n";
 
-// A tail is filled up with its last pixel.
-constexpr std::string_view pixel_main =
+// Over lists of pixels, a batch at a time. A tail is filled up with its last pixel.
+constexpr std::string_view pixel_loop =
     "  using Ints = int_of<Lanes>;\n"
     "  for (int begin = 0; begin < count; begin += batch) {\n"
     "    const int wanted = count - begin < batch ? count - begin : batch;\n"
@@ -76,7 +76,9 @@ constexpr std::string_view pixel_main =
     "        for (int lane = 0; lane < batch; ++lane)\n"
     "          filled[list][lane] = at[list][lane < wanted ? lane : wanted - 1];\n"
     "        at[list] = filled[list];\n"
-    "      }\n"
+    "      }\n";
+
+constexpr std::string_view pixel_main =
     "    const vec4<Lanes> color = pixel<Lanes>(buffers, load_lanes<Ints>(at[0]), load_lanes<Ints>(at[1]),\n"
     "                                           load_lanes<Ints>(at[2]), object, light_count);\n"
     "    float words[4][batch];\n"
@@ -87,6 +89,19 @@ constexpr std::string_view pixel_main =
     "    for (int lane = 0; lane < wanted; ++lane)\n"
     "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
     "  }\n";
+
+/// The depth is for languages whose stage writes it; here the rasteriser has it.
+std::string cutout_main(const ir::Function& kernel, const FunctionText& called) {
+  return std::string(pixel_loop) +
+         "    const auto covered = cutout<Lanes>(buffers, load_lanes<Ints>(at[0]), load_lanes<Ints>(at[1]),\n"
+         "                                       load_lanes<Ints>(at[2]), object);\n"
+         "    int words[batch];\n"
+         "    store_lanes(words, select(" +
+         result_words(kernel, called, "covered")[0].text +
+         ", Ints(1), Ints(0)));\n"
+         "    for (int lane = 0; lane < wanted; ++lane) drawn[begin + lane] = words[lane];\n"
+         "  }\n";
+}
 
 constexpr std::string_view post_main =
     "  using Ints = int_of<Lanes>;\n"
@@ -153,7 +168,13 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
       signature =
           "isoshade_pixel(const BufferView* views, int object, int light_count, int count, const int* x,\n"
           "                               const int* y, const int* triangle, float* rgba)";
-      body = pixel_main;
+      body.append(pixel_loop).append(pixel_main);
+      break;
+    case lower::Stage::cutout:
+      signature =
+          "isoshade_cutout(const BufferView* views, int object, int count, const int* x, const int* y,\n"
+          "                                const int* triangle, int* drawn)";
+      body = cutout_main(module.functions[entry], texts[entry]);
       break;
     case lower::Stage::eval:
       signature = "isoshade_eval(const BufferView* views, int first, int count, int* results)";

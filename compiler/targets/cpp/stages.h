@@ -4,6 +4,8 @@
 // Lanes are chosen by the macros ISOSHADE_LANES (1, 4, 8, 16) and ISOSHADE_REGISTERS (1, 2). A file
 // exports one of
 //   void isoshade_vertex(const BufferView* buffers, int object, int projected, int first, int count, float* clip)
+//   void isoshade_cutout(const BufferView* buffers, int object, int count, const int* x, const int* y,
+//                        const int* triangle, int* drawn)                     1 where it is drawn, else 0
 //   void isoshade_pixel(const BufferView* buffers, int object, int light_count, int count, const int* x,
 //                       const int* y, const int* triangle, float* rgba)
 //   void isoshade_eval(const BufferView* buffers, int first, int count, int* results)

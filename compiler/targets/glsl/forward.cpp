@@ -61,6 +61,7 @@ class Pair {
     const PureFunction& main = pure_.functions[program_.main];
     out += point(main.kind, program_.point, program_.point_bindings, "  ");
     out += parameters();
+    if (program_.coverage) out += "  if (!" + call(pure_.functions[*program_.coverage]) + ") discard;\n";
     return out + "  isoshade_color = " + call(main) + ";\n}\n";
   }
 
@@ -146,6 +147,7 @@ class Pair {
       case ForwardInput::Kind::pixel: return {input.word == 0 ? "x" : "y"};
       case ForwardInput::Kind::index: return {"index"};
       case ForwardInput::Kind::position: return {"position"};
+      case ForwardInput::Kind::front: return {"gl_FrontFacing"};
       case ForwardInput::Kind::words: return words_of(input);
     }
     support::bug("no such input");

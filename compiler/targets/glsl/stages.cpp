@@ -74,6 +74,22 @@ std::string depth_main() {
          "}\n";
 }
 
+/// `CutoutResult covered = cutout(...)`; what does not hold is never seen.
+std::string cutout_main(const FunctionText& called) {
+  using namespace lower;
+  return "void main() {\n"
+         "  ivec2 at = ivec2(gl_FragCoord.xy) + ivec2(push.origin_x, push.origin_y);\n"
+         "  int object = triangles[triangle * " +
+         std::to_string(triangle_word::stride) + " + " + std::to_string(triangle_word::object) + "] >> " +
+         std::to_string(triangle_flag::bits) + ";\n  " + called.result_type + " covered = " + called.name +
+         "(at.x, at.y, triangle, object);\n"
+         "  if (!covered." + called.result_fields[0] + ") discard;\n"
+         "  precise float z = covered." + called.result_fields[1] + ";\n"
+         "  gl_FragDepth = z;\n"
+         "  id = triangle + 1;\n"
+         "}\n";
+}
+
 std::string pixel_main() {
   using namespace lower;
   const std::string stride = std::to_string(triangle_word::stride);
@@ -171,6 +187,12 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
       interface = std::string(push_constants) +
                   "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
       body = depth_main();
+      break;
+    case lower::Stage::cutout:
+      used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
+      interface = std::string(push_constants) +
+                  "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
+      body = cutout_main(texts[entry]);
       break;
     case lower::Stage::pixel:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;

@@ -9,6 +9,7 @@
 //           clip[gl_VertexIndex - first + count].
 //   depth   a fragment shader: `flat in int triangle` at location 0; gl_FragDepth; out int at 0: triangle + 1. The
 //           target's first pixel is (origin_x, origin_y) of the frame, as it is of pixel.
+//   cutout  the same, but it discards pixels where the effect's cut-out does not hold.
 //   pixel   a fragment shader: the id at its pixel, 0 for none; discards pixels of other programs; out vec4 at 0.
 //   eval    a fragment shader: row = first + x + y * width; discards rows >= count; results as bits, four to an
 //           `out ivec4` at locations 0, 1, ...

@@ -143,6 +143,11 @@ class Frame {
     });
   }
 
+  /// Which faces of a draw are left out.
+  cullOf(draw, record) {
+    return draw.double_sided !== null && record[draw.double_sided] !== 0 ? "none" : draw.cull;
+  }
+
   /// Whether a pass or post is switched off by a parameter.
   isOff(enabled, record) {
     return enabled !== null && record[enabled] === 0;
@@ -199,9 +204,11 @@ class Frame {
       if (this.isOff(draw.enabled, record)) return;
       const program = this.use(draw.program, this.places[d]);
       this.bindSamplers(program, (name) => this.textures[this.textureOfRecord.get(record[draw.images + numberIn(name)])]);
-      if (draw.cull === "none") gl.disable(gl.CULL_FACE);
+      const cull = this.cullOf(draw, record);
+      if (cull === "none") gl.disable(gl.CULL_FACE);
       else gl.enable(gl.CULL_FACE);
-      if (draw.cull !== "none") gl.cullFace(draw.cull === "back" ? gl.BACK : gl.FRONT);
+      if (cull !== "none") gl.cullFace(cull === "back" ? gl.BACK : gl.FRONT);
+      gl.frontFace(draw.mirrored ? gl.CW : gl.CCW);
       gl.depthFunc(draw.depth === "always" ? gl.ALWAYS : gl.GREATER);
       gl.drawElements(gl.TRIANGLES, draw.count, gl.UNSIGNED_INT, 4 * draw.first);
     });
