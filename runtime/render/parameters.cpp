@@ -109,7 +109,8 @@ void store_factor(const driver::ParameterBlock& block, std::string_view name, st
   const auto number = block.find(name);
   if (!number) return;
   const driver::Field& field = block.fields[*number];
-  const auto count = static_cast<size_t>(std::max(graph::float_count(driver::type_of(field)), 0));
+  const Type type = driver::type_of(field);
+  const auto count = static_cast<size_t>(type == Type::boolean ? 1 : graph::float_count(type));
   const bool takes_it = factor.size() == 1 ? count == 1 : count == 3 || count == factor.size();
   if (!takes_it) return;
   for (size_t i = 0; i < count; ++i) {
@@ -157,6 +158,9 @@ class ParameterValues::Resolver {
       store_factor(block_, name, factor, values_.common_);
     };
     store("base_color", material->base_color);
+    store("alpha", std::array{material->alpha});
+    store("alpha_cutoff", std::array{material->alpha_cutoff});
+    store("double_sided", std::array{material->double_sided ? 1.0f : 0.0f});
     store("metallic", std::array{material->metallic});
     store("roughness", std::array{material->roughness});
     store("emissive_color", material->emissive_color);

@@ -13,8 +13,7 @@ using support::quote;
 
 namespace {
 
-bool is_not_opaque(const Json& value) { return value.string != "OPAQUE"; }
-bool is_true(const Json& value) { return value.boolean; }
+bool is_blend(const Json& value) { return value.string == "BLEND"; }
 bool is_not_zero(const Json& value) { return value.number != 0; }
 /// NEAREST, NEAREST_MIPMAP_NEAREST, NEAREST_MIPMAP_LINEAR.
 bool is_nearest(const Json& value) {
@@ -31,8 +30,7 @@ struct Feature {
   bool (*asks)(const Json& value);
 };
 constexpr Feature features[] = {
-    {"alphaMode", "alpha modes", is_not_opaque},
-    {"doubleSided", "double-sided materials", is_true},
+    {"alphaMode", "the alpha mode BLEND", is_blend},
     {"texCoord", "texture coordinates beyond the first set", is_not_zero},
     {"magFilter", "nearest filtering of samplers", is_nearest},
     {"minFilter", "nearest filtering of samplers", is_nearest},

@@ -14,8 +14,12 @@ Material read_factors(const tinygltf::Material& from) {
     return value > 0 ? canonical(static_cast<float>(std::min(value, 1.0))) : 0.0f;
   };
   Material material;
-  for (size_t i = 0; i < 4 && i < factors.baseColorFactor.size(); ++i)
+  for (size_t i = 0; i < 3 && i < factors.baseColorFactor.size(); ++i)
     material.base_color[i] = number(factors.baseColorFactor[i]);
+  if (factors.baseColorFactor.size() > 3) material.alpha = number(factors.baseColorFactor[3]);
+  if (from.alphaMode == "MASK")
+    material.alpha_cutoff = canonical(static_cast<float>(std::clamp(from.alphaCutoff, 0.0, 1e6)));
+  material.double_sided = from.doubleSided;
   material.metallic = number(factors.metallicFactor);
   const float perceptual = number(factors.roughnessFactor);
   material.roughness = perceptual * perceptual;

@@ -24,7 +24,10 @@ struct MaterialImage {
 
 /// A metallic-roughness material: values for parameters of an effect, which has them under the same names.
 struct Material {
-  std::array<float, 4> base_color{1, 1, 1, 1};  ///< linear
+  std::array<float, 3> base_color{1, 1, 1};  ///< linear
+  float alpha = 1;
+  float alpha_cutoff = 0;     ///< surfaces are drawn where their alpha is not below it
+  bool double_sided = false;  ///< whether faces are drawn that are seen from behind
   float metallic = 1;
   float roughness = 1;  ///< alpha, the square of perceptual roughness
   std::array<float, 3> emissive_color{0, 0, 0};

@@ -72,6 +72,22 @@ TEST_F(Gltf, ReadsEveryAttributeOfTheFile) {
   EXPECT_EQ(material->roughness, 0.25f);  // what is perceptual is squared
 }
 
+TEST_F(Gltf, ReadsAlphaModesAndSides) {
+  const auto material = [&](const std::string& keys) {
+    std::string json = square_json();
+    const std::string from = R"("materials": [{)";
+    json.replace(json.find(from), from.size(), from + keys);
+    return loaded(json).parts.at(0).material.value();
+  };
+  EXPECT_EQ(material("").alpha_cutoff, 0.0f);
+  EXPECT_FALSE(material("").double_sided);
+  EXPECT_EQ(material(R"("alphaMode": "OPAQUE", "alphaCutoff": 0.3, )").alpha_cutoff, 0.0f);
+  EXPECT_EQ(material(R"("alphaMode": "MASK", )").alpha_cutoff, 0.5f);
+  EXPECT_EQ(material(R"("alphaMode": "MASK", "alphaCutoff": 0.25, )").alpha_cutoff, 0.25f);
+  EXPECT_EQ(material(R"("alphaMode": "MASK", "alphaCutoff": 1.5, )").alpha_cutoff, 1.5f);
+  EXPECT_TRUE(material(R"("doubleSided": true, )").double_sided);
+}
+
 TEST_F(Gltf, TextWithASeparateBufferGivesTheSameMesh) {
   folder_.write("a b.bin", square_data());
   const auto model = load(square_json(all_attributes, one_node, R"("uri": "a%20b.bin", )"), "m.gltf");
@@ -257,10 +273,10 @@ TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
     const char* name;
   };
   const Case cases[] = {
-      {R"("materials": [{)", R"("materials": [{"alphaMode": "MASK", )", "alpha modes"},
+      {R"("materials": [{)", R"("materials": [{"alphaMode": "BLEND", )", "the alpha mode BLEND"},
+      {R"("materials": [{)", R"("materials": [{"alphaMode": "MASK", "alphaCutoff": 0.3, )", nullptr},
       {R"("materials": [{)", R"("materials": [{"alphaMode": "OPAQUE", )", nullptr},
-      {R"("materials": [{)", R"("materials": [{"doubleSided": true, )", "double-sided materials"},
-      {R"("materials": [{)", R"("materials": [{"doubleSided": false, )", nullptr},
+      {R"("materials": [{)", R"("materials": [{"doubleSided": true, )", nullptr},
       {R"("materials": [{)", R"("materials": [{"normalTexture": {"index": 0, "texCoord": 1}, )",
        "texture coordinates beyond the first set"},
       {R"("materials": [{)", R"("materials": [{"extensions": {"KHR_materials_unlit": {}}, )",
@@ -278,7 +294,7 @@ TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
       {R"([{"mesh": 0}])", R"([{"mesh": 0, "skin": 0}])", "skins"},
       {R"("indices": 4)", R"("targets": [{"POSITION": 0}], "indices": 4)", "morph targets"},
       {R"("scene": 0)", R"("scene": 0, "animations": [{"channels": [], "samplers": []}])", "animations"},
-      {R"("scene": 0)", R"("scene": 0, "extras": {"alphaMode": "MASK", "doubleSided": true})", nullptr},
+      {R"("scene": 0)", R"("scene": 0, "extras": {"alphaMode": "BLEND"})", nullptr},
   };
   for (const Case& test : cases) {
     std::string json = square_json();
