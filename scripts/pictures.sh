@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/build.sh release isoshade
 isoshade=build/release/isoshade
-for pattern in planks shingles stones; do
+for pattern in ivy planks shingles stones; do
   "$isoshade" --quiet render "graphs/textures/${pattern}_tile.json" -o "graphs/textures/$pattern.png"
 done
 for scene in material_balls cartoon_village fog_valley fog_village; do
