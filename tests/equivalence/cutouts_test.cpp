@@ -177,7 +177,7 @@ TEST_F(Cutouts, ShowWhatIsBehindTheirHoles) {
     behind += color[0] == 0.2f && color[1] == 0.3f && color[2] == 0.4f ? 1 : 0;
   }
   EXPECT_GT(background, 500u);
-  EXPECT_GT(behind, 500u) << "seen through the plane in front, which covers the image";
+  EXPECT_GT(behind, 300u) << "seen through the plane in front, which covers the image";
 }
 
 }  // namespace
