@@ -30,6 +30,14 @@ const char* suffix(Axis axis, const char* of_x, const char* of_y) { return axis 
 }  // namespace
 
 const SurfaceRow& row(Surface attribute) { return surface_rows[static_cast<size_t>(attribute)]; }
+
+uint32_t sets_of(Surface attribute) {
+  const auto first = static_cast<size_t>(attribute);
+  size_t end = first + 1;
+  while (end < surface_count && surface_rows[end].node == surface_rows[first].node) ++end;
+  return static_cast<uint32_t>(end - first);
+}
+
 const ScreenRow& row(Screen value) { return screen_rows[static_cast<size_t>(value)]; }
 
 std::string name(SurfaceValue value) {

@@ -95,6 +95,8 @@ struct SurfaceRow {
   ir::Type type() const { return width == 0 ? ir::bool_type : ir::vector_type(width); }
 };
 const SurfaceRow& row(Surface attribute);
+/// How many sets of an attribute meshes have: the rows of values.def with its node, from the attribute on.
+uint32_t sets_of(Surface attribute);
 /// "normal_object"; world space has no suffix.
 std::string name(SurfaceValue value);
 /// Every value that a document may ask for, in order.

@@ -13,9 +13,15 @@ using nodes::Value;
 using From = Operand::From;
 
 interface::SurfaceValue surface_value(const check::TypedGraph& graph, const Node& node) {
-  const auto attribute = std::get<nodes::Surface>(node.row->lowering);
-  const bool has_space = !node.row->ports.empty() && node.row->ports[0].name == "space";
-  return {attribute, has_space ? nodes::space_of(graph.operands_of(node)[0].index) : nodes::Space::world};
+  const auto first = std::get<nodes::Surface>(node.row->lowering);
+  nodes::Space space = nodes::Space::world;
+  uint32_t set = 0;
+  for (size_t i = 0; i < node.row->ports.size(); ++i) {
+    const uint32_t setting = graph.operands_of(node)[i].index;
+    if (node.row->ports[i].name == "space") space = nodes::space_of(setting);
+    if (node.row->ports[i].name == "index") set = setting;
+  }
+  return {static_cast<nodes::Surface>(static_cast<uint32_t>(first) + set), space};
 }
 
 std::vector<SpaceStep> steps_between_spaces(const check::TypedGraph& graph, const Node& node, nodes::Transform what) {

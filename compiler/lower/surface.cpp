@@ -114,6 +114,7 @@ ir::ValueId SurfacePoint::value(interface::SurfaceValue value) {
     case Surface::position: return position_in(value.space).value;
     case Surface::normal: return normal_in(value.space, local_normal()).value;
     case Surface::texcoord: return attributes_(2, vertex_word::texcoord);
+    case Surface::texcoord1: return attributes_(2, vertex_word::texcoord1);
     case Surface::view_direction: return view_direction_in(value.space).value;
     case Surface::tangent: return tangent_in(value.space, tangent()).value;
     case Surface::bitangent: return tangent_in(value.space, bitangent()).value;

@@ -2,15 +2,17 @@
 // The shaded surface point. Only in effects; functions take attributes as inputs.
 #include "compiler/nodes/site.h"
 #include "compiler/nodes/table.h"
+#include "compiler/support/assert.h"
 
 namespace isoshade::nodes {
 namespace {
 
-/// Meshes have one set of texture coordinates and one of colours.
-template <size_t port>
+/// Meshes have one or two sets of an attribute.
+template <size_t port, uint32_t sets>
 std::optional<Refusal> set_exists(std::span<const Type>, std::span<const uint32_t> settings, Type) {
-  if (settings[port] == 0) return std::nullopt;
-  return Refusal{support::Id::out_of_range, port, "meshes have only set 0"};
+  if (settings[port] < sets) return std::nullopt;
+  return Refusal{support::Id::out_of_range, port,
+                 sets == 1 ? "meshes have only set 0" : "meshes have only the sets 0 and 1"};
 }
 
 void facing_ratio(Site& s) {
@@ -21,7 +23,7 @@ void facing_ratio(Site& s) {
   s.out[0] = s.op(ir::Opcode::select, {s[3], inverted, facing});
 }
 
-/// The node of an attribute.
+/// The node of an attribute, of which `attribute` is the first set.
 Row surface_row(Surface attribute) {
   constexpr PortType types[] = {Boolean, Float, Vector2, Vector3, Color4};  // by width
   const interface::SurfaceRow& row = interface::row(attribute);
@@ -29,7 +31,9 @@ Row surface_row(Surface attribute) {
   if (row.has_spaces)
     node.ports.push_back({"space", Choice, "the coordinate space; \"model\" is \"object\"", "world", space_names});
   if (row.sets.empty()) return node;
-  node.condition = row.has_spaces ? set_exists<1> : set_exists<0>;
+  const uint32_t sets = interface::sets_of(attribute);
+  support::assert_that(sets == 1 || (sets == 2 && !row.has_spaces), "no condition counts the sets of an attribute");
+  node.condition = sets == 2 ? set_exists<0, 2> : row.has_spaces ? set_exists<1, 1> : set_exists<0, 1>;
   node.ports.push_back({"index", WholeNumber, row.sets, 0.0f});
   return node;
 }
@@ -64,7 +68,8 @@ std::vector<Row> geometry_rows() {
        Derivative::width},
       {"time", "The \"time\" of the scene, in seconds.", {}, Float, Time{}},
   };
-  for (size_t i = 0; i < interface::surface_count; ++i) rows.push_back(surface_row(static_cast<Surface>(i)));
+  for (uint32_t i = 0; i < interface::surface_count; i += interface::sets_of(static_cast<Surface>(i)))
+    rows.push_back(surface_row(static_cast<Surface>(i)));
   return rows;
 }
 

@@ -41,10 +41,20 @@ std::string types_text(TypeSet types) {
 }
 
 std::string surface_text(SurfaceValue value) {
-  constexpr std::string_view names[] = {"position",       "normal",         "texture coordinates",
-                                        "view direction", "tangent",        "bitangent",
-                                        "colour",         "outline normal", "pixel size",
-                                        "corner normal",  "corner normal",  "corner normal"};
+  constexpr std::string_view names[] = {"position",
+                                        "normal",
+                                        "texture coordinates",
+                                        "second texture coordinates",
+                                        "view direction",
+                                        "tangent",
+                                        "bitangent",
+                                        "colour",
+                                        "outline normal",
+                                        "pixel size",
+                                        "corner normal",
+                                        "corner normal",
+                                        "corner normal"};
+  static_assert(std::size(names) == interface::surface_count);
   const bool object = value.space == Space::object;
   return "the surface's " + std::string(names[static_cast<size_t>(value.attribute)]) +
          (object ? " in object space" : "");

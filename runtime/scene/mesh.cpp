@@ -16,9 +16,11 @@ namespace isoshade::scene {
 namespace word = lower::vertex_word;
 
 void add_vertex(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float u, float v, glm::vec3 tangent) {
-  const float record[word::stride] = {
+  float record[word::stride] = {
       position.x, position.y, position.z, normal.x, normal.y, normal.z, u, v,  //
       tangent.x,  tangent.y,  tangent.z,  1,        1,        1,        1, 1};
+  record[word::texcoord1] = u;
+  record[word::texcoord1 + 1] = v;
   for (const float value : record) mesh.vertices.push_back(canonical(value));
 }
 

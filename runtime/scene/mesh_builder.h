@@ -13,7 +13,7 @@ inline float fraction(int64_t part, int64_t whole) {
   return static_cast<float>(part) / static_cast<float>(whole);
 }
 
-/// Adds a white vertex whose normal, tangent and bitangent (up in the texture) are right-handed. Its outline and corner
+/// Adds a white vertex with the same texture coordinates in both sets, whose normal, tangent and bitangent (up in the texture) are right-handed. Its outline and corner
 /// normals are still 0.
 void add_vertex(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float u, float v, glm::vec3 tangent);
 /// Corners in counter-clockwise order seen from outside.

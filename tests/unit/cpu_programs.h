@@ -31,7 +31,7 @@ EXPORT void isoshade_vertex(const BufferView* buffers, int object, int, int firs
   const FloatBuffer vertices{static_cast<const float*>(buffers[0].data), buffers[0].size};
   const FloatBuffer objects{static_cast<const float*>(buffers[2].data), buffers[2].size};
   for (int begin = 0; begin < count; begin += batch) {
-    const I record = (lane_index<I>() + (first + begin)) * 22;  // lower::vertex_word::stride
+    const I record = (lane_index<I>() + (first + begin)) * 24;  // lower::vertex_word::stride
     const float scale = load(objects, object);
     float words[4][batch];
     store_lanes(words[0], load(vertices, record) * F(scale));

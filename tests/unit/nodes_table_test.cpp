@@ -116,6 +116,9 @@ TEST(NodeTable, EachSpaceOfAnAttributeIsASeparateField) {
   }
   EXPECT_EQ(asked_by(R"("type": "vertexcolor")"), "surface.color");
   EXPECT_EQ(asked_by(R"("type": "texcoord", "index": 0)"), "surface.texcoord");
+  EXPECT_EQ(asked_by(R"("type": "texcoord", "index": 1)"), "surface.texcoord1");
+  EXPECT_NE(FrontEnd().messages(effect_of(R"("type": "texcoord", "index": 2)", "n.x")).find("only the sets 0 and 1"),
+            std::string::npos);
   EXPECT_EQ(asked_by(R"("type": "time")", "n"), "frame.time");
 }
 
