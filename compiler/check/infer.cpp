@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <span>
+
 #include "compiler/check/node_inference.h"
 
 namespace isoshade::check {
@@ -84,7 +87,29 @@ void NodeInference::infer_row() {
   if (node_.row->condition != nullptr) check_condition();
 }
 
+/// Checks a link in place of a choice: to an integer input whose values are called as the first of the choices, so that
+/// its number is that of the choice.
+void NodeInference::check_chosen(size_t i) {
+  const graph::Graph& graph = work_.graph();
+  const std::vector<std::string_view>& choices = port(i).choices;
+  Operand& to = operand(i);
+  if (to.from == Operand::From::input) {
+    const std::vector<std::string>& names = graph.inputs[to.index].names;
+    const bool fits = !names.empty() && names.size() <= choices.size();
+    if (fits && std::ranges::equal(names, std::span(choices).first(names.size()))) {
+      to.needed = Type::integer;
+      return;
+    }
+  }
+  const std::string word = graph.kind == graph::DocumentKind::function ? "an input" : "a parameter";
+  std::string list;
+  for (const std::string_view choice : choices) list += (list.empty() ? "" : ", ") + quote(choice);
+  report(Id::type_mismatch, i, of_node(i) + " takes a link only to " + word + " with an \"enum\" of its choices")
+      .suggest("declare " + word + " with \"type\": \"integer\", \"enum\": [" + list + "]; the last may be left out");
+}
+
 void NodeInference::read_text(size_t i) {
+  if (given(i).link != nullptr) return check_chosen(i);
   const bool is_type = port(i).type.kind == PortType::Kind::type_name;
   std::string_view text;
   if (given(i).port == nullptr) {

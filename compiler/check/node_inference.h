@@ -99,6 +99,7 @@ class NodeInference {
   void read_text(size_t i);
   void read_integer(size_t i);
   void read_image(size_t i, std::string_view name);
+  void check_chosen(size_t i);
   void read_type_name(size_t i, std::string_view text);
   void join(size_t i, Type type);
   void settle_by_links();

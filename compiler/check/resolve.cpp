@@ -163,6 +163,11 @@ class NodeResolver {
     Operand& operand = work_.typed.operands[node_.first_operand + *found];
     if (node_.row != nullptr && node_.row->ports[*found].type.kind != PortType::Kind::value) {
       if (std::holds_alternative<Literal>(port.value)) return;  // checked in infer()
+      if (node_.row->ports[*found].takes_input) {
+        given.link = &std::get<Link>(port.value);
+        if (!resolve_link(work_, *given.link, operand)) fail();
+        return;
+      }
       work_.report(Id::not_literal, port.place,
                    quote(port.name) + " of " + quote(source_.label()) + " must be a literal, not a link");
       return fail();

@@ -104,4 +104,7 @@ struct TypedGraph {
   }
 };
 
+/// Whether a node is an image that is trilinear, or that an input can make so.
+bool may_be_trilinear(const TypedGraph& graph, const Node& node);
+
 }  // namespace isoshade::check

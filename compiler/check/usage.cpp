@@ -59,12 +59,6 @@ void check_summands(Work& work) {
   }
 }
 
-bool is_trilinear_image(const TypedGraph& typed, const Node& node) {
-  return node.row != nullptr && node.row->is<nodes::Image>() &&
-         typed.operands_of(node)[nodes::image_port::filtertype].index ==
-             static_cast<uint32_t>(nodes::Filter::trilinear);
-}
-
 /// The stages in which the node of a surface attribute is available.
 interface::SurfaceStages available_at(const nodes::Row& row) {
   const auto* attribute = std::get_if<nodes::Surface>(&row.lowering);
@@ -75,7 +69,7 @@ interface::SurfaceStages available_at(const nodes::Row& row) {
 const char* missing_at_vertices(const TypedGraph& typed, const Node& node) {
   const nodes::Row& row = *node.row;
   if (row.is<nodes::Derivative>()) return "derivatives exist only for pixels";
-  if (is_trilinear_image(typed, node))
+  if (may_be_trilinear(typed, node))
     return "its mip level exists only for pixels; \"closest\" and \"linear\" filtering need none";
   if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "lights exist only for pixels";
   if (available_at(row) == interface::SurfaceStages::pixels) return "it is known only for pixels";
@@ -151,7 +145,7 @@ void check_derivatives(Work& work) {
                       quote(work.graph().nodes[derivative[i]].id));
     }
     if (takes_one) derivative[i] = i;
-    if (!is_trilinear_image(typed, node)) continue;
+    if (!may_be_trilinear(typed, node)) continue;
     // The mip level depends on derivatives of texcoord; by definition, the derivative of the level is 0.
     const Operand& texcoord = typed.operands_of(node)[nodes::image_port::texcoord];
     if (texcoord.from != From::node || derivative[texcoord.index] == nothing) continue;
@@ -216,6 +210,14 @@ void warn_unused(Work& work) {
 }
 
 }  // namespace
+
+bool may_be_trilinear(const TypedGraph& typed, const Node& node) {
+  if (node.row == nullptr || !node.row->is<nodes::Image>()) return false;
+  constexpr auto trilinear = static_cast<uint32_t>(nodes::Filter::trilinear);
+  const Operand& filter = typed.operands_of(node)[nodes::image_port::filtertype];
+  return filter.from == From::input ? typed.graph.inputs[filter.index].names.size() > trilinear
+                                    : filter.index == trilinear;
+}
 
 void check_usage(Work& work) {
   mark_per_iteration(work.typed);

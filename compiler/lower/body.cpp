@@ -201,19 +201,31 @@ Value Body::image(uint32_t index) {
   const ir::ValueId otherwise = read(operands[port::default_value]).id();
   const ir::ValueId texcoord = read(operands[port::texcoord]).id();
   const Sampling sampling = sampling_of(graph_, node);
+  const auto number = [&](size_t port) {
+    return operands[port].from == From::input ? read(operands[port]).id() : ir::none;
+  };
+  const Chosen chosen{number(port::filtertype), number(port::uaddressmode), number(port::vaddressmode),
+                      check::may_be_trilinear(graph_, node)};
   const auto picture = [&] {
-    const ir::ValueId color = sample(b_, environment_.interface, sampling, texture, texcoord);
+    const ir::ValueId color = sample(b_, environment_.interface, sampling, texture, texcoord, chosen);
     std::array<ir::ValueId, 4> components;
     const auto width = static_cast<size_t>(graph::float_count(graph_.types_of(node)[0]));
     for (uint32_t i = 0; i < width; ++i) components[i] = b_.extract(color, i);
     ir::ValueId result =
         width == 4 ? color : b_.construct(std::span<const ir::ValueId>(components).first(width));
     for (const uint32_t axis : {0u, 1u}) {
-      if ((axis == 0 ? sampling.u : sampling.v) != AddressMode::constant) continue;
+      const ir::ValueId mode = axis == 0 ? chosen.u : chosen.v;
+      const uint32_t input = axis == 0 ? sampling.u_input : sampling.v_input;
+      constexpr auto constant = static_cast<int>(AddressMode::constant);
+      const bool may_be = input == ir::none ? (axis == 0 ? sampling.u : sampling.v) == AddressMode::constant
+                                            : graph_.graph.inputs[input].names.size() > constant;
+      if (!may_be) continue;
       const ir::ValueId at = b_.extract(texcoord, axis);
       const ir::ValueId from_0 = b_.op(ir::Opcode::fge, {at, b_.constant(0.0f)});
       const ir::ValueId to_1 = b_.op(ir::Opcode::fle, {at, b_.constant(1.0f)});
-      const ir::ValueId inside = b_.op(ir::Opcode::band, {from_0, to_1});
+      ir::ValueId inside = b_.op(ir::Opcode::band, {from_0, to_1});
+      if (mode != ir::none)
+        inside = b_.op(ir::Opcode::bor, {inside, b_.op(ir::Opcode::ilt, {mode, b_.constant(constant)})});
       result = b_.op(ir::Opcode::select, {inside, result, otherwise});
     }
     return std::vector{result};

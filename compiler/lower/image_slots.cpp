@@ -40,17 +40,30 @@ ImageSlot slot_of(const check::TypedGraph& graph, uint32_t index) {
   }
   slot.decoding = decoding_of(graph, node);
   slot.samplings = {sampling_of(graph, node)};
-  slot.mips = slot.samplings[0].filter == nodes::Filter::trilinear;
+  slot.mips = check::may_be_trilinear(graph, node);
   return slot;
 }
 
 }  // namespace
 
 Sampling sampling_of(const check::TypedGraph& graph, const check::Node& node) {
-  const std::span<const Operand> operands = graph.operands_of(node);
-  return {static_cast<nodes::Filter>(operands[port::filtertype].index),
-          static_cast<nodes::AddressMode>(operands[port::uaddressmode].index),
-          static_cast<nodes::AddressMode>(operands[port::vaddressmode].index)};
+  // What a port says, or the default of the input that it is linked to.
+  const auto choice = [&](size_t port) {
+    const Operand& operand = graph.operands_of(node)[port];
+    if (operand.from != Operand::From::input) return operand.index;
+    const graph::Input& input = graph.graph.inputs[operand.index];
+    return input.value ? static_cast<uint32_t>(input.value->integer) : 0;
+  };
+  const auto input = [&](size_t port) {
+    const Operand& operand = graph.operands_of(node)[port];
+    return operand.from == Operand::From::input ? operand.index : ir::none;
+  };
+  return {static_cast<nodes::Filter>(choice(port::filtertype)),
+          static_cast<nodes::AddressMode>(choice(port::uaddressmode)),
+          static_cast<nodes::AddressMode>(choice(port::vaddressmode)),
+          input(port::filtertype),
+          input(port::uaddressmode),
+          input(port::vaddressmode)};
 }
 
 ImageSlots image_slots(const check::TypedGraph& graph) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/lower/sampling.h"
 
+#include <optional>
+
 #include "compiler/lower/kernel.h"
 
 namespace isoshade::lower {
@@ -51,9 +53,21 @@ Vec4 texel_at(Samplers& samplers, ir::Builder& b, ir::ValueId texture, Int x, In
   return Vec4(b, b.call(samplers.texel_at(), std::array{texture, x.id(b), y.id(b)})[0]);
 }
 
+/// Where coordinates beyond the texture are read: fixed, or by a number.
+struct Mode {
+  AddressMode fixed{};
+  std::optional<Int> chosen = {};
+
+  Bool is(AddressMode mode) const { return *chosen == Int(static_cast<int>(mode)); }
+};
+
 /// A coordinate brought into [0, 1].
-Float within(AddressMode mode, Float coordinate) {
-  switch (mode) {
+Float within(const Mode& mode, Float coordinate) {
+  if (mode.chosen)
+    return functions::traced::branch(
+        mode.is(AddressMode::periodic), [&] { return wrap(coordinate); },
+        [&] { return select(mode.is(AddressMode::mirror), mirror(coordinate), saturate(coordinate)); });
+  switch (mode.fixed) {
     case AddressMode::periodic: return wrap(coordinate);
     case AddressMode::mirror: return mirror(coordinate);
     case AddressMode::clamp:
@@ -63,7 +77,7 @@ Float within(AddressMode mode, Float coordinate) {
 }
 
 /// The column in which a coordinate lies, or the row.
-Int nearest(AddressMode mode, Float coordinate, Int size) {
+Int nearest(const Mode& mode, Float coordinate, Int size) {
   const Int last = size - Int(1);
   const Int found = to_int(within(mode, coordinate) * to_float(size));  // `size` for 1
   return select(found < last, found, last);
@@ -75,16 +89,24 @@ struct Between {
   Float share;
 };
 
-Between between(Kernel& k, char name, AddressMode mode, Float coordinate, Int size) {
+Between between(Kernel& k, char name, const Mode& mode, Float coordinate, Int size) {
   const Float place = within(mode, coordinate) * to_float(size) - Float(0.5f);  // in [-0.5, size - 0.5]
   const Float whole = floor(place);
   const Int first = to_int(whole);
   const Int second = first + Int(1);
   const Int last = size - Int(1);
-  const bool goes_around = mode == AddressMode::periodic;
   const std::string axis(1, name);
-  return {k.named(axis + "0", select(first < Int(0), goes_around ? last : Int(0), first)),
-          k.named(axis + "1", select(second > last, goes_around ? Int(0) : last, second)),
+  // What lies before the first texel, and after the last.
+  Int before = Int(0), after = last;
+  if (mode.chosen) {
+    before = select(mode.is(AddressMode::periodic), last, Int(0));
+    after = select(mode.is(AddressMode::periodic), Int(0), last);
+  } else if (mode.fixed == AddressMode::periodic) {
+    before = last;
+    after = Int(0);
+  }
+  return {k.named(axis + "0", select(first < Int(0), before, first)),
+          k.named(axis + "1", select(second > last, after, second)),
           k.named(axis + "_share", place - whole)};
 }
 
@@ -93,29 +115,48 @@ std::string mode_text(AddressMode mode) {
   return std::string(names[static_cast<size_t>(mode)]);
 }
 
-/// "sample_linear_clamp", or with the mode of each axis.
-std::string sample_name(const Sampling& sampling) {
+/// Which function of the module samples.
+struct Sampler {
+  Filter filter;
+  AddressMode u, v;
+  bool by_mode;  ///< it takes the modes as arguments
+};
+
+/// "sample_linear_clamp", or with the mode of each axis; "sample_linear_by_mode".
+std::string sample_name(const Sampler& sampling) {
   constexpr std::string_view filters[] = {"closest_", "linear_", "trilinear_"};
   const std::string u = mode_text(sampling.u), v = mode_text(sampling.v);
-  return names::sample_prefix + std::string(filters[static_cast<size_t>(sampling.filter)]) + u +
-         (u == v ? "" : "_" + v);
+  const std::string modes = sampling.by_mode ? "by_mode" : u + (u == v ? "" : "_" + v);
+  return names::sample_prefix + std::string(filters[static_cast<size_t>(sampling.filter)]) + modes;
 }
 
-std::vector<ir::Parameter> sample_parameters() {
-  return {int_parameter("picture"), {"texcoord", ir::vector_type(2), "", false}};
+std::vector<ir::Parameter> sample_parameters(const Sampler& sampling) {
+  std::vector<ir::Parameter> parameters{int_parameter("picture"), {"texcoord", ir::vector_type(2), "", false}};
+  if (!sampling.by_mode) return parameters;
+  parameters.push_back(int_parameter("u_mode"));
+  parameters.push_back(int_parameter("v_mode"));
+  return parameters;
 }
 
-void build_closest(Samplers& samplers, Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
+/// The modes of u and v, by the parameters of the kernel.
+std::array<Mode, 2> modes_of(Kernel& k, const Sampler& sampling) {
+  if (!sampling.by_mode) return {Mode{sampling.u}, Mode{sampling.v}};
+  return {Mode{{}, k.integer(2)}, Mode{{}, k.integer(3)}};
+}
+
+void build_closest(Samplers& samplers, Kernel& k, const Sampler& sampling, ir::ValueId texture, Vec2 texcoord) {
   const Size size = size_of(samplers, k.b, texture);
-  const Int x = k.named("x", nearest(sampling.u, texcoord[0], size.width));
-  const Int y = k.named("y", nearest(sampling.v, texcoord[1], size.height));
+  const auto [u, v] = modes_of(k, sampling);
+  const Int x = k.named("x", nearest(u, texcoord[0], size.width));
+  const Int y = k.named("y", nearest(v, texcoord[1], size.height));
   k.b.finish(std::array{texel_at(samplers, k.b, texture, x, y).value});
 }
 
-void build_linear(Samplers& samplers, Kernel& k, const Sampling& sampling, ir::ValueId texture, Vec2 texcoord) {
+void build_linear(Samplers& samplers, Kernel& k, const Sampler& sampling, ir::ValueId texture, Vec2 texcoord) {
   const Size size = size_of(samplers, k.b, texture);
-  const Between x = between(k, 'x', sampling.u, texcoord[0], size.width);
-  const Between y = between(k, 'y', sampling.v, texcoord[1], size.height);
+  const auto [u, v] = modes_of(k, sampling);
+  const Between x = between(k, 'x', u, texcoord[0], size.width);
+  const Between y = between(k, 'y', v, texcoord[1], size.height);
   const auto row = [&](Int at) {
     return mix(texel_at(samplers, k.b, texture, x.first, at), texel_at(samplers, k.b, texture, x.second, at), x.share);
   };
@@ -125,10 +166,10 @@ void build_linear(Samplers& samplers, Kernel& k, const Sampling& sampling, ir::V
 }
 
 /// The function for closest or linear.
-uint32_t sampler(Samplers& samplers, const Sampling& sampling) {
+uint32_t sampler(Samplers& samplers, const Sampler& sampling) {
   const std::string name = sample_name(sampling);
   if (const uint32_t found = samplers.module.find(name); found != ir::none) return found;
-  Kernel k(samplers.module, name, sample_parameters(), {{"color", ir::vector_type(4)}});
+  Kernel k(samplers.module, name, sample_parameters(sampling), {{"color", ir::vector_type(4)}});
   const bool closest = sampling.filter == Filter::closest;
   samplers.note(closest ? interface::Host::sample_closest : interface::Host::sample_linear, k.index);
   (closest ? build_closest : build_linear)(samplers, k, sampling, k.b.parameter(0), Vec2(k.b, k.b.parameter(1)));
@@ -157,19 +198,22 @@ ir::ValueId level_of(Samplers& samplers, ir::Builder& b, ir::ValueId texture, ir
   return b.call(k.index, arguments)[0];
 }
 
-/// sample_trilinear_...(picture, texcoord, level): between the two mip levels around one, in 1/65536.
-uint32_t trilinear_sampler(Samplers& samplers, const Sampling& sampling) {
+/// sample_trilinear_...(picture, texcoord, ..., level): between the two mip levels around one, in 1/65536.
+uint32_t trilinear_sampler(Samplers& samplers, const Sampler& sampling) {
   const std::string name = sample_name(sampling);
   if (const uint32_t found = samplers.module.find(name); found != ir::none) return found;
-  const uint32_t linear = sampler(samplers, {Filter::linear, sampling.u, sampling.v});
-  std::vector<ir::Parameter> parameters = sample_parameters();
+  const uint32_t linear = sampler(samplers, {Filter::linear, sampling.u, sampling.v, sampling.by_mode});
+  std::vector<ir::Parameter> parameters = sample_parameters(sampling);
+  const size_t last = parameters.size();
   parameters.push_back(int_parameter("level"));
   Kernel k(samplers.module, name, std::move(parameters), {{"color", ir::vector_type(4)}});
   samplers.note(interface::Host::sample_trilinear, k.index);
   const auto at = [&](Int texture) {
-    return Vec4(k.b, k.b.call(linear, std::array{texture.value, k.b.parameter(1)})[0]);
+    std::vector<ir::ValueId> arguments{texture.value};
+    for (size_t i = 1; i < last; ++i) arguments.push_back(k.b.parameter(i));
+    return Vec4(k.b, k.b.call(linear, arguments)[0]);
   };
-  const Int level = k.integer(2);
+  const Int level = k.integer(last);
   const Int larger = k.named("larger", k.integer(0) + shift_right(level, Int(16)));
   const Int rest = level & Int(65535);
   const Vec4 fine = k.named("fine", at(larger));
@@ -199,13 +243,40 @@ Vec4 load_texel(Kernel& k, Int first, Int place, Int table) {
 }  // namespace
 
 ir::ValueId sample(ir::Builder& b, interface::Interface& interface, const Sampling& sampling, ir::ValueId texture,
-                   ir::ValueId texcoord) {
+                   ir::ValueId texcoord, const Chosen& chosen) {
   Samplers samplers{b.module(), interface};
-  if (sampling.filter == Filter::trilinear) {
-    const ir::ValueId level = level_of(samplers, b, texture, texcoord);
-    return b.call(trilinear_sampler(samplers, sampling), std::array{texture, texcoord, level})[0];
+  const bool by_mode = chosen.u != ir::none || chosen.v != ir::none;
+  std::vector<ir::ValueId> arguments{texture, texcoord};
+  if (by_mode) {
+    const auto number = [&](ir::ValueId mode, AddressMode fixed) {
+      return mode != ir::none ? mode : b.constant(static_cast<int>(fixed));
+    };
+    arguments.push_back(number(chosen.u, sampling.u));
+    arguments.push_back(number(chosen.v, sampling.v));
   }
-  return b.call(sampler(samplers, sampling), std::array{texture, texcoord})[0];
+  const auto read = [&](Filter filter) {
+    return b.call(sampler(samplers, {filter, sampling.u, sampling.v, by_mode}), arguments)[0];
+  };
+  const auto read_levels = [&](ir::ValueId level) {
+    std::vector<ir::ValueId> all = arguments;
+    all.push_back(level);
+    return b.call(trilinear_sampler(samplers, {Filter::trilinear, sampling.u, sampling.v, by_mode}), all)[0];
+  };
+  if (chosen.filter == ir::none)
+    return sampling.filter == Filter::trilinear ? read_levels(level_of(samplers, b, texture, texcoord))
+                                                : read(sampling.filter);
+  const auto is = [&](Filter filter) {
+    return b.op(ir::Opcode::ieq, {chosen.filter, b.constant(static_cast<int>(filter))});
+  };
+  const auto closest = [&] { return std::vector{read(Filter::closest)}; };
+  const auto interpolated = [&] {
+    if (!chosen.may_be_trilinear) return std::vector{read(Filter::linear)};
+    // At level 0 the larger texture is read alone, as by the linear filter.
+    const ir::ValueId level = level_of(samplers, b, texture, texcoord);
+    return std::vector{
+        read_levels(b.op(ir::Opcode::select, {is(Filter::trilinear), level, b.constant(0)}))};
+  };
+  return b.branch(is(Filter::closest), closest, interpolated).front();
 }
 
 void define_texture_reads(ir::Module& module, const interface::Interface& interface) {

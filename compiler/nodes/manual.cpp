@@ -168,6 +168,7 @@ std::string row_text(const Row& row) {
     std::vector<std::string> choices;
     for (const std::string_view choice : port.choices) choices.push_back("\"" + std::string(choice) + "\"");
     line += choices.empty() ? type_text(port.type) : joined(choices);
+    if (port.takes_input) line += ", or a link to an input with an enum of these names";
     const std::string value = default_text(port);
     if (!value.empty()) line += "; default " + value;
     if (port.required(true)) line += "; required";

@@ -42,6 +42,8 @@ struct Port {
   std::string_view doc;
   Default value = {};
   std::vector<std::string_view> choices = {};  ///< for PortType::Kind::choice
+  /// Of a choice: a link to an integer input may take its place, whose values are called as the first of the choices.
+  bool takes_input = false;
 
   /// `has_surface`: the document is an effect.
   bool required(bool has_surface) const {

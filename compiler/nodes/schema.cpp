@@ -91,7 +91,10 @@ SchemaJson port_schema(const Port& port) {
       for (const Type type : types_in(port.type.accepts)) names.push_back(graph::type_name(type));
       return described(one_of(names), doc);
     }
-    case PortType::Kind::choice: return described(one_of(port.choices), doc);
+    case PortType::Kind::choice:
+      if (port.takes_input)
+        return described(any_of({one_of(port.choices), object_schema({{"link", string_schema(), true}})}), doc);
+      return described(one_of(port.choices), doc);
     case PortType::Kind::component: return described({{"type", "integer"}, {"minimum", 0}}, doc);
     case PortType::Kind::integer: return described({{"type", "integer"}}, doc);
     case PortType::Kind::image: return described(reference("id"), doc);

@@ -174,11 +174,19 @@ class Reflector {
       for (const lower::Sampling& sampling : image.slot.samplings)
         made.samplings.push_back({{Text(words::filters()[static_cast<size_t>(sampling.filter)])},
                                   {Text(words::wraps()[static_cast<size_t>(sampling.u)])},
-                                  {Text(words::wraps()[static_cast<size_t>(sampling.v)])}});
+                                  {Text(words::wraps()[static_cast<size_t>(sampling.v)])},
+                                  parameter_name(sampling.filter_input),
+                                  parameter_name(sampling.u_input),
+                                  parameter_name(sampling.v_input)});
       for (const StructField& field : made_.structs.back().fields)
         if (field.image == image.slot.name) made.field = field.name;
       made_.images.push_back(std::move(made));
     }
+  }
+
+  /// Of an input that chooses how an image is read.
+  std::optional<Text> parameter_name(uint32_t input) const {
+    return input == ir::none ? std::nullopt : std::optional<Text>(graph_.graph.inputs[input].name);
   }
 
   static Decoding decoding(lower::Decoding decoding) {

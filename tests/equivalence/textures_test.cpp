@@ -77,6 +77,37 @@ TEST_F(TextureFiles, ByteAndFloatTexelsAreIdentical) {
   expect_identical(shown, draw_everywhere(floats, "floats"), "bytes and floats");
 }
 
+TEST_F(TextureFiles, ChoicesOfParametersAreThoseOfTheNode) {
+  const auto shown = [&](const std::string& parameters, const std::string& u, const std::string& v,
+                         const std::string& filter) {
+    folder_.write("shown.json", R"({"isoshade": 1, "effect": "shown", "parameters": {)" + parameters + R"json(},
+"nodes": {"at": {"type": "texcoord", "index": 1}, "uv": {"type": "expression", "code": "at * 3 - vector2(1)", "at": "at"},
+"color": )json" + image("p.png", R"("default": 0.25, "uaddressmode": )" + u + R"(, "vaddressmode": )" + v +
+                                 R"(, "filtertype": )" + filter) +
+                                  R"(}, "passes": [{"name": "base", "color": "color"}]})");
+    return plan(folder_.write("scene.json", R"({"isoshade": 1, "scene": "s",
+"camera": {"position": [0, 1, 2], "target": [0, 0, 0]},
+"objects": {"square": {"mesh": "plane", "effect": "shown.json"}}})"),
+                61, 37);
+  };
+  const auto quoted = [](const char* name) { return '"' + std::string(name) + '"'; };
+  const auto parameter = [&](const char* name, const char* names, const char* value) {
+    return quoted(name) + R"(: {"type": "integer", "enum": [)" + names + R"(], "value": )" + quoted(value) + "}";
+  };
+  for (const char* u : {"periodic", "mirror", "constant"})
+    for (const char* v : {"clamp", "periodic"})
+      for (const char* filter : {"closest", "linear", "trilinear"}) {
+        const std::string what = std::string(u) + " " + v + " " + filter;
+        const backends::Image fixed = draw(shown("", quoted(u), quoted(v), quoted(filter)), *interpreter::create());
+        const std::string modes = R"("periodic", "clamp", "mirror", "constant")";
+        const render::Plan chosen =
+            shown(parameter("u", modes.c_str(), u) + ", " + parameter("v", modes.c_str(), v) + ", " +
+                      parameter("f", R"("closest", "linear", "trilinear")", filter),
+                  R"({"link": "u"})", R"({"link": "v"})", R"({"link": "f"})");
+        expect_identical(fixed, draw_everywhere(chosen, what), what);
+      }
+}
+
 TEST_F(TextureFiles, MipLevelsAreIdenticalOnEveryBackend) {
   for (const char* file : {"p.png", "p.exr"}) draw_everywhere(plan_of(mips(file)), file);
 }

@@ -52,6 +52,48 @@ TEST(CheckImage, RejectsCubicFilterAndListsTheFilters) {
   EXPECT_NE(text.find("\"trilinear\""), std::string::npos) << text;
 }
 
+std::string chosen(const std::string& parameter, const std::string& ports) {
+  return R"({"isoshade": 1, "effect": "e", "parameters": {"mode": )" + parameter +
+         R"(, "tint": {"type": "color3", "value": 1}}, "nodes": {"color": {"type": "image", "file": "a.png", )" + ports +
+         R"(}}, "passes": [{"name": "p", "color": "color"}]})";
+}
+
+TEST(CheckImage, ParametersWithTheNamesOfItsChoicesMayChoose) {
+  const std::string modes = R"({"type": "integer", "enum": ["periodic", "clamp"], "value": "clamp"})";
+  FrontEnd front_end;
+  const auto typed = front_end.check(chosen(modes, R"("uaddressmode": {"link": "mode"})"));
+  ASSERT_NE(typed, nullptr) << front_end.diagnostics.text();
+  const lower::Sampling sampling = lower::image_slots(*typed).slots.at(0).samplings.at(0);
+  EXPECT_EQ(sampling.u, nodes::AddressMode::clamp);
+  EXPECT_EQ(sampling.u_input, 0u);
+  EXPECT_EQ(sampling.v_input, ir::none);
+  EXPECT_EQ(sampling.filter_input, ir::none);
+  const std::string wrong = "takes a link only to a parameter with an \"enum\" of its choices";
+  for (const char* parameter :
+       {R"({"type": "integer", "enum": ["clamp", "periodic"], "value": 0})", R"({"type": "integer", "value": 0})",
+        R"({"type": "float", "value": 0})",
+        R"({"type": "integer", "enum": ["periodic", "clamp", "mirror", "constant", "more"], "value": 0})"})
+    EXPECT_NE(messages_of(chosen(parameter, R"("vaddressmode": {"link": "mode"})")).find(wrong), std::string::npos)
+        << parameter;
+  EXPECT_NE(messages_of(chosen(modes, R"("filtertype": {"link": "mode"})")).find(wrong), std::string::npos);
+  EXPECT_NE(messages_of(chosen(modes, R"("filtertype": {"link": "tint"})")).find(wrong), std::string::npos);
+  EXPECT_NE(messages_of(chosen(modes, R"("filtertype": {"link": "none"})")).find("error[unknown-node]"),
+            std::string::npos);
+  EXPECT_NE(messages_of(chosen(modes, R"("colorspace": {"link": "mode"})")).find("error[not-literal]"),
+            std::string::npos);
+}
+
+TEST(CheckImage, FiltersThatMayBecomeTrilinearNeedMipLevels) {
+  FrontEnd front_end;
+  for (const bool mips : {false, true}) {
+    const std::string filters = mips ? R"("closest", "linear", "trilinear")" : R"("closest", "linear")";
+    const auto typed = front_end.check(chosen(R"({"type": "integer", "enum": [)" + filters + R"(], "value": 0})",
+                                              R"("filtertype": {"link": "mode"})"));
+    ASSERT_NE(typed, nullptr) << front_end.diagnostics.text();
+    EXPECT_EQ(lower::image_slots(*typed).slots.at(0).mips, mips);
+  }
+}
+
 TEST(CheckImage, RejectsImagesInFunctions) {
   EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "inputs": {"uv": {"type": "vector2"}},
     "nodes": {"i": {"type": "image", "file": "a.png", "texcoord": "uv"}}, "outputs": {"out": "i"}})")

@@ -42,15 +42,20 @@ class Picture {
     return texels_[(channel == 3 ? 0 : static_cast<size_t>(table_)) + byte];
   }
 
-  std::vector<float> sample(const lower::Sampling& sampling, float u, float v) const {
+  /// `chosen`: the same by numbers that are known only when it runs.
+  std::vector<float> sample(const lower::Sampling& sampling, float u, float v, bool chosen = false) const {
     ir::Module module = lower::frame_module();
     ir::Function& function = module.functions.emplace_back();
     function.name = "probe";
     function.parameters = {{"texture", ir::int_type, "", false}, {"texcoord", ir::vector_type(2), "", false}};
+    for (const char* name : {"filter", "u_mode", "v_mode"})
+      if (chosen) function.parameters.push_back({name, ir::int_type, "", false});
     function.results = {{"color", ir::vector_type(4)}};
     ir::Builder b(module, 0);
     interface::Interface interface;
-    b.finish(std::array{lower::sample(b, interface, sampling, b.parameter(0), b.parameter(1))});
+    lower::Chosen numbers;
+    if (chosen) numbers = {b.parameter(2), b.parameter(3), b.parameter(4), false};
+    b.finish(std::array{lower::sample(b, interface, sampling, b.parameter(0), b.parameter(1), numbers)});
     lower::define_texture_reads(module, interface);
     functions::expand(module);
     ir::Interpreter interpreter(module);
@@ -59,7 +64,11 @@ class Picture {
     interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::texels), texels);
     interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::texel_bytes), bytes_);
     interpreter.bind(static_cast<uint32_t>(lower::FrameBuffer::textures), records);
-    const std::array arguments{uint32_t{1}, std::bit_cast<uint32_t>(u), std::bit_cast<uint32_t>(v)};
+    std::vector<uint32_t> arguments{1, std::bit_cast<uint32_t>(u), std::bit_cast<uint32_t>(v)};
+    if (chosen)
+      for (const uint32_t number : {static_cast<uint32_t>(sampling.filter), static_cast<uint32_t>(sampling.u),
+                                    static_cast<uint32_t>(sampling.v)})
+        arguments.push_back(number);
     std::array<uint32_t, 4> results{};
     interpreter.run(0, arguments, results);
     EXPECT_EQ(interpreter.breaches(), 0u) << u << " " << v;
@@ -167,6 +176,19 @@ TEST(Sampling, LinearIsExactAtTexelCentres) {
         EXPECT_EQ(picture.sample({Filter::linear, mode, mode}, (x + 0.5f) / 8, (y + 0.5f) / 4)[2],
                   picture.texel(x, y, 2));
   }
+}
+
+TEST(Sampling, ChoicesByNumberHaveTheBitsOfFixedOnes) {
+  const Picture picture(5, 3);
+  for (const Filter filter : {Filter::closest, Filter::linear})
+    for (const AddressMode u_mode : {AddressMode::periodic, AddressMode::clamp, AddressMode::mirror, AddressMode::constant})
+      for (const AddressMode v_mode : modes)
+        for (const float u : coordinates()) {
+          const lower::Sampling sampling{filter, u_mode, v_mode};
+          const auto fixed = picture.sample(sampling, u, 0.3f - u), chosen = picture.sample(sampling, u, 0.3f - u, true);
+          for (size_t c = 0; c < 4; ++c)
+            ASSERT_EQ(std::bit_cast<uint32_t>(chosen[c]), std::bit_cast<uint32_t>(fixed[c])) << u;
+        }
 }
 
 TEST(Sampling, AxesHaveIndependentAddressModes) {

@@ -123,6 +123,23 @@ TEST(Reflect, ListsTheWaysInWhichAnImageIsRead) {
   EXPECT_EQ(map.samplings[1].v.text, "periodic");
 }
 
+TEST(Reflect, NamesTheParametersThatChooseHowAnImageIsRead) {
+  const Reflection made = reflection_of(R"({"isoshade": 1, "effect": "e", "parameters": {
+    "wrap": {"type": "integer", "enum": ["periodic", "clamp"], "value": "clamp"},
+    "filter": {"type": "integer", "enum": ["closest", "linear"], "value": "closest"}},
+    "nodes": {"map": {"type": "image", "file": "a.png", "vaddressmode": {"link": "wrap"}, "filtertype": {"link": "filter"}}},
+    "passes": [{"name": "base", "color": "map"}]})");
+  ASSERT_EQ(made.images.size(), 1u);
+  ASSERT_EQ(made.images[0].samplings.size(), 1u);
+  const Sampling& sampling = made.images[0].samplings[0];
+  EXPECT_EQ(sampling.filter.text, "closest");
+  EXPECT_EQ(sampling.u.text, "periodic");
+  EXPECT_EQ(sampling.v.text, "clamp");
+  EXPECT_EQ(sampling.filter_parameter, "filter");
+  EXPECT_EQ(sampling.u_parameter, std::nullopt);
+  EXPECT_EQ(sampling.v_parameter, "wrap");
+}
+
 TEST(Reflect, SaysOfEveryPassWhatItsFunctionsReadAndAsk) {
   const Reflection made = reflection_of(fur);
   EXPECT_TRUE(made.lights);

@@ -361,11 +361,13 @@ class Pair {
     return out + "\n";
   }
 
-  /// `vec4 sample_linear_clamp(int picture, vec2 texcoord)`; with a third parameter: the level, in 1/65536.
+  /// `vec4 sample_linear_clamp(int picture, vec2 texcoord)`, which may take further integers; `level` is in 1/65536.
   std::string sampler(const ir::Function& function) const {
-    const bool has_level = function.parameters.size() > 2;
+    const bool has_level = function.parameters.back().name == "level";
+    std::string rest;
+    for (size_t i = 2; i < function.parameters.size(); ++i) rest += ", int " + function.parameters[i].name;
     const std::string level = has_level ? "float(level) / 65536.0" : "float(picture % " + number(levels) + ")";
-    return "vec4 " + prefixed(function.name) + "(int picture, vec2 texcoord" + (has_level ? ", int level" : "") + ") {\n" +
+    return "vec4 " + prefixed(function.name) + "(int picture, vec2 texcoord" + rest + ") {\n" +
            choose("isoshade_image", program_.images.size(), "picture / " + number(levels), "vec4(0.0)",
                   [&](const std::string& image) { return "textureLod(" + image + ", texcoord, " + level + ")"; });
   }
