@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the images in graphs/textures that are not rendered from graphs. Needs only Python.
+"""Writes the images in graphs/textures that are not rendered from graphs, and a glTF file with boards that show one of
+them. Needs only Python.
 
     scripts/textures.py graphs/textures
 """
+import base64
+import json
 import os
 import struct
 import sys
@@ -54,7 +57,91 @@ def leaf(x, y):
     return [90, 170 - 3 * y, 60, max(0, min(255, int(255 * (0.45 - distance) * 8 + 0.5)))]
 
 
+REPEAT, CLAMP, MIRROR = 10497, 33071, 33648
+NEAREST, LINEAR, LEVELS = 9728, 9729, 9987
+
+
+def boards(path):
+    """Eight boards, 1 wide, in two rows, each with a material that reads uv_grid.png in another way. Their first texture
+    coordinates run from -0.5 to 1.5, their second from 0 to 1, upside down."""
+    textures, samplers = [], []
+
+    def texture(wrap_u=REPEAT, wrap_v=REPEAT, larger=LINEAR, smaller=LEVELS, set=0, **transform):
+        samplers.append({"wrapS": wrap_u, "wrapT": wrap_v, "magFilter": larger, "minFilter": smaller})
+        textures.append({"source": 0, "sampler": len(samplers) - 1})
+        info = {"index": len(textures) - 1, "texCoord": set}
+        if transform:
+            info["extensions"] = {"KHR_texture_transform": transform}
+        return info
+
+    def material(name, info, **more):
+        return {"name": name, "pbrMetallicRoughness": {"baseColorTexture": info, "metallicFactor": 0}, **more}
+
+    glow = {
+        "name": "emissive strength",
+        "pbrMetallicRoughness": {"baseColorFactor": [0.02, 0.02, 0.02, 1], "metallicFactor": 0},
+        "emissiveFactor": [1, 0.5, 0.2],
+        "emissiveTexture": texture(offset=[0.25, 0.25], scale=[0.5, 0.5]),
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2.5}},
+    }
+    materials = [
+        material("repeated", texture()),
+        material("clamped", texture(CLAMP, CLAMP)),
+        material("mirrored and clamped", texture(MIRROR, CLAMP)),
+        material("nearest texels", texture(larger=NEAREST, offset=[0.02, 0.02], scale=[0.12, 0.12])),
+        material("turned", texture(CLAMP, MIRROR, rotation=0.5, offset=[-0.1, 0.4], scale=[1.2, 0.8])),
+        material("second texture coordinates", texture(set=1)),
+        material("unlit", texture(smaller=LINEAR, set=1), extensions={"KHR_materials_unlit": {}}),
+        glow,
+    ]
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    columns = [
+        ("VEC3", [(x, y, 0) for x, y in corners]),
+        ("VEC3", [(0, 0, 1)] * 4),
+        ("VEC2", [(2 * x - 0.5, 1.5 - 2 * y) for x, y in corners]),
+        ("VEC2", [(x, y) for x, y in corners]),
+    ]
+    data, views, accessors = b"", [], []
+    for kind, values in columns:
+        packed = b"".join(struct.pack("<%df" % len(value), *value) for value in values)
+        accessors.append({"bufferView": len(views), "componentType": 5126, "count": 4, "type": kind})
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
+        data += packed
+    accessors[0].update({"min": [0, 0, 0], "max": [1, 1, 0]})
+    accessors.append({"bufferView": len(views), "componentType": 5123, "count": 6, "type": "SCALAR"})
+    views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 12})
+    data += struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    attributes = {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "TEXCOORD_1": 3}
+    count = len(materials)
+    used = ["KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_texture_transform"]
+    gltf = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": used,
+        "extensionsRequired": used,
+        "scene": 0,
+        "scenes": [{"nodes": list(range(count))}],
+        "nodes": [{"mesh": i, "translation": [1.15 * (i % 4), -1.15 * (i // 4), 0]} for i in range(count)],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": 4, "material": i}]} for i in range(count)],
+        "materials": materials,
+        "textures": textures,
+        "samplers": samplers,
+        "images": [{"uri": "uv_grid.png"}],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [
+            {
+                "byteLength": len(data),
+                "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode(),
+            }
+        ],
+    }
+    with open(path, "w") as file:
+        json.dump(gltf, file, indent=1)
+        file.write("\n")
+
+
 folder = sys.argv[1]
 png(os.path.join(folder, "toon_ramp.png"), 64, 4, toon_ramp, 1)
 png(os.path.join(folder, "uv_grid.png"), 128, 128, uv_grid, 3)
 png(os.path.join(folder, "leaf.png"), 33, 17, leaf, 4)
+boards(os.path.join(folder, "boards.gltf"))

@@ -103,14 +103,16 @@ void store(Type type, const std::vector<std::string>& names, const Literal& lite
   }
 }
 
-/// Stores a factor of a material, held in the range of the field that takes it, if the block has such a field.
-void store_factor(const driver::ParameterBlock& block, std::string_view name, std::span<const float> factor,
+/// Stores a factor of a material, held in the range of the field that takes it, if the block has such a field. Integers
+/// and booleans take it if it is `whole`.
+void store_factor(const driver::ParameterBlock& block, std::string_view name, std::span<const float> factor, bool whole,
                   std::vector<float>& words) {
   const auto number = block.find(name);
   if (!number) return;
   const driver::Field& field = block.fields[*number];
   const Type type = driver::type_of(field);
-  const auto count = static_cast<size_t>(type == Type::boolean ? 1 : graph::float_count(type));
+  const bool takes_whole = type == Type::boolean || type == Type::integer;
+  const size_t count = takes_whole ? (whole ? 1 : 0) : static_cast<size_t>(std::max(graph::float_count(type), 0));
   const bool takes_it = factor.size() == 1 ? count == 1 : count == 3 || count == factor.size();
   if (!takes_it) return;
   for (size_t i = 0; i < count; ++i) {
@@ -119,6 +121,15 @@ void store_factor(const driver::ParameterBlock& block, std::string_view name, st
     if (field.max) value = std::min(value, *field.max);
     words[block.word_of(*number) + i] = value;
   }
+}
+
+/// Stores the value with this name, if the block has such a field and the field such a value.
+void store_name(const driver::ParameterBlock& block, std::string_view parameter, std::string_view name,
+                std::vector<float>& words) {
+  const auto number = block.find(parameter);
+  if (!number) return;
+  if (const auto value = graph::named_value(block.fields[*number].names, name))
+    words[block.word_of(*number)] = static_cast<float>(value->integer);
 }
 
 /// Paths are relative to the document that gives them.
@@ -154,18 +165,20 @@ class ParameterValues::Resolver {
   void take_factors() {
     const scene::Material* const material = giver_.material;
     if (material == nullptr) return;
-    const auto store = [&](std::string_view name, std::span<const float> factor) {
-      store_factor(block_, name, factor, values_.common_);
+    const auto store = [&](std::string_view name, std::span<const float> factor, bool whole = false) {
+      store_factor(block_, name, factor, whole, values_.common_);
     };
     store("base_color", material->base_color);
     store("alpha", std::array{material->alpha});
     store("alpha_cutoff", std::array{material->alpha_cutoff});
-    store("double_sided", std::array{material->double_sided ? 1.0f : 0.0f});
+    store("double_sided", std::array{material->double_sided ? 1.0f : 0.0f}, true);
     store("metallic", std::array{material->metallic});
     store("roughness", std::array{material->roughness});
     store("emissive_color", material->emissive_color);
     store("normal_scale", std::array{material->normal_scale});
     store("occlusion_strength", std::array{material->occlusion_strength});
+    for (const auto& [name, value] : material->values) store(name, value, true);
+    for (const auto& [parameter, name] : material->names) store_name(block_, parameter, name, values_.common_);
   }
 
   void take_parameters() {

@@ -14,12 +14,7 @@ using support::quote;
 namespace {
 
 bool is_blend(const Json& value) { return value.string == "BLEND"; }
-bool is_not_zero(const Json& value) { return value.number != 0; }
-/// NEAREST, NEAREST_MIPMAP_NEAREST, NEAREST_MIPMAP_LINEAR.
-bool is_nearest(const Json& value) {
-  return value.number == 9728 || value.number == 9984 || value.number == 9986;
-}
-bool is_not_repeat(const Json& value) { return value.number != 10497; }
+bool is_beyond_1(const Json& value) { return value.number > 1; }
 bool is_point_or_line(const Json& value) { return value.number < 4; }
 bool is_given(const Json& value) { return value.kind != Json::Kind::array || !value.items.empty(); }
 
@@ -29,18 +24,25 @@ struct Feature {
   std::string_view name;
   bool (*asks)(const Json& value);
 };
+constexpr std::string_view texcoords = "texture coordinates beyond the second set", skins = "skins";
 constexpr Feature features[] = {
     {"alphaMode", "the alpha mode BLEND", is_blend},
-    {"texCoord", "texture coordinates beyond the first set", is_not_zero},
-    {"magFilter", "nearest filtering of samplers", is_nearest},
-    {"minFilter", "nearest filtering of samplers", is_nearest},
-    {"wrapS", "wrap modes of samplers other than REPEAT", is_not_repeat},
-    {"wrapT", "wrap modes of samplers other than REPEAT", is_not_repeat},
+    {"texCoord", texcoords, is_beyond_1},
     {"mode", "points and lines", is_point_or_line},
-    {"skin", "skins", is_given},
+    {"skin", skins, is_given},
     {"targets", "morph targets", is_given},
     {"animations", "animations", is_given},
+    {"cameras", "cameras", is_given},
 };
+
+/// What a vertex attribute belongs to, if it is not read. Those whose names begin with an underscore are a program's own
+/// and show nothing.
+std::string_view ignored_attribute(std::string_view name) {
+  const auto is_set = [&](std::string_view stem) { return name.starts_with(stem); };
+  if (is_set("TEXCOORD_")) return name == "TEXCOORD_0" || name == "TEXCOORD_1" ? "" : texcoords;
+  if (is_set("COLOR_")) return name == "COLOR_0" ? "" : "vertex colours beyond the first set";
+  return is_set("JOINTS_") || is_set("WEIGHTS_") ? skins : "";
+}
 
 class Warner {
  public:
@@ -53,10 +55,18 @@ class Warner {
     for (const graph::Member& member : value.members) {
       if (member.key == "extras") continue;
       if (member.key == "extensions") {
-        for (const graph::Member& extension : member.value.members)
-          warn("the extension " + quote(extension.key), extension.value);
+        for (const graph::Member& extension : member.value.members) {
+          if (is_read_extension(extension.key))
+            walk(extension.value);
+          else
+            warn_extension(extension.key, extension.value);
+        }
         continue;
       }
+      if (member.key == "attributes")
+        for (const graph::Member& attribute : member.value.members)
+          if (const std::string_view name = ignored_attribute(attribute.key); !name.empty())
+            warn(std::string(name), attribute.value);
       for (const Feature& feature : features)
         if (member.key == feature.key && feature.asks(member.value))
           warn(std::string(feature.name), member.value);
@@ -64,7 +74,14 @@ class Warner {
     }
   }
 
+  /// Those that a file only lists.
+  void walk_list(const Json& names) {
+    for (const Json& name : names.items)
+      if (!is_read_extension(name.string)) warn_extension(name.string, name);
+  }
+
  private:
+  void warn_extension(const std::string& name, const Json& value) { warn("the extension " + quote(name), value); }
   void warn(const std::string& name, const Json& value) {
     if (!warned_.insert(name).second) return;
     diagnostics_.report(support::Id::ignored_feature, where_,
@@ -83,7 +100,9 @@ class Warner {
 
 void warn_ignored(const graph::Document& document, const std::string& path, const support::Span& where,
                   support::Diagnostics& diagnostics) {
-  Warner(document, path, where, diagnostics).walk(document.root);
+  Warner warner(document, path, where, diagnostics);
+  warner.walk(document.root);
+  if (const Json* used = document.root.find("extensionsUsed")) warner.walk_list(*used);
 }
 
 }  // namespace isoshade::scene

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -23,8 +24,9 @@ uint32_t word_at(const std::string& bytes, size_t at) {
 bool is_index(std::string_view key) {
   static constexpr std::string_view keys[] = {
       "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "children",
-      "componentType", "count",      "index",      "indices",    "material",   "mesh",
-      "mode",          "nodes",      "scene",      "source",     "texCoord"};
+      "componentType", "count",      "index",      "indices",    "magFilter",  "material",
+      "mesh",          "minFilter",  "mode",       "nodes",      "sampler",    "scene",
+      "source",        "texCoord",   "wrapS",      "wrapT"};
   return std::ranges::find(keys, key) != std::end(keys);
 }
 
@@ -53,12 +55,39 @@ bool check_quantity(const graph::Document& document, const Json& value, Refusal&
                                             std::string(graph::kind_name(wrong->kind)) + ", not a number");
 }
 
+bool check_limited(const graph::Document& document, const Json& value, Refusal& refusal) {
+  constexpr double limit = 1e6;
+  if (value.kind == Json::Kind::number && std::abs(value.number) <= limit) return true;
+  return refusal.refuse(graph::pointer_at(document, value.begin) + " is not a number from -1e6 to 1e6");
+}
+
+/// Checks the extensions that are read.
+bool check_extensions(const graph::Document& document, const Json& extensions, Refusal& refusal) {
+  for (const graph::Member& extension : extensions.members) {
+    if (!is_read_extension(extension.key)) continue;
+    for (const auto& [key, key_begin, key_end, value] : extension.value.members) {
+      if (key == "texCoord" && !check_index(document, value, refusal)) return false;
+      if ((key == "rotation" || key == "emissiveStrength") && !check_limited(document, value, refusal)) return false;
+      if (key != "offset" && key != "scale") continue;
+      if (value.items.size() != 2)
+        return refusal.refuse(graph::pointer_at(document, value.begin) + " is not an array of two numbers");
+      for (const Json& item : value.items)
+        if (!check_limited(document, item, refusal)) return false;
+    }
+  }
+  return true;
+}
+
 /// Checks everything below `value`; with `attributes`, all of its members are indices.
 bool check_indices(const graph::Document& document, const Json& value, bool attributes, Refusal& refusal) {
   for (const Json& item : value.items)
     if (!check_indices(document, item, false, refusal)) return false;
   for (const auto& [key, key_begin, key_end, member] : value.members) {
-    if (key == "extensions" || key == "extras") continue;
+    if (key == "extras") continue;
+    if (key == "extensions") {
+      if (!check_extensions(document, member, refusal)) return false;
+      continue;
+    }
     const bool nested = member.kind == Json::Kind::object || member.kind == Json::Kind::array;
     if ((attributes || is_index(key)) && !nested && !check_index(document, member, refusal)) return false;
     if (is_quantity(key) && !check_quantity(document, member, refusal)) return false;
@@ -142,9 +171,9 @@ bool check_json(const graph::Document& document, Refusal& refusal) {
   if (bytes > static_cast<double>(max_gltf_bytes))
     return refusal.refuse("its buffers have more than " + std::to_string(max_gltf_bytes >> 20) + " MiB");
   if (const Json* required = document.root.find("extensionsRequired")) {
-    for (const Json& extension : required->items)
-      return refusal.refuse("it requires the extension " + quote(extension.string) +
-                            ", and isoshade reads no extensions");
+    for (const Json& name : required->items)
+      if (!is_read_extension(name.string))
+        return refusal.refuse("it requires the extension " + quote(name.string) + ", which isoshade does not read");
   }
   return check_indices(document, document.root, false, refusal);
 }

@@ -20,7 +20,7 @@ constexpr float max_coordinate = 1e9f;  ///< keeps all matrices finite, as forma
 /// The vertex attributes of a primitive; empty if it does not have the attribute.
 struct Attributes {
   size_t count = 0;
-  std::vector<float> positions, normals, texcoords, tangents, colors;
+  std::vector<float> positions, normals, texcoords, texcoords1, tangents, colors;
   int color_width = 0;
 };
 
@@ -189,6 +189,7 @@ bool Builder::read_attributes(const tinygltf::Primitive& primitive, Attributes& 
   attributes.color_width = components_of(model_, find("COLOR_0")) == 3 ? 3 : 4;
   return read("POSITION", 3, false, attributes.positions) && read("NORMAL", 3, false, attributes.normals) &&
          read("TEXCOORD_0", 2, true, attributes.texcoords) &&
+         read("TEXCOORD_1", 2, true, attributes.texcoords1) &&
          read("TANGENT", 4, false, attributes.tangents) &&
          read("COLOR_0", attributes.color_width, true, attributes.colors);
 }
@@ -248,6 +249,7 @@ bool Builder::place_vertex(const Attributes& attributes, size_t i, Mesh& mesh) {
   add_vertex(mesh, glm::vec3(position), normal, texcoord.x, texcoord.y, tangent);
   float* record = &mesh.vertices[mesh.vertices.size() - word::stride];
   record[word::tangent + 3] = sign;
+  if (!attributes.texcoords1.empty()) std::copy_n(&attributes.texcoords1[2 * i], 2, record + word::texcoord1);
   if (attributes.colors.empty()) return true;
   for (int c = 0; c < attributes.color_width; ++c) {
     const auto at = i * static_cast<size_t>(attributes.color_width) + static_cast<size_t>(c);
@@ -302,7 +304,8 @@ bool Builder::add_primitive(const tinygltf::Primitive& primitive) {
   for (size_t i = 0; i < corners.size(); ++i)
     mesh.indices.push_back(static_cast<uint32_t>(first) + (flat ? static_cast<uint32_t>(i) : corners[i]));
   if (flat) make_flat(mesh, first_index);
-  if (attributes.tangents.empty()) add_tangents(mesh, first, first_index);
+  if (attributes.tangents.empty())
+    add_tangents(mesh, first, first_index, normal_texcoord_set(model_, primitive.material));
   return true;
 }
 

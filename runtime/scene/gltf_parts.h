@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tiny_gltf.h>
 #include <vector>
 
@@ -41,9 +42,20 @@ class Refusal {
 std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal);
 bool is_binary(const std::string& bytes);
 
+/// The extensions that are read.
+namespace extension {
+inline constexpr const char* texture_transform = "KHR_texture_transform";
+inline constexpr const char* emissive_strength = "KHR_materials_emissive_strength";
+inline constexpr const char* unlit = "KHR_materials_unlit";
+}  // namespace extension
+inline bool is_read_extension(std::string_view name) {
+  return name == extension::texture_transform || name == extension::emissive_strength || name == extension::unlit;
+}
+
 /// Checks the text before tinygltf reads it: JSON, not nested so deep that tinygltf crashes; glTF 2; limited total size
-/// of the buffers; no required extensions, as none is read; each image has a source; indices are integers and numbers
-/// are numbers: tinygltf truncates integers to 32 bits and ignores values of the wrong type.
+/// of the buffers; no required extensions but those that are read; each image has a source; indices are integers and
+/// numbers are numbers, those of extensions within 1e6 of 0: tinygltf truncates integers to 32 bits and ignores values
+/// of the wrong type.
 bool check_json(const graph::Document& document, Refusal& refusal);
 
 /// Warns once about each feature and extension that the file uses and isoshade does not read. `where` names the file.
@@ -80,12 +92,15 @@ struct ImageBytes {
 /// Reads an image that exists, or refuses the file.
 std::optional<MaterialImage> read_gltf_image(const tinygltf::Model& model, int image, ImageBytes& images,
                                              Refusal& refusal);
-/// Reads a material that exists. Refuses textures without an image. The caller holds lanes::FpGuard.
+/// Reads a material that exists. Refuses textures without an image, and samplers that do not exist. The caller holds lanes::FpGuard.
 Material read_material(const tinygltf::Model& model, int material, ImageBytes& images, Refusal& refusal);
+/// The set of texture coordinates of the normal texture of a material, 0 or 1: tangents run along its u. A negative
+/// number is no material.
+int normal_texcoord_set(const tinygltf::Model& model, int material);
 
-/// Computes tangents along u for the vertices from `first` on, which the triangles from index `first_index` on use. A
-/// vertex where u has no direction gets some tangent perpendicular to its normal.
-void add_tangents(Mesh& mesh, int64_t first, size_t first_index);
+/// Computes tangents along the u of a set of texture coordinates for the vertices from `first` on, which the triangles
+/// from index `first_index` on use. A vertex where u has no direction gets some tangent perpendicular to its normal.
+void add_tangents(Mesh& mesh, int64_t first, size_t first_index, int set);
 /// Returns some unit vector perpendicular to `normal`.
 glm::vec3 perpendicular_to(const glm::vec3& normal);
 

@@ -59,6 +59,8 @@ glm::mat<N, N, float> to_glm(const functions::mat<float, N>& a) {
 
 }  // namespace
 
+SinCos sin_cos_of_radians(float radians) { return {functions::sin(radians), functions::cos(radians)}; }
+
 SinCos sin_cos_of_turn(int64_t part, int64_t whole) {
   // Counted in eighths of `whole`, so that everything but the angle is an integer.
   const int64_t quarters = (8 * part + whole) / (2 * whole);

@@ -20,6 +20,8 @@ SinCos sin_cos_of_turn(int64_t part, int64_t whole);
 /// |degrees| <= max_degrees. Exact at multiples of 90.
 SinCos sin_cos_of_degrees(float degrees);
 inline constexpr float max_degrees = 3600;
+/// For all finite numbers.
+SinCos sin_cos_of_radians(float radians);
 
 // GLM provides the types of matrices and vectors; the function library computes with them, in its order.
 

@@ -22,8 +22,9 @@ inline constexpr size_t max_gltf_parts = 4096;
 
 /// The triangles of the file's scene (its default one, else its first, else all nodes) as one mesh, in the space
 /// of the scene: transforms of nodes are computed into positions, normals and tangents. Each vertex has what the
-/// file gives: position, normal, first texture coordinates, tangent, first colours. Without normals faces are
-/// flat; without tangents they are found from the texture coordinates; colours are white. Outline normals know
+/// file gives: position, normal, two sets of texture coordinates, tangent, first colours. Without normals faces are
+/// flat; without tangents they are found from the texture coordinates of the normal texture; without a second set the
+/// first is repeated; colours are white. Outline normals know
 /// no parts. Materials come in the order in which their first triangles do, and the triangles of each in theirs.
 ///
 /// `path` ends in .gltf or .glb; its buffers lie in the file or below its folder. Reports a file that is missing

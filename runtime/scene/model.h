@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/support/diagnostics.h"
@@ -36,6 +37,12 @@ struct Material {
   /// By the parameter that takes the image: base_color_texture, metallic_roughness_texture (green: perceptual
   /// roughness, blue: metallic), normal_texture, occlusion_texture, emissive_texture.
   std::map<std::string, MaterialImage> textures;
+  /// Further values, by parameter. `unlit`: 1 where the base colour alone is shown. Of a texture T: `T_set`, its set of
+  /// texture coordinates, and `T_u` and `T_v`: what is multiplied by (u, v, 1) and gives where the texture is read.
+  std::map<std::string, std::vector<float>> values;
+  /// The names of values of parameters. Of a texture T: `T_wrap_u` and `T_wrap_v` (periodic, clamp, mirror) and
+  /// `T_filter` (closest, linear, trilinear).
+  std::map<std::string, std::string_view> names;
 };
 
 /// All triangles of one material, and the vertices that only they refer to.

@@ -18,12 +18,12 @@ struct Gradients {
 
 glm::vec3 vector_at(const float* vertex, int at) { return {vertex[at], vertex[at + 1], vertex[at + 2]}; }
 
-/// For a triangle; zeros if it has no area in the texture.
-Gradients gradients_of(const float* a, const float* b, const float* c) {
+/// For a triangle; zeros if it has no area in the texture. `texcoord_word`: of the set of texture coordinates.
+Gradients gradients_of(const float* a, const float* b, const float* c, int texcoord_word) {
   const glm::vec3 origin = vector_at(a, word::position);
   const glm::vec3 e1 = vector_at(b, word::position) - origin, e2 = vector_at(c, word::position) - origin;
-  const auto texcoord = [](const float* vertex) {
-    return glm::vec2(vertex[word::texcoord], vertex[word::texcoord + 1]);
+  const auto texcoord = [&](const float* vertex) {
+    return glm::vec2(vertex[texcoord_word], vertex[texcoord_word + 1]);
   };
   const glm::vec2 d1 = texcoord(b) - texcoord(a), d2 = texcoord(c) - texcoord(a);
   const float area = d1.x * d2.y - d2.x * d1.y;
@@ -44,13 +44,14 @@ glm::vec3 perpendicular_to(const glm::vec3& normal) {
   return result == glm::vec3(0) ? glm::vec3(1, 0, 0) : result;
 }
 
-void add_tangents(Mesh& mesh, int64_t first, size_t first_index) {
+void add_tangents(Mesh& mesh, int64_t first, size_t first_index, int set) {
+  const int texcoord_word = set == 0 ? word::texcoord : word::texcoord1;
   std::vector<Gradients> sums(static_cast<size_t>(mesh.vertices.size() / word::stride) -
                               static_cast<size_t>(first));
   const auto record = [&](size_t vertex) { return &mesh.vertices[vertex * word::stride]; };
   for (size_t t = first_index; t + 2 < mesh.indices.size(); t += 3) {
     const uint32_t* corners = &mesh.indices[t];
-    const Gradients own = gradients_of(record(corners[0]), record(corners[1]), record(corners[2]));
+    const Gradients own = gradients_of(record(corners[0]), record(corners[1]), record(corners[2]), texcoord_word);
     for (int i = 0; i < 3; ++i) {
       Gradients& sum = sums[corners[i] - static_cast<size_t>(first)];
       sum.along_u += own.along_u;

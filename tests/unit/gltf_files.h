@@ -56,8 +56,9 @@ inline std::string glb(std::string json, const std::string& data) {
          word(data.size()) + std::string("BIN\0", 4) + data;
 }
 
-/// A .glb of the square, with an image as its base colour.
-inline std::string textured_glb(const std::string& image) {
+/// A .glb of the square, with an image as its base colour, and what refers to it and samples it.
+inline std::string textured_glb(const std::string& image, const std::string& reference = R"({"index": 0})",
+                                const std::string& sampler = "{}") {
   std::string json = square_json();
   const auto replace = [&](const std::string& from, const std::string& to) {
     json.replace(json.find(from), from.size(), to);
@@ -65,8 +66,8 @@ inline std::string textured_glb(const std::string& image) {
   std::string data = square_data() + image;
   data.resize((data.size() + 3) / 4 * 4);
   replace(R"("roughnessFactor": 0.5}})",
-          R"("roughnessFactor": 0.5, "baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}],
-"images": [{"mimeType": "image/png", "bufferView": 2})");
+          R"("roughnessFactor": 0.5, "baseColorTexture": )" + reference + R"(}}], "textures": [{"source": 0, "sampler": 0}],
+"samplers": [)" + sampler + R"(], "images": [{"mimeType": "image/png", "bufferView": 2})");
   replace(R"("byteLength": 12})", R"("byteLength": 12},
 {"buffer": 0, "byteOffset": 156, "byteLength": )" +
                                       std::to_string(image.size()) + "}");

@@ -186,6 +186,41 @@ TEST_F(Textures, ColoursOfAGltfAreSrgbAtAnyBitDepth) {
   EXPECT_EQ(shown(deep, R"("base_color_texture": "deep.png")")[0], static_cast<float>(0x8080) / 65535.0f);
 }
 
+TEST_F(Textures, MaterialsChooseWhereAndHowTheyAreRead) {
+  folder_.write("pbr.json", R"json({"isoshade": 1, "effect": "pbr", "parameters": {
+    "base_color_texture": {"type": "filename", "value": ""},
+    "base_color_texture_u": {"type": "vector3", "value": [1, 0, 0]},
+    "base_color_texture_v": {"type": "vector3", "value": [0, 1, 0]},
+    "base_color_texture_wrap_u": {"type": "integer", "enum": ["periodic", "clamp", "mirror"], "value": 0},
+    "base_color_texture_filter": {"type": "integer", "enum": ["closest", "linear", "trilinear"], "value": 2}},
+    "nodes": {"uv": {"type": "texcoord"}, "at": {"type": "expression",
+      "code": "vector2(dot(u, p), dot(v, p))", "u": "base_color_texture_u", "v": "base_color_texture_v", "p": "place"},
+      "place": {"type": "combine3", "in1": "uv.x", "in2": "uv.y", "in3": 1},
+      "map": {"type": "image", "file": {"link": "base_color_texture"}, "colorspace": "linear", "texcoord": "at",
+        "uaddressmode": {"link": "base_color_texture_wrap_u"}, "filtertype": {"link": "base_color_texture_filter"}}},
+    "passes": [{"name": "base", "color": "map", "cull": "none"}]})json");
+  // Red to the left, black to the right; what is seen of red at 1/4 and 3/4.
+  const std::string png = testing::png_file(2, 1, 8, 2, {std::string("\xff\0\0\0\0\0", 6)});
+  const auto shown = [&](const std::string& transform, const std::string& sampler) {
+    folder_.write("m.glb", testing::textured_glb(
+                               png, R"({"index": 0, "extensions": {"KHR_texture_transform": )" + transform + "}}", sampler));
+    const auto made = plan(
+        R"("camera": {"type": "orthographic", "position": [0.5, 0.5, 5], "target": [0.5, 0.5, 0], "height": 1},
+        "objects": {"m": {"mesh": {"type": "gltf", "file": "m.glb"}, "effect": "pbr.json"}})",
+        2);
+    EXPECT_TRUE(made) << diagnostics_.text();
+    const std::vector<float> pixels = made ? draw(*made) : std::vector<float>(16);
+    return std::pair{pixels[0], pixels[4]};
+  };
+  using Pair = std::pair<float, float>;
+  EXPECT_EQ(shown("{}", "{}"), (Pair{1, 0}));
+  EXPECT_EQ(shown(R"({"offset": [0.5, 0]})", "{}"), (Pair{0, 1}));
+  EXPECT_EQ(shown(R"({"offset": [0.5, 0]})", R"({"wrapS": 33071})"), (Pair{0, 0}));
+  EXPECT_EQ(shown(R"({"offset": [-1, 0]})", R"({"wrapS": 33648})"), (Pair{0, 1}));
+  EXPECT_EQ(shown(R"({"offset": [0.25, 0]})", R"({"magFilter": 9729, "minFilter": 9729})"), (Pair{0.5f, 0.5f}));
+  EXPECT_EQ(shown(R"({"offset": [0.125, 0]})", R"({"magFilter": 9728})"), (Pair{1, 0}));
+}
+
 TEST_F(Textures, WithoutAFileHaveTheDefault) {
   const auto made = plan(square("shown", R"("map": "")"));
   ASSERT_TRUE(made) << diagnostics_.text();

@@ -277,19 +277,28 @@ TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
       {R"("materials": [{)", R"("materials": [{"alphaMode": "MASK", "alphaCutoff": 0.3, )", nullptr},
       {R"("materials": [{)", R"("materials": [{"alphaMode": "OPAQUE", )", nullptr},
       {R"("materials": [{)", R"("materials": [{"doubleSided": true, )", nullptr},
-      {R"("materials": [{)", R"("materials": [{"normalTexture": {"index": 0, "texCoord": 1}, )",
-       "texture coordinates beyond the first set"},
-      {R"("materials": [{)", R"("materials": [{"extensions": {"KHR_materials_unlit": {}}, )",
-       "the extension \"KHR_materials_unlit\""},
+      {R"("materials": [{)", R"("materials": [{"normalTexture": {"index": 0, "texCoord": 2}, )",
+       "texture coordinates beyond the second set"},
       {R"("materials": [{)",
-       R"("materials": [{"extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}, )",
-       "the extension \"KHR_materials_emissive_strength\""},
-      {R"("scene": 0)", R"("scene": 0, "samplers": [{"wrapS": 33071}, {"wrapT": 33648}])",
-       "wrap modes of samplers other than REPEAT"},
-      {R"("scene": 0)", R"("scene": 0, "samplers": [{"wrapS": 10497, "magFilter": 9729, "minFilter": 9987}])",
+       R"("materials": [{"normalTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"texCoord": 2}}}, )",
+       "texture coordinates beyond the second set"},
+      {R"("TEXCOORD_0": 2)", R"("TEXCOORD_0": 2, "TEXCOORD_1": 2, "TEXCOORD_2": 2, "TEXCOORD_3": 2)",
+       "texture coordinates beyond the second set"},
+      {R"("TEXCOORD_0": 2)", R"("TEXCOORD_0": 2, "_OWN": 2)", nullptr},
+      {R"("COLOR_0": 3)", R"("COLOR_0": 3, "COLOR_1": 3)", "vertex colours beyond the first set"},
+      {R"("COLOR_0": 3)", R"("COLOR_0": 3, "JOINTS_0": 3, "WEIGHTS_0": 3)", "skins"},
+      {R"("materials": [{)", R"("materials": [{"extensions": {"KHR_materials_unlit": {}}, )", nullptr},
+      {R"("materials": [{)", R"("materials": [{"extensions": {"KHR_materials_clearcoat": {}}, )",
+       "the extension \"KHR_materials_clearcoat\""},
+      {R"("scene": 0)", R"("scene": 0, "extensionsUsed": ["KHR_texture_transform", "KHR_mesh_quantization"])",
+       "the extension \"KHR_mesh_quantization\""},
+      {R"("scene": 0)",
+       R"("scene": 0, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {}})",
+       "the extension \"KHR_lights_punctual\""},
+      {R"("scene": 0)", R"("scene": 0, "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}])",
+       "cameras"},
+      {R"("scene": 0)", R"("scene": 0, "samplers": [{"wrapS": 33071, "magFilter": 9728, "minFilter": 9984}])",
        nullptr},
-      {R"("scene": 0)", R"("scene": 0, "samplers": [{"magFilter": 9728, "minFilter": 9984}])",
-       "nearest filtering of samplers"},
       {R"("scene": 0)", R"("scene": 0, "skins": [{"joints": [0]}])", nullptr},
       {R"([{"mesh": 0}])", R"([{"mesh": 0, "skin": 0}])", "skins"},
       {R"("indices": 4)", R"("targets": [{"POSITION": 0}], "indices": 4)", "morph targets"},
@@ -316,7 +325,7 @@ TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
 
 TEST_F(Gltf, RejectsRequiredExtensionsAndLaterVersions) {
   for (const char* name :
-       {"KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness", "KHR_lights_punctual"})
+       {"KHR_draco_mesh_compression", "KHR_materials_pbrSpecularGlossiness", "KHR_lights_punctual"})
     EXPECT_TRUE(
         refuses_json(R"("scene": 0)", R"("extensionsRequired": [")" + std::string(name) + R"("])", name));
   EXPECT_TRUE(refuses_json(R"("version": "2.0")", R"("version": "2.0", "minVersion": "3.0")",
@@ -326,6 +335,49 @@ TEST_F(Gltf, RejectsRequiredExtensionsAndLaterVersions) {
   std::string json = square_json();
   json.replace(json.find(R"("version": "2.0")"), 16, R"("version": "2.1", "minVersion": "2.0")");
   loaded(json);
+  json.insert(json.find(R"("scene": 0)"), R"("extensionsRequired": ["KHR_texture_transform",
+"KHR_materials_emissive_strength", "KHR_materials_unlit"], )");
+  loaded(json);
+}
+
+/// The texture coordinates of the first set, mirrored in u.
+std::string second_set(std::string json) {
+  json.replace(json.find(R"("COLOR_0": 3)"), 12, R"("TEXCOORD_1": 5)");
+  json.insert(json.find(R"(],
+"bufferViews")"), R"(, {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"})");
+  json.insert(json.find(R"(],
+"buffers")"), R"(, {"buffer": 0, "byteOffset": 156, "byteLength": 32})");
+  return json.replace(json.find(R"("byteLength": 156)"), 17, R"("byteLength": 188)");
+}
+
+TEST_F(Gltf, ReadsTwoSetsOfTextureCoordinates) {
+  const std::string data = square_data() + bytes_of<float>({1, 1, 0, 1, 0, 0, 1, 0});
+  const Model model = loaded(second_set(square_json()), data);
+  for (size_t vertex = 0; vertex < 4; ++vertex) {
+    const float* record = &model.mesh.vertices.at(vertex * word::stride);
+    EXPECT_EQ(record[word::texcoord1], 1 - record[word::texcoord]);
+    EXPECT_EQ(record[word::texcoord1 + 1], record[word::texcoord + 1]);
+  }
+}
+
+TEST_F(Gltf, MeshesWithOneSetOfTextureCoordinatesRepeatIt) {
+  const Model model = loaded(square_json());
+  for (size_t vertex = 0; vertex < 4; ++vertex)
+    for (const int axis : {0, 1})
+      EXPECT_EQ(model.mesh.vertices.at(vertex * word::stride + word::texcoord1 + axis),
+                model.mesh.vertices.at(vertex * word::stride + word::texcoord + axis));
+}
+
+TEST_F(Gltf, TangentsRunAlongTheSetOfTheNormalTexture) {
+  const std::string data = square_data() + bytes_of<float>({1, 1, 0, 1, 0, 0, 1, 0});
+  std::string json = second_set(square_json());
+  EXPECT_EQ(vector_at(loaded(json, data), 0, word::tangent), glm::vec3(1, 0, 0));
+  std::string image = R"("images": [{"uri": "data:image/png;base64,QUJD"}], "textures": [{"source": 0}], )";
+  json.insert(json.find(R"("scene": 0)"), image);
+  json.insert(json.find(R"("pbrMetallicRoughness")"), R"("normalTexture": {"index": 0, "texCoord": 1}, )");
+  const Model model = loaded(json, data);
+  EXPECT_EQ(vector_at(model, 0, word::tangent), glm::vec3(-1, 0, 0));
+  EXPECT_EQ(model.mesh.vertices.at(word::tangent + 3), -1.0f);
 }
 
 TEST_F(Gltf, RefusesOffsetsThatAreNotIntegers) {

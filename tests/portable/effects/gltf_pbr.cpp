@@ -20,6 +20,38 @@ void program::shade_gltf_pbr(const Attributes& attributes, const Host& host, flo
   parameters.normal_texture = 1;
   parameters.occlusion_texture = 5;
   parameters.emissive_texture = -1;
+  // Modes: periodic, clamp, mirror; filters: closest, linear, trilinear.
+  parameters.base_color_texture_set = 0;
+  parameters.base_color_texture_u = vec3<float>(1.0f, 0.0f, 0.0f);
+  parameters.base_color_texture_v = vec3<float>(0.0f, 1.0f, 0.0f);
+  parameters.base_color_texture_wrap_u = 0;
+  parameters.base_color_texture_wrap_v = 0;
+  parameters.base_color_texture_filter = 2;
+  parameters.metallic_roughness_texture_set = 1;
+  parameters.metallic_roughness_texture_u = vec3<float>(3.0f, 0.5f, -1.0f);
+  parameters.metallic_roughness_texture_v = vec3<float>(-0.5f, 2.0f, 0.25f);
+  parameters.metallic_roughness_texture_wrap_u = 2;
+  parameters.metallic_roughness_texture_wrap_v = 1;
+  parameters.metallic_roughness_texture_filter = 2;
+  parameters.normal_texture_set = 0;
+  parameters.normal_texture_u = vec3<float>(2.0f, 0.0f, 0.0f);
+  parameters.normal_texture_v = vec3<float>(0.0f, 2.0f, 0.0f);
+  parameters.normal_texture_wrap_u = 1;
+  parameters.normal_texture_wrap_v = 0;
+  parameters.normal_texture_filter = 1;
+  parameters.occlusion_texture_set = 1;
+  parameters.occlusion_texture_u = vec3<float>(1.0f, 0.0f, 0.5f);
+  parameters.occlusion_texture_v = vec3<float>(0.0f, 1.0f, 0.5f);
+  parameters.occlusion_texture_wrap_u = 0;
+  parameters.occlusion_texture_wrap_v = 2;
+  parameters.occlusion_texture_filter = 0;
+  parameters.emissive_texture_set = 0;
+  parameters.emissive_texture_u = vec3<float>(1.0f, 0.0f, 0.0f);
+  parameters.emissive_texture_v = vec3<float>(0.0f, 1.0f, 0.0f);
+  parameters.emissive_texture_wrap_u = 0;
+  parameters.emissive_texture_wrap_v = 0;
+  parameters.emissive_texture_filter = 2;
+  parameters.unlit = false;
   using Surface = isoshade::shaders::gltf_pbr::Surface<F>;
   shade_points<Surface>(
       attributes,

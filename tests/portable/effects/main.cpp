@@ -19,7 +19,7 @@ Point point_at(int x, int y) {
   const vec3<float> t(up / along, 0.0f, negate(across) / along);
   const vec3<float> b(n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x);
   return {n.x, n.y, n.z, n.x, n.y,  n.z, view.x, view.y, view.z, t.x, t.y,
-          t.z, b.x, b.y, b.z, 1.0f, u,   v,      1.0f,   u,      v};
+          t.z, b.x, b.y, b.z, 1.0f, u,   v,      1.0f,   u,      v,   v,   u};
 }
 
 Attributes attributes_of_sphere() {

@@ -29,9 +29,10 @@ struct Attributes {
     tangent = 9,
     bitangent = 12,
     color = 15,
-    texcoord = 19
+    texcoord = 19,
+    texcoord1 = 21
   };
-  static constexpr int width = 21;
+  static constexpr int width = 23;
 
   std::vector<float> values, ddx, ddy;  ///< and the changes to the next point in x and y
 };
@@ -114,6 +115,7 @@ Surface surface_at(const Attributes& attributes, int point) {
   FIELDS(bitangent)
   FIELDS(color)
   FIELDS(texcoord)
+  FIELDS(texcoord1)
 #undef FIELDS
 #undef FIELD
   if (bytes != sizeof surface)
