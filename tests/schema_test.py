@@ -68,6 +68,13 @@ EFFECT = {
     "nodes": {"n": {"type": "normal", "space": "view"}},
     "passes": [{"name": "base", "color": {"link": "n"}}],
 }
+CHANGED_EFFECT = {
+    "isoshade": 1,
+    "effect": "e",
+    "extends": "other.json",
+    "parameters": {"p": {"value": 2, "max": None}, "q": None, "r": {"type": "float", "value": 1}},
+    "nodes": {"n": {"in1": "p", "in2": None}, "m": None, "k": {"type": "normal", "space": "view"}},
+}
 SCENE = {
     "isoshade": 1,
     "scene": "s",
@@ -120,6 +127,15 @@ BROKEN = [
     (EFFECT, "passes/0/color", ...),
     (EFFECT, "passes/0/cull", "left"),
     (EFFECT, "passes/0/color", [1, 2]),
+    (CHANGED_EFFECT, "extends", ...),
+    (CHANGED_EFFECT, "extends", 1),
+    (CHANGED_EFFECT, "effect", ...),
+    (CHANGED_EFFECT, "parameters/p/maximum", 2),
+    (CHANGED_EFFECT, "parameters/p", 2),
+    (CHANGED_EFFECT, "parameters/p/type", "flaot"),
+    (CHANGED_EFFECT, "nodes/k/space", "wrold"),
+    (CHANGED_EFFECT, "nodes/n/in1", {"lonk": "p"}),
+    (CHANGED_EFFECT, "passes", []),
     (SCENE, "camera", ...),
     (SCENE, "camera/type", "fisheye"),
     (SCENE, "camera/height", 3),
@@ -183,7 +199,7 @@ class Schema(unittest.TestCase):
             self.assertEqual(self.errors(json.loads(path.read_text())), [], path)
 
     def test_documents_of_every_kind_are_valid(self):
-        for document in FUNCTION, EFFECT, SCENE, EXTENSION:
+        for document in FUNCTION, EFFECT, CHANGED_EFFECT, SCENE, EXTENSION:
             self.assertEqual(self.errors(document), [])
         self.assertEqual(self.errors(changed(EFFECT, "passes/0/color", [1, 0.5, 0])), [])
 

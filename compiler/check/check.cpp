@@ -14,7 +14,7 @@ void check_supported(Work& work) {
   const graph::Graph& graph = work.graph();
   for (const graph::Input& input : graph.inputs) {
     const bool is_function = graph.kind == graph::DocumentKind::function;
-    if (input.type == graph::Type::filename && graph.kind == graph::DocumentKind::effect) continue;
+    if (input.type == graph::Type::filename && graph.kind != graph::DocumentKind::post) continue;
     if (nodes::value_types.has(input.type) && (is_function || !nodes::matrix_types.has(input.type))) continue;
     work.report(Id::unsupported, input.place,
                 std::string(is_function ? "an input" : "a parameter") + " of type " +

@@ -256,11 +256,22 @@ void NodeInference::check_settled() {
   }
 }
 
-/// Whether `name` is a parameter of type filename.
+/// Whether `name` is a parameter or an input of type filename.
 bool is_file_parameter(const graph::Graph& graph, const std::string& name) {
   const auto found = graph.names.find(name);
   return found != graph.names.end() && found->second.is_input &&
          graph.inputs[found->second.index].type == Type::filename;
+}
+
+void NodeInference::place_path(size_t i) {
+  const std::string& path = literal(i)->string;
+  const graph::Graph& graph = work_.graph();
+  if (!is_file_parameter(graph, path))
+    return place_file(work_.typed, {path, work_.span(given(i).port->place)}, operand(i));
+  const bool in_function = graph.kind == graph::DocumentKind::function;
+  report(Id::wrong_type, i,
+         of_node(i) + " is a path, but " + quote(path) + (in_function ? " is an input" : " is a parameter"))
+      .suggest("write {\"link\": \"" + path + "\"}, or \"./" + path + "\" for a file of that name");
 }
 
 void NodeInference::place_value(size_t i) {
@@ -272,13 +283,7 @@ void NodeInference::place_value(size_t i) {
     report(Id::type_mismatch, i, of_node(i) + " takes " + name_of(needed) + ", not " + name_of(to.type))
         .suggest(conversion_hint(*given(i).link, needed));
   } else if (const Literal* value = literal(i)) {
-    if (fits(*value, needed) && needed == Type::filename && is_file_parameter(work_.graph(), value->string)) {
-      report(Id::wrong_type, i, of_node(i) + " is a path, but " + quote(value->string) + " is a parameter")
-          .suggest("write {\"link\": \"" + value->string + "\"}, or \"./" + value->string + "\" for a file of that name");
-      return;
-    }
-    if (fits(*value, needed) && needed == Type::filename)
-      return place_file(work_.typed, {value->string, given(i).port->place}, to);
+    if (fits(*value, needed) && needed == Type::filename) return place_path(i);
     if (fits(*value, needed)) return place(work_.typed, *value, needed, to);
     report(Id::wrong_type, i, of_node(i) + " must be " + name_of(needed) + ", not " + described(*value));
   } else {
@@ -306,7 +311,12 @@ void infer_output(Work& work, size_t i) {
   const Link& link = *work.roots[i];
   if (!select(work, link, output)) return;
   output.needed = output.type;
-  if (work.graph().kind == graph::DocumentKind::function) return;
+  if (work.graph().kind == graph::DocumentKind::function) {
+    if (output.type == Type::filename)
+      work.report(Id::type_mismatch, link.place, "an output cannot be filename")
+          .suggest("read the image with an image node, and return the colour");
+    return;
+  }
   if (i >= work.typed.values().size()) {
     if (output.type == Type::vector3) return;
     work.report(Id::type_mismatch, link.place, "\"position\" must be vector3, not " + name_of(output.type));

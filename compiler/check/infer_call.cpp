@@ -64,6 +64,9 @@ void NodeInference::place_argument(size_t i) {
     report(Id::wrong_type, i, of_node(i) + " must be " + name_of(input.type) + ", not " + described(value));
     return;
   }
+  if (input.type == Type::filename && literal(i) != nullptr) return place_path(i);
+  if (input.type == Type::filename)
+    return place_file(work_.typed, {value.string, node_.callee->graph.span(input.value_place)}, to);
   check_range(i, input);
   place(work_.typed, value, input.type, to);
 }

@@ -106,6 +106,8 @@ class NodeInference {
   void settle_by_literals();
   void check_settled();
   void place_value(size_t i);
+  /// A path in a port. Reports the name of a parameter, which was meant to be a link.
+  void place_path(size_t i);
   void check_condition();
   // Function documents.
   void infer_call();

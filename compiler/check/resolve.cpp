@@ -83,22 +83,22 @@ class NodeResolver {
   void fail() { work_.broken[index_] = true; }
   bool is_call() const { return source_.origin == graph::Node::Origin::call; }
   bool in_function() const { return work_.graph().kind == DocumentKind::function; }
-  /// What to do in a function instead of using a node that only effects and posts may use.
+  /// What to do in a function instead of using a node that only posts may use.
   std::string function_fix() const {
     if (node_.row->is_sum())
-      return "compute the sum in the effect or post that calls the function, over the outputs of the function";
-    if (node_.row->is<nodes::Image>() || node_.row->is<nodes::Fetch>())
-      return "read the image in the document that calls the function, and pass the colour as an input";
-    if (node_.row->is<nodes::Derivative>())
-      return "take the derivative in the effect that calls the function, and pass it as an input";
+      return "compute the sum in the post that calls the function, over the outputs of the function";
+    if (node_.row->is<nodes::Fetch>())
+      return "read the image in the post that calls the function, and pass the colour as an input";
     return "pass it as an input of the function";
   }
   bool available(nodes::Availability where) const {
     switch (work_.graph().kind) {
-      case DocumentKind::effect: return where != nodes::Availability::posts;
       case DocumentKind::post: return where != nodes::Availability::effects;
-      default: return where == nodes::Availability::anywhere;
+      case DocumentKind::function:
+      case DocumentKind::effect:
+      case DocumentKind::scene: break;
     }
+    return where != nodes::Availability::posts;
   }
   size_t port_count() const {
     return node_.row != nullptr ? node_.row->ports.size() : node_.callee->graph.inputs.size();
@@ -110,10 +110,14 @@ class NodeResolver {
 
   /// Once the limit on errors is reached, no further files are searched.
   std::shared_ptr<const TypedGraph> function() {
-    std::shared_ptr<const TypedGraph>& found = work_.functions[source_.type];
+    std::shared_ptr<const TypedGraph>& found = work_.functions[{source_.type_place.source, source_.type}];
     if (found == nullptr && !work_.diagnostics.full()) {
+      const support::Span where = work_.span(source_.type_place);
+      // A base refers to functions relative to itself.
+      const bool by_base = source_.type_place.source != 0;
+      const Scope of_base = by_base ? work_.library.scope_of(where.file->path()) : Scope();
       found = work_.library.function({source_.type, is_call() ? nodes::function_table() : nodes::table()},
-                                     work_.scope, work_.span(source_.type_place), work_.diagnostics);
+                                     by_base ? of_base : work_.scope, where, work_.diagnostics);
     }
     return found;
   }
@@ -191,7 +195,8 @@ class NodeResolver {
   }
 
   bool takes_text(size_t i) const {
-    return node_.row != nullptr && node_.row->ports[i].type.accepts.has(Type::filename);
+    if (node_.row == nullptr) return node_.callee->graph.inputs[i].type == Type::filename;
+    return node_.row->ports[i].type.accepts.has(Type::filename);
   }
 
   /// The link in a port, or null: a string is a link unless the port takes text.
@@ -200,7 +205,7 @@ class NodeResolver {
     const Literal& literal = std::get<Literal>(port.value);
     if (literal.kind != Literal::Kind::string || takes_text) return nullptr;
     std::optional<Link> link =
-        graph::parse_link(work_.graph().source, literal.string, port.place, work_.diagnostics);
+        graph::parse_link(literal.string, port.place, work_.span(port.place), work_.diagnostics);
     if (!link) {
       fail();
       return nullptr;
@@ -226,7 +231,7 @@ class NodeResolver {
 
   void check_missing(uint32_t i) {
     const bool required = node_.row != nullptr
-                              ? node_.row->ports[i].required(work_.graph().kind == DocumentKind::effect)
+                              ? node_.row->ports[i].required(work_.graph().kind != DocumentKind::post)
                               : !node_.callee->graph.inputs[i].value.has_value();
     if (!required) return;
     fail();

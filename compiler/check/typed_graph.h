@@ -37,11 +37,24 @@ struct Operand {
   uint8_t swizzle_count = 0;  ///< 0: the whole value
 };
 
-/// A path in a port, relative to the document; empty for no file.
+/// A path in a port, or the default of a function's input; empty for no file.
 struct File {
-  std::string path;
-  graph::TextRange place;
+  std::string path;     ///< relative to the document in which it is written
+  support::Span place;  ///< where that is
 };
+
+/// What a document can need of the stage that evaluates it, besides the values of its inputs.
+enum class StageNeed : uint8_t {
+  surface,      ///< attributes of the surface point, or matrices between spaces
+  vertex,       ///< attributes that only vertices have
+  pixel,        ///< attributes that only pixels have
+  images,       ///< textures
+  lights,       ///< the lights of the scene
+  derivatives,  ///< changes from pixel to pixel
+  time
+};
+inline constexpr size_t stage_need_count = static_cast<size_t>(StageNeed::time) + 1;
+inline constexpr uint32_t no_node = ~0u;
 
 struct TypedGraph;
 
@@ -69,6 +82,11 @@ struct TypedGraph {
   /// pass that has one, then the cutout and the cutoff (nothing if the cutout is a boolean) of each pass that has them.
   std::vector<Operand> outputs;
   uint64_t expanded_nodes = 0;  ///< the number of nodes with all calls and sums expanded
+  /// By StageNeed: the first node that an output depends on and that needs it, by itself or because it calls a function
+  /// that does; or no_node.
+  std::array<uint32_t, stage_need_count> needed_by = filled_with_no_node();
+  bool has_derivative = false;                  ///< an output depends on the derivative of something
+  std::vector<bool> differentiated_inputs = {};  ///< by Graph::inputs: of which it takes the derivative
 
   std::span<const Operand> operands_of(const Node& node) const {
     return {operands.data() + node.first_operand, node.operand_count};
@@ -101,6 +119,13 @@ struct TypedGraph {
   }
   std::span<const Type> types_of(const Node& node) const {
     return {types.data() + node.first_type, node.output_count};
+  }
+  bool needs(StageNeed need) const { return needed_by[static_cast<size_t>(need)] != no_node; }
+
+  static constexpr std::array<uint32_t, stage_need_count> filled_with_no_node() {
+    std::array<uint32_t, stage_need_count> filled{};
+    filled.fill(no_node);
+    return filled;
   }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "compiler/check/stage_needs.h"
 #include "compiler/check/work.h"
 
 namespace isoshade::check {
@@ -59,21 +60,17 @@ void check_summands(Work& work) {
   }
 }
 
-/// The stages in which the node of a surface attribute is available.
-interface::SurfaceStages available_at(const nodes::Row& row) {
-  const auto* attribute = std::get_if<nodes::Surface>(&row.lowering);
-  return attribute != nullptr ? interface::row(*attribute).stages : interface::SurfaceStages::all;
+/// Why a node that needs something is not available in the vertex stage.
+const char* missing_at_vertices(StageNeed need, const PlacedNode& cause) {
+  if (need == StageNeed::lights) return "lights exist only for pixels";
+  if (need == StageNeed::pixel) return "it is known only for pixels";
+  return may_be_trilinear(cause.graph, cause.get())
+             ? "its mip level exists only for pixels; \"closest\" and \"linear\" filtering need none"
+             : "derivatives exist only for pixels";
 }
 
-/// Why a node is not available in the vertex stage; nullptr if it is.
-const char* missing_at_vertices(const TypedGraph& typed, const Node& node) {
-  const nodes::Row& row = *node.row;
-  if (row.is<nodes::Derivative>()) return "derivatives exist only for pixels";
-  if (may_be_trilinear(typed, node))
-    return "its mip level exists only for pixels; \"closest\" and \"linear\" filtering need none";
-  if (row.is<nodes::Light>() || row.is<nodes::SumLights>()) return "lights exist only for pixels";
-  if (available_at(row) == interface::SurfaceStages::pixels) return "it is known only for pixels";
-  return nullptr;
+bool needs(const TypedGraph& typed, uint32_t node, StageNeed need) {
+  return needs_of(typed, typed.nodes[node])[static_cast<size_t>(need)];
 }
 
 /// Reports nodes that a pass's position depends on, but that are not available in the vertex stage.
@@ -89,12 +86,17 @@ void check_positions(Work& work) {
     if (!reached[*it]) continue;
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
-    const char* reason = node.row != nullptr ? missing_at_vertices(typed, node) : nullptr;
-    if (reason == nullptr) continue;
-    work.report(Id::misplaced_node, graph.nodes[*it].type_place,
-                "the \"position\" of a pass cannot depend on " + quote(graph.nodes[*it].label()))
-        .note(std::string("it is computed per vertex, and ") + reason)
-        .suggest("compute \"position\" without it; only \"color\" may depend on it");
+    for (const StageNeed need : {StageNeed::lights, StageNeed::derivatives, StageNeed::pixel}) {
+      if (!needs(typed, *it, need)) continue;
+      support::Diagnostic& report =
+          work.report(Id::misplaced_node, graph.nodes[*it].type_place,
+                      "the \"position\" of a pass cannot depend on " + quote(graph.nodes[*it].label()));
+      note_calls(report, typed, *it, need);
+      report.note(std::string("it is computed per vertex, and ") +
+                  missing_at_vertices(need, cause_of(typed, *it, need)));
+      report.suggest("compute \"position\" without it; only \"color\" may depend on it");
+      break;
+    }
   }
 }
 
@@ -111,14 +113,13 @@ void check_pixels(Work& work, std::span<const Operand> outputs, const std::strin
     if (!reached[*it]) continue;
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
-    if (node.row == nullptr) continue;
-    const bool is_light = node.row->is<nodes::Light>() || node.row->is<nodes::SumLights>();
-    const bool at_vertices = available_at(*node.row) == interface::SurfaceStages::vertices;
-    if (!at_vertices && (has_lights || !is_light)) continue;
+    const bool at_vertices = needs(typed, *it, StageNeed::vertex);
+    if (!at_vertices && (has_lights || !needs(typed, *it, StageNeed::lights))) continue;
     const graph::Node& source = work.graph().nodes[*it];
     support::Diagnostic& report =
         work.report(Id::misplaced_node, source.type_place,
                     "the " + quote(part) + " of a pass cannot depend on " + quote(source.label()));
+    note_calls(report, typed, *it, at_vertices ? StageNeed::vertex : StageNeed::lights);
     if (at_vertices)
       report.suggest("it is available only for vertices: use it for \"position\"");
     else
@@ -127,24 +128,88 @@ void check_pixels(Work& work, std::span<const Operand> outputs, const std::strin
   }
 }
 
+/// Reports calls of functions that need what a post does not have.
+void check_calls_of_post(Work& work) {
+  const TypedGraph& typed = work.typed;
+  for (uint32_t i = 0; i < typed.nodes.size(); ++i) {
+    const TypedGraph* callee = typed.nodes[i].callee.get();
+    if (callee == nullptr) continue;
+    const auto missing = [&](uint32_t node) { return node != no_node; };
+    const auto all = std::span(callee->needed_by).first(static_cast<size_t>(StageNeed::time));
+    const auto found = std::ranges::find_if(all, missing);
+    if (found == all.end()) continue;
+    const auto need = static_cast<StageNeed>(found - all.begin());
+    const graph::Node& source = work.graph().nodes[i];
+    support::Diagnostic& report =
+        work.report(Id::misplaced_node, source.type_place,
+                    "a post cannot call " + quote(source.label()) + ": it depends on " +
+                        described(cause_of(typed, i, need)));
+    note_calls(report, typed, i, need);
+    report.suggest("call it from an effect");
+  }
+}
+
+/// Reports calls inside of a sum over lights of functions that sum over lights themselves. A sum that is the same for
+/// every light is no such call: it is computed before.
+void check_nested_sums(Work& work) {
+  const TypedGraph& typed = work.typed;
+  for (uint32_t i = 0; i < typed.nodes.size(); ++i) {
+    const Node& node = typed.nodes[i];
+    if (node.callee == nullptr || !node.per_iteration || !node.callee->needs(StageNeed::lights)) continue;
+    const graph::Node& source = work.graph().nodes[i];
+    support::Diagnostic& report =
+        work.report(Id::misplaced_node, source.type_place,
+                    quote(source.label()) + " sums over lights, so its inputs cannot depend on a light");
+    note_calls(report, typed, i, StageNeed::lights);
+    report.suggest("pass it values that are the same for every light");
+  }
+}
+
+/// Finds the inputs of which a document takes the derivative, by itself or in a function that it calls.
+void find_differentiated_inputs(TypedGraph& typed) {
+  typed.differentiated_inputs.assign(typed.graph.inputs.size(), false);
+  std::vector<bool> differentiated(typed.nodes.size());
+  const auto mark = [&](const Operand& operand) {
+    if (operand.from == From::node) differentiated[operand.index] = true;
+    if (operand.from == From::input) typed.differentiated_inputs[operand.index] = true;
+  };
+  for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
+    const Node& node = typed.nodes[*it];
+    const std::span<const Operand> operands = typed.operands_of(node);
+    if (differentiated[*it] || (node.row != nullptr && node.row->is<nodes::Derivative>()))
+      std::ranges::for_each(operands, mark);
+    if (may_be_trilinear(typed, node)) mark(operands[nodes::image_port::texcoord]);
+    for (size_t i = 0; node.callee != nullptr && i < operands.size(); ++i)
+      if (node.callee->differentiated_inputs[i]) mark(operands[i]);
+  }
+}
+
 /// Reports derivatives of values that depend on a derivative: only first derivatives are supported.
 void check_derivatives(Work& work) {
-  const TypedGraph& typed = work.typed;
+  TypedGraph& typed = work.typed;
   constexpr uint32_t nothing = ~0u;
   std::vector<uint32_t> derivative(typed.nodes.size(), nothing);  ///< the derivative that each node depends on
   for (const uint32_t i : typed.order) {
     const Node& node = typed.nodes[i];
     const bool takes_one = node.row != nullptr && node.row->is<nodes::Derivative>();
-    for (const Operand& operand : typed.operands_of(node))
-      if (operand.from == From::node && derivative[operand.index] != nothing)
-        derivative[i] = derivative[operand.index];
+    const std::span<const Operand> operands = typed.operands_of(node);
+    for (size_t k = 0; k < operands.size(); ++k) {
+      if (operands[k].from != From::node || derivative[operands[k].index] == nothing) continue;
+      derivative[i] = derivative[operands[k].index];
+      if (node.callee == nullptr || !node.callee->differentiated_inputs[k]) continue;
+      const graph::Node& source = work.graph().nodes[i];
+      work.report(Id::second_derivative, source.type_place,
+                  quote(source.label()) + " takes the derivative of its input " +
+                      quote(node.callee->graph.inputs[k].name) + ", which depends on the derivative " +
+                      quote(work.graph().nodes[derivative[i]].id));
+    }
     if (takes_one && derivative[i] != nothing) {
       const graph::Node& source = work.graph().nodes[i];
       work.report(Id::second_derivative, source.type_place,
                   quote(source.type) + " of a value that depends on the derivative " +
                       quote(work.graph().nodes[derivative[i]].id));
     }
-    if (takes_one) derivative[i] = i;
+    if (takes_one || (node.callee != nullptr && node.callee->has_derivative)) derivative[i] = i;
     if (!may_be_trilinear(typed, node)) continue;
     // The mip level depends on derivatives of texcoord; by definition, the derivative of the level is 0.
     const Operand& texcoord = typed.operands_of(node)[nodes::image_port::texcoord];
@@ -154,6 +219,8 @@ void check_derivatives(Work& work) {
                     quote(work.graph().nodes[derivative[texcoord.index]].id))
         .suggest("use the filtertype \"linear\"");
   }
+  for (const Operand& output : typed.outputs)
+    typed.has_derivative |= output.from == From::node && derivative[output.index] != nothing;
 }
 
 /// The number of nodes that all sums together compute per light or tap; stops counting beyond the limit.
@@ -221,10 +288,16 @@ bool may_be_trilinear(const TypedGraph& typed, const Node& node) {
 
 void check_usage(Work& work) {
   mark_per_iteration(work.typed);
+  find_stage_needs(work.typed);
+  find_differentiated_inputs(work.typed);
   check_summands(work);
-  check_positions(work);
-  check_pixels(work, work.typed.values(), "color", true);
-  check_pixels(work, work.typed.cutouts(), "cutout", false);
+  check_nested_sums(work);
+  if (work.graph().kind == graph::DocumentKind::effect) {
+    check_positions(work);
+    check_pixels(work, work.typed.values(), "color", true);
+    check_pixels(work, work.typed.cutouts(), "cutout", false);
+  }
+  if (work.graph().kind == graph::DocumentKind::post) check_calls_of_post(work);
   check_derivatives(work);
   check_size(work);
   if (!work.is_instance()) warn_unused(work);

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "compiler/check/check.h"
@@ -28,8 +29,8 @@ struct Work {
   std::vector<Given> given = {};               ///< parallel to TypedGraph::operands
   std::vector<const graph::Link*> roots = {};  ///< parallel to TypedGraph::outputs; null for a cutoff that is not given
   std::deque<graph::Link> links = {};          ///< parsed from strings in ports
-  /// The function documents that the graph uses, by node type.
-  std::unordered_map<std::string_view, std::shared_ptr<const TypedGraph>> functions = {};
+  /// The function documents that the graph uses, by the source that names them (TextRange) and the node type.
+  std::map<std::pair<uint32_t, std::string_view>, std::shared_ptr<const TypedGraph>> functions = {};
   uint64_t passed_numbers = 0;  ///< scalars passed to and from functions
   /// Nodes whose output is a vector only because literal arrays default to vectors; it is accepted as a colour, too.
   std::vector<bool> untyped = {};
@@ -57,7 +58,8 @@ void resolve(Work& work);
 void order(Work& work);
 /// Infers all types, and stores literals and defaults.
 void infer(Work& work);
-/// Reports misplaced nodes, second derivatives and graphs that expand too far, and warns about unused nodes.
+/// Finds what the document needs of its stage; reports misplaced nodes, second derivatives and graphs that expand too
+/// far, and warns about unused nodes.
 void check_usage(Work& work);
 
 /// Checks a document in its scope.

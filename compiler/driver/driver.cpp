@@ -2,8 +2,10 @@
 #include "compiler/driver/driver.h"
 
 #include "compiler/check/check.h"
+#include "compiler/check/stage_needs.h"
 #include "compiler/driver/dumps.h"
 #include "compiler/driver/shader.h"
+#include "compiler/graph/extend.h"
 #include "compiler/ir/expansion.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/lower.h"
@@ -23,7 +25,7 @@ using support::Diagnostics;
 std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& source,
                                                     std::optional<graph::DocumentKind> wanted,
                                                     const CompileOptions& options, Diagnostics& diagnostics) {
-  const auto document = graph::parse_document(source, diagnostics);
+  const auto document = graph::load_document(source, options.library->files(), diagnostics);
   if (!document) return nullptr;
   if (options.dump) options.dump("document", [&] { return dump_document(*document); });
   auto graph = graph::build_graph(*document, diagnostics);
@@ -111,10 +113,8 @@ std::vector<Field> parameters_of(const check::TypedGraph& typed) {
 std::vector<Image> images_of(const check::TypedGraph& typed) {
   std::vector<Image> images;
   for (lower::ImageSlot& slot : lower::image_slots(typed).slots) {
-    const std::string file =
-        slot.path.empty() ? "" : graph::path_beside(typed.graph.source->path(), slot.path);
-    const support::Span where = typed.graph.span(slot.place);
-    images.push_back({std::move(slot), file, where});
+    const std::string file = slot.path.empty() ? "" : graph::path_beside(slot.place.file->path(), slot.path);
+    images.push_back({std::move(slot), file});
   }
   return images;
 }
@@ -273,7 +273,7 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
 std::optional<Program> compile_function(const support::Source& source, const CompileOptions& options,
                                         Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::function, options, diagnostics);
-  if (typed == nullptr) return std::nullopt;
+  if (typed == nullptr || !check::stands_alone(*typed, diagnostics)) return std::nullopt;
   lower::Lowered lowered = lower_with_buffers(*typed);
   Program program{
       lower::Stage::eval, typed->graph.name, typed->document, std::move(lowered.module), 0, {}, {},
@@ -370,6 +370,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   if (graph.kind == graph::DocumentKind::function) {
     shader.inputs = input_fields(*typed);
     shader.outputs = output_fields(*typed);
+    shader.parameters.images = images_of(*typed);
     return shader;
   }
   shader.parameters = {parameters_of(*typed), images_of(*typed), {}};

@@ -14,7 +14,7 @@ namespace {
 
 void dump_json(const graph::Document& document, const graph::Json& json, const std::string& pointer,
                std::string& out) {
-  const auto place = document.source->position(json.begin);
+  const auto place = document.source_of(json)->position(json.begin);
   out += fmt::format("{}:{} {} ", place.line, place.column, pointer.empty() ? "/" : pointer);
   switch (json.kind) {
     case graph::Json::Kind::null: out += "null\n"; return;

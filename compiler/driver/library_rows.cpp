@@ -30,6 +30,27 @@ std::string doc_of(const graph::Input& input) {
   return text;
 }
 
+/// The documentation, and what keeps the function from being called everywhere.
+std::string doc_of(const check::TypedGraph& function) {
+  using check::StageNeed;
+  constexpr std::pair<StageNeed, std::string_view> all[] = {
+      {StageNeed::surface, "the surface"}, {StageNeed::vertex, "the vertex"},
+      {StageNeed::pixel, "the pixel"},     {StageNeed::images, "images"},
+      {StageNeed::lights, "the lights"},   {StageNeed::derivatives, "derivatives"},
+      {StageNeed::time, "the time"}};
+  static_assert(std::size(all) == check::stage_need_count);
+  std::vector<std::string_view> read;
+  for (const auto& [need, name] : all)
+    if (function.needs(need)) read.push_back(name);
+  std::string text = function.graph.doc;
+  if (read.empty()) return text;
+  text += (text.empty() ? "Reads " : " Reads ");
+  for (size_t i = 0; i < read.size(); ++i)
+    text += std::string(i == 0 ? "" : i + 1 == read.size() ? " and " : ", ") + std::string(read[i]);
+  const bool only_time = read.size() == 1 && function.needs(StageNeed::time);
+  return text + (only_time ? ": for effects and posts." : ": for effects only.");
+}
+
 nodes::PortType type_of(const graph::Input& input) {
   return input.any ? nodes::AnyFloat : nodes::PortType{nodes::only(input.type)};
 }
@@ -62,7 +83,7 @@ LibraryRows::LibraryRows(check::Library& library, support::Diagnostics& diagnost
   for (const std::string& name : library.names()) {
     const auto function = library.function({name, nodes::table()}, scope, {}, diagnostics);
     if (function == nullptr) continue;
-    nodes::Row row{keep(name), keep(function->graph.doc), {}, nodes::Outputs{}, nodes::Function{}};
+    nodes::Row row{keep(name), keep(doc_of(*function)), {}, nodes::Outputs{}, nodes::Function{}};
     for (const graph::Input& input : function->graph.inputs) row.ports.push_back(port_of(input));
     for (size_t i = 0; i < function->graph.outputs.size(); ++i)
       row.outputs.push_back(

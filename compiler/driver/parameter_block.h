@@ -18,9 +18,8 @@ namespace isoshade::driver {
 
 /// An image that a program reads by way of a texture's record.
 struct Image {
-  lower::ImageSlot slot;
-  std::string file;  ///< the path that the document gives, relative to the document; empty if it gives none
-  support::Span where;  ///< where the document gives it
+  lower::ImageSlot slot;  ///< its `place` is where the path is written
+  std::string file;  ///< to open it; empty if no document gives a path
 };
 
 /// The record consists of the fields, one word for each image and one word for each count of taps, in this order.

@@ -26,7 +26,8 @@ struct ShaderPass {
 struct Shader {
   graph::DocumentKind kind{};
   emit::PureShader pure;
-  ParameterBlock parameters;           ///< of an effect or a post; the words are those of Program's records
+  /// Of an effect or a post; the words are those of Program's records. Of a function only the images.
+  ParameterBlock parameters;
   std::vector<ShaderPass> passes;      ///< of an effect
   std::vector<std::string> images;     ///< of a post: the names of further input images
   std::optional<size_t> enabled;       ///< of a post: index of a parameter field

@@ -15,16 +15,17 @@ using interface::HostRow;
 namespace place = interface::place;
 
 /// One for each struct of points.
-constexpr std::array kinds_of_points{PureKind::shade, PureKind::move_vertex, PureKind::post_process};
+constexpr std::array kinds_of_points{PureKind::shade, PureKind::move_vertex, PureKind::post_process,
+                                     PureKind::function};
 
 /// The local that holds a function's point.
 std::string_view point_name(PureKind kind) {
   switch (kind) {
     case PureKind::shade:
-    case PureKind::coverage: return "surface";
+    case PureKind::coverage:
+    case PureKind::function: return "surface";
     case PureKind::move_vertex: return "vertex";
     case PureKind::post_process: return "screen";
-    case PureKind::function: break;
   }
   return "";
 }
@@ -64,7 +65,8 @@ void for_each_point_parameter(const PureShader& shader, PureKind kind, Add add) 
     const std::vector<ir::Parameter>& parameters = shader.module.functions[function.entry].parameters;
     for (size_t i = 0; i < parameters.size(); ++i) {
       const interface::Binding* binding = i < function.bindings.size() ? &function.bindings[i] : nullptr;
-      if (binding == nullptr || std::holds_alternative<place::Point>(place_of(*binding, false)))
+      if (binding == nullptr ||
+          std::holds_alternative<place::Point>(place_of(*binding, kind == PureKind::function)))
         add(parameters[i], binding);
     }
   }
@@ -124,7 +126,8 @@ class PurePrinter {
 
   std::vector<std::string> records() const {
     std::vector<std::string> names{record(parameters_record), record(results_record)};
-    for (const PureKind kind : kinds_of_points) names.push_back(record(point_record(kind)));
+    for (const PureKind kind : kinds_of_points)
+      if (kind != PureKind::function) names.push_back(record(point_record(kind)));  // that of shade
     return names;
   }
 
@@ -182,10 +185,10 @@ class PurePrinter {
       text.asks.push_back(interface::row(call).name);
     if (function.kind == PureKind::function) {
       const std::vector<PureField> results = result_fields(shader_, function);
-      if (results.size() < 2) return;
-      text.result_type = record(results_record);
-      for (const PureField& result : results) text.result_fields.push_back(result.name);
-      return;
+      if (results.size() > 1) text.result_type = record(results_record);
+      for (const PureField& result : results)
+        if (results.size() > 1) text.result_fields.push_back(result.name);
+      if (takes_only_arguments(function)) return;
     }
     const std::vector<ir::Parameter>& parameters = shader_.module.functions[function.entry].parameters;
     for (size_t i = 0; i < parameters.size(); ++i) {
@@ -204,8 +207,44 @@ class PurePrinter {
     };
     if (!point(function.kind).empty()) declare(point_name(function.kind), point_record(function.kind), false);
     if (!shader_.parameters.empty()) declare("parameters", parameters_record, true);
+    if (function.kind == PureKind::function) declare_arguments(function, text);
     text.has_signature = true;
-    text.is_given_host = true;
+    text.is_given_host = function.kind != PureKind::function || !text.asks.empty();
+  }
+
+  static bool takes_only_arguments(const PureFunction& function, const ir::Function& entry) {
+    return entry.parameters.size() == function.bindings.size() &&
+           std::ranges::all_of(function.bindings, [](const interface::Binding& binding) {
+             return std::holds_alternative<place::Argument>(place_of(binding, true));
+           });
+  }
+  bool takes_only_arguments(const PureFunction& function) const {
+    return takes_only_arguments(function, shader_.module.functions[function.entry]);
+  }
+
+  /// The inputs and images of a function document that is given a point or asks its host, too.
+  void declare_arguments(const PureFunction& function, FunctionText& text) const {
+    const ir::Function& entry = shader_.module.functions[function.entry];
+    Names names(Scope::local);
+    for (const std::string& name : text.local_names) names.hold(name);
+    for (size_t i = 0; i < function.bindings.size(); ++i) {
+      if (!std::holds_alternative<place::Argument>(place_of(function.bindings[i], true))) continue;
+      const ir::Parameter& parameter = entry.parameters[i];
+      text.parameters[i].text = names.take(parameter.name);
+      text.local_names.push_back(text.parameters[i].text);
+      text.signature += text.signature.empty() ? "" : ", ";
+      language_.parameter(text.signature, parameter.type, parameter.uniform, text.parameters[i].text,
+                          reads(entry, entry.blocks[0].parameters[i]));
+    }
+  }
+
+  static bool reads(const ir::Function& function, ir::ValueId value) {
+    const auto has = [&](std::span<const ir::ValueId> values) {
+      return std::ranges::find(values, value) != values.end();
+    };
+    return std::ranges::any_of(function.instructions,
+                               [&](const ir::Instruction& made) { return has(function.operands_of(made)); }) ||
+           std::ranges::any_of(function.blocks, [&](const ir::Block& block) { return has(block.yields); });
   }
 
   /// "vec4 cook_torrance_shade(cook_torrance_Surface surface, cook_torrance_Parameters parameters)"
@@ -254,10 +293,10 @@ std::string name_prefix(const PureShader& shader) {
 std::string_view point_record(PureKind kind) {
   switch (kind) {
     case PureKind::shade:
-    case PureKind::coverage: return "Surface";
+    case PureKind::coverage:
+    case PureKind::function: return "Surface";
     case PureKind::move_vertex: return "Vertex";
     case PureKind::post_process: return "Screen";
-    case PureKind::function: break;
   }
   return "";
 }

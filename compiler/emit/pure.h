@@ -47,8 +47,8 @@ struct PureShader {
 std::string name_prefix(const PureShader& shader);
 /// The structs of the parameters, and of the results of a function document that has several.
 inline constexpr std::string_view parameters_record = "Parameters", results_record = "Result";
-/// The struct whose fields a function is given for each point that it is called for; empty for functions. Kinds with the
-/// same struct take the same points.
+/// The struct whose fields a function is given for each point that it is called for. Kinds with the same struct take the
+/// same points.
 std::string_view point_record(PureKind kind);
 /// Its fields: all that the functions that take it read, with the derivatives that they need.
 std::vector<PureField> point_fields(const PureShader& shader, PureKind kind);

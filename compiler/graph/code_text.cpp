@@ -53,7 +53,8 @@ size_t end_of_symbol(std::string_view text, size_t at) {
 
 }  // namespace
 
-CodeText::CodeText(const Document& document, const Json& string) : text_(string.string) {
+CodeText::CodeText(const Document& document, const Json& string)
+    : text_(string.string), source_(string.source) {
   const std::string_view raw = document.text(string);
   offsets_.reserve(text_.size() + 1);
   size_t at = 1;  // after the quote

@@ -27,10 +27,11 @@ class CodeText {
   /// The first token at or after `from`, an offset in the decoded string.
   Token next(uint32_t from) const;
   /// Maps a range of the decoded string to the document, accounting for escapes.
-  TextRange place(uint32_t begin, uint32_t end) const { return {offsets_[begin], offsets_[end]}; }
+  TextRange place(uint32_t begin, uint32_t end) const { return {offsets_[begin], offsets_[end], source_}; }
 
  private:
   const std::string& text_;
+  uint32_t source_;               ///< as Json::source
   std::vector<uint32_t> offsets_;  ///< document offset of each decoded byte and of the closing quote
 };
 

@@ -86,7 +86,7 @@ ExpressionParser::Operand ExpressionParser::choice() {
     Operand then = choice();
     expect(":", "between the two results of \"?\"");
     Operand other = choice();
-    const TextRange place{condition.place.begin, other.place.end};
+    const TextRange place{condition.place.begin, other.place.end, other.place.source};
     condition = operation("?:", sign, place,
                           {{"the condition", std::move(condition)},
                            {"the first result", std::move(then)},
@@ -103,7 +103,7 @@ ExpressionParser::Operand ExpressionParser::binary(int precedence) {
     if (row == std::end(binaries) || row->precedence < precedence) break;
     const Token sign = advance();
     Operand right = binary(row->precedence + 1);
-    const TextRange place{left.place.begin, right.place.end};
+    const TextRange place{left.place.begin, right.place.end, right.place.source};
     left = operation(row->text, sign, place,
                      {{"the left side", std::move(left)}, {"the right side", std::move(right)}});
   }
@@ -116,7 +116,7 @@ ExpressionParser::Operand ExpressionParser::unary() {
   const Token sign = advance();
   Operand operand = too_deep() ? Operand{} : unary();
   --depth_;
-  const TextRange place{place_of(sign).begin, operand.place.end};
+  const TextRange place{place_of(sign).begin, operand.place.end, operand.place.source};
   if (sign.text == "+") return operand;
   if (sign.text == "!") return operation("!", sign, place, {{"the operand", std::move(operand)}});
   auto* literal = std::get_if<Literal>(&operand.value);

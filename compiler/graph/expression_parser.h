@@ -82,7 +82,9 @@ class ExpressionParser {
   Operand fail(TextRange place, std::string message, std::string_view fix = {});
   bool too_deep();
   TextRange place_of(const Token& token) const { return code_.place(token.begin, token.end); }
-  TextRange since(TextRange first) const { return {first.begin, code_.place(last_end_, last_end_).begin}; }
+  TextRange since(TextRange first) const {
+    return {first.begin, code_.place(last_end_, last_end_).begin, first.source};
+  }
 
   Graph& graph_;
   uint32_t root_;

@@ -169,7 +169,7 @@ std::optional<Literal> parse_literal(const Document& document, const Json& json,
   return std::nullopt;
 }
 
-std::optional<Link> parse_link(const support::Source& source, std::string_view text, TextRange place,
+std::optional<Link> parse_link(std::string_view text, TextRange place, const support::Span& where,
                                Diagnostics& diagnostics) {
   Link link{{}, {}, place};
   size_t parts = 0;
@@ -184,7 +184,7 @@ std::optional<Link> parse_link(const support::Source& source, std::string_view t
     rest.remove_prefix(dot + 1);
   }
   if (good) return link;
-  diagnostics.report(Id::bad_link, {source, place.begin, place.end}, quote(text) + " is not a link")
+  diagnostics.report(Id::bad_link, where, quote(text) + " is not a link")
       .note("a link is \"node\", \"node.port\", \"node.xyz\" or \"node.port.xyz\"");
   return std::nullopt;
 }

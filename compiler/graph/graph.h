@@ -50,9 +50,10 @@ int float_count(Type type);
 /// Whether `text` is a valid name of an input, parameter, node, port or pass: [A-Za-z_][A-Za-z0-9_]{0,127}.
 bool is_id(std::string_view text);
 
-/// A byte range in the document; Graph::span makes it a Span.
+/// A byte range in the document or in one that it extends; Graph::span makes it a Span.
 struct TextRange {
   uint32_t begin = 0, end = 0;
+  uint32_t source = 0;  ///< as Json::source
 };
 
 /// A literal value in the document. Floats are rounded once from the text, denormals flush to zero; all are
@@ -169,6 +170,7 @@ struct InputImage {
 
 struct Graph {
   support::Source source;
+  std::vector<support::Source> bases = {};  ///< the documents that it extends: sources 1, 2, ... of places
   DocumentKind kind = DocumentKind::function;  ///< never scene
   std::string name, doc;
   TextRange name_place;
@@ -188,7 +190,9 @@ struct Graph {
   };
   std::unordered_map<std::string, Name> names;
 
-  support::Span span(TextRange place) const { return {source, place.begin, place.end}; }
+  support::Span span(TextRange place) const {
+    return {place.source == 0 ? source : bases[place.source - 1], place.begin, place.end};
+  }
   /// Whether it has generic inputs ("any"). They all have the same type, inferred at each call.
   bool is_generic() const { return std::ranges::any_of(inputs, &Input::any); }
 };
@@ -196,8 +200,8 @@ struct Graph {
 /// Reads a function, effect or post document and reports all errors in its structure.
 std::optional<Graph> build_graph(const Document& document, support::Diagnostics& diagnostics);
 
-/// Parses a string as a link; reports a malformed one.
-std::optional<Link> parse_link(const support::Source& source, std::string_view text, TextRange place,
+/// Parses a string as a link; reports a malformed one at `where`, which is `place` as a Span.
+std::optional<Link> parse_link(std::string_view text, TextRange place, const support::Span& where,
                                support::Diagnostics& diagnostics);
 
 /// The integer value called `name` ("enum"), as a literal; nullopt if there is none.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "compiler/graph/expression.h"
+#include "compiler/graph/extend.h"
 #include "compiler/graph/graph_builder.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
@@ -34,7 +35,7 @@ void GraphBuilder::enter(const Member& member, std::string_view what, Graph::Nam
 
 std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
   if (json.kind == Json::Kind::string) {
-    return parse_link(document_.source, json.string, place_of(json), diagnostics_);
+    return parse_link(json.string, place_of(json), document_.span(json), diagnostics_);
   }
   if (json.kind == Json::Kind::object) {
     ObjectReader reader(document_, json, "a link", diagnostics_);
@@ -42,7 +43,7 @@ std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
     if (target != nullptr && target->kind != Json::Kind::string)
       reader.report_wrong("link", *target, "a string");
     if (!reader.finish()) return std::nullopt;
-    return parse_link(document_.source, target->string, place_of(*target), diagnostics_);
+    return parse_link(target->string, place_of(*target), document_.span(*target), diagnostics_);
   }
   diagnostics_.report(Id::wrong_type, document_.span(json),
                       quote(key) + " must be a link, not " + std::string(kind_name(json.kind)));
@@ -122,7 +123,7 @@ void GraphBuilder::read_node(const Member& member) {
     node.ports.push_back(std::move(port));
   }
   if (type == nullptr) {
-    diagnostics_.report(Id::missing_key, {document_.source, json.begin, json.begin + 1},
+    diagnostics_.report(Id::missing_key, {document_.source_of(json), json.begin, json.begin + 1},
                         "node " + quote(member.key) + " needs the key \"type\"");
   } else {
     node.type_place = place_of(*type);
@@ -136,7 +137,7 @@ void GraphBuilder::read_free_key(const Member& entry, Node& node) {
   Port port{entry.key, Literal{}, key_place(entry), place_of(entry.value)};
   const Json* target = entry.value.kind == Json::Kind::object ? entry.value.find("link") : nullptr;
   if (target != nullptr && target->kind == Json::Kind::string) {
-    std::optional<Link> link = parse_link(document_.source, target->string, place_of(*target), unheard);
+    std::optional<Link> link = parse_link(target->string, place_of(*target), document_.span(*target), unheard);
     if (!link) return;
     port.value = std::move(*link);
   } else if (std::optional<Literal> literal = parse_literal(document_, entry.value, entry.key, unheard)) {
@@ -150,7 +151,7 @@ void GraphBuilder::read_free_key(const Member& entry, Node& node) {
 void GraphBuilder::read_code(const Member& member, const Json* code) {
   if (code == nullptr) {
     diagnostics_
-        .report(Id::missing_key, {document_.source, member.value.begin, member.value.begin + 1},
+        .report(Id::missing_key, {document_.source_of(member.value), member.value.begin, member.value.begin + 1},
                 "expression " + quote(member.key) + " needs the key \"code\"")
         .suggest("write \"code\": \"a * b\", with a and b as further keys");
   } else if (code->kind != Json::Kind::string) {
@@ -196,6 +197,7 @@ std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
                       diagnostics_);
   reader.ignore("isoshade");
   reader.ignore("$schema");
+  if (kind == DocumentKind::effect) reader.ignore(extends_key);  // the base is merged in before
   graph_.doc = reader.string("doc", "");
   graph_.name = reader.string(kind_name(kind));
   const Json& name = *root.find(kind_name(kind));

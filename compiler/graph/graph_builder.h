@@ -10,14 +10,17 @@
 
 namespace isoshade::graph {
 
-inline TextRange place_of(const Json& json) { return {json.begin, json.end}; }
-inline TextRange key_place(const Member& member) { return {member.key_begin, member.key_end}; }
+inline TextRange place_of(const Json& json) { return {json.begin, json.end, json.source}; }
+inline TextRange key_place(const Member& member) {
+  return {member.key_begin, member.key_end, member.value.source};
+}
 
 class GraphBuilder {
  public:
   GraphBuilder(const Document& document, support::Diagnostics& diagnostics)
       : document_(document), diagnostics_(diagnostics) {
     graph_.source = document.source;
+    graph_.bases = document.others;
   }
 
   std::optional<Graph> build(DocumentKind kind);

@@ -79,7 +79,9 @@ Place place_of(const Binding& binding, bool in_function) {
           [&](const source::Input&) {
             return in_function ? Place(place::Argument{}) : Place(place::Parameter{});
           },
-          [](const source::Image&) { return Place(place::Parameter{}); },
+          [&](const source::Image&) {
+            return in_function ? Place(place::Argument{}) : Place(place::Parameter{});
+          },
           [](const source::LightCount&) { return Place(place::Host{HostCall::light_count}); },
           [](const source::ScreenValue& s) { return place_of(s.value); },
           [](const source::PixelOfImage&) { return Place(place::Point{}); },

@@ -48,7 +48,7 @@ namespace place {
 struct Point {};
 /// A field of the struct Parameters.
 struct Parameter {};
-/// An argument of a function document.
+/// An argument of a function document: an input, or the number of an image.
 struct Argument {};
 /// What the host answers: a call with at most one integer.
 struct Host {

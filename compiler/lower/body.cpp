@@ -36,7 +36,10 @@ class Body {
 
  private:
   void make_row(const nodes::Row& row, uint32_t node);
-  void make_call(const Node& node);
+  void make_call(uint32_t node);
+  /// What a parameter of a called function is given; of an input, its value is kept in `input` for its next column.
+  ir::ValueId argument(const interface::Binding& binding, const Node& node, std::span<const uint32_t> image_slots,
+                       Value& input);
   void make_sum(uint32_t node);
   /// How often a sum over lights or taps turns.
   ir::ValueId turns_of(uint32_t sum);
@@ -96,7 +99,9 @@ uint32_t Body::origin_of(uint32_t node) {
 uint32_t Body::add_origin(std::string name, uint32_t node) {
   const graph::Node& source = graph_.graph.nodes[node];
   const bool is_whole = name == source.id;
-  const uint32_t origin = b_.add_origin(std::move(name), graph_.graph.span(source.id_place).line(),
+  // The comment behind a function names its own document, and so no line of a base.
+  const uint32_t line = source.id_place.source == 0 ? graph_.graph.span(source.id_place).line() : 0;
+  const uint32_t origin = b_.add_origin(std::move(name), line,
                                         is_whole ? source.doc : std::string());
   if (std::vector<uint32_t>* nodes = environment_.node_of_origin; nodes != nullptr) {
     nodes->resize(origin + 1, ir::none);
@@ -112,7 +117,7 @@ void Body::make(uint32_t index) {
   if (node.row != nullptr) {
     make_row(*node.row, index);
   } else {
-    make_call(node);
+    make_call(index);
   }
   name_results(index, first_new);
   b_.set_origin(0);
@@ -197,7 +202,7 @@ Value Body::image(uint32_t index) {
   using nodes::AddressMode;
   const Node& node = graph_.nodes[index];
   const std::span<const Operand> operands = graph_.operands_of(node);
-  const ir::ValueId texture = environment_.image_slots[environment_.images->of_node[index]];
+  const ir::ValueId texture = environment_.image_slots[environment_.images->of_node.at(index)[0]];
   const ir::ValueId otherwise = read(operands[port::default_value]).id();
   const ir::ValueId texcoord = read(operands[port::texcoord]).id();
   const Sampling sampling = sampling_of(graph_, node);
@@ -234,13 +239,42 @@ Value Body::image(uint32_t index) {
   return b_.branch(there, picture, [&] { return std::vector{otherwise}; }).front();
 }
 
-void Body::make_call(const Node& node) {
+ir::ValueId Body::argument(const interface::Binding& binding, const Node& node,
+                           std::span<const uint32_t> image_slots, Value& input) {
+  namespace source = interface::source;
+  const auto only_posts = [&]() -> ir::ValueId { support::bug("a function has " + binding.parameter.name); };
+  return std::visit(
+      interface::Cases{
+          [&](const source::Attribute& s) { return environment_.surface[s.value.index()]; },
+          [&](const source::MatrixColumn& s) {
+            return environment_.matrices[static_cast<size_t>(s.matrix)][s.column];
+          },
+          [&](const source::Time&) { return environment_.time; },
+          [&](const source::Input& s) {
+            if (s.column == 0) input = read(graph_.operands_of(node)[s.input]);
+            return input.ids()[s.column];
+          },
+          [&](const source::Image& s) { return environment_.image_slots[image_slots[s.slot]]; },
+          [&](const source::LightCount&) { return environment_.light_count; },
+          [&](const source::ScreenValue&) { return only_posts(); },
+          [&](const source::PixelOfImage&) { return only_posts(); },
+          [&](const source::OffsetInPixel&) { return only_posts(); },
+          [&](const source::SizeOfImage&) { return only_posts(); },
+          [&](const source::TapCount&) { return only_posts(); },
+      },
+      binding.source);
+}
+
+void Body::make_call(uint32_t index) {
+  const Node& node = graph_.nodes[index];
+  const Callee& callee = environment_.callee_of(*node.callee);
+  std::span<const uint32_t> image_slots;
+  if (node.callee->needs(check::StageNeed::images)) image_slots = environment_.images->of_node.at(index);
   std::vector<ir::ValueId> arguments;
-  for (const Operand& operand : graph_.operands_of(node)) {
-    const Value value = read(operand);
-    arguments.insert(arguments.end(), value.ids().begin(), value.ids().end());
-  }
-  const std::vector<ir::ValueId> results = b_.call(environment_.function_of(*node.callee), arguments);
+  Value input;
+  for (const interface::Binding& binding : callee.bindings)
+    arguments.push_back(argument(binding, node, image_slots, input));
+  const std::vector<ir::ValueId> results = b_.call(callee.function, arguments);
   std::span<const ir::ValueId> rest(results);
   const std::span<const Type> types = graph_.types_of(node);
   for (size_t i = 0; i < types.size(); ++i) {

@@ -28,6 +28,14 @@ struct Needs {
   ScreenNeeds screen;
 
   Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
+  /// Adds what a function that one of the nodes calls has as parameters, but for its inputs and images.
+  void add_callee(const std::vector<interface::Binding>& bindings);
+};
+
+/// A function of the module that a body calls.
+struct Callee {
+  uint32_t function = 0;
+  std::vector<interface::Binding> bindings;  ///< of its parameters
 };
 
 /// What the body reads from its function's parameters and calls in its module. Where a value is not needed it is none.
@@ -45,7 +53,7 @@ struct Environment {
   const ImageSlots* images = nullptr;
   std::vector<ir::ValueId> image_slots;  ///< of the slots: the texture, negative for none
   ScreenInputs screen;
-  std::function<uint32_t(const check::TypedGraph&)> function_of;  ///< of a document that is called
+  std::function<const Callee&(const check::TypedGraph&)> callee_of;  ///< the function of a document
   std::vector<uint32_t>* node_of_origin = nullptr;                ///< if given: filled, see NodesOfOrigins
 };
 

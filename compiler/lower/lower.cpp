@@ -162,25 +162,28 @@ class ModuleLowering {
  private:
   using Bindings = std::vector<Binding>;
 
-  /// Lowers the documents that the needed nodes call.
-  void add_callees(const TypedGraph& graph, const Needs& needs);
+  /// Lowers the documents that the needed nodes call, and adds what these need.
+  void add_callees(const TypedGraph& graph, Needs& needs);
   uint32_t add_function(const TypedGraph& graph, std::string name, Bindings& bindings);
   /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are
   /// wanted, and a cut-out is compared with its cutoff where a boolean is wanted.
   uint32_t build(const TypedGraph& graph, std::string name, const Bindings& bindings, const Needs& needs,
-                 std::span<const Operand> roots, std::vector<ir::Result> results,
-                 const ImageSlots& images = {});
+                 std::span<const Operand> roots, std::vector<ir::Result> results);
   interface::Interface interface_of(uint32_t entry, Bindings bindings) const {
     return {entry, std::move(bindings), host_.host};
   }
   std::string unique_name(const std::string& wanted);
   void declare_light_at();
   void add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const;
+  /// What stands before and after the parameters of an effect, and after the inputs of a function.
+  static void add_surface(const Needs& needs, Bindings& bindings);
+  void add_images_and_lights(const TypedGraph& graph, const Needs& needs, Bindings& bindings);
 
   ir::Module module_;
   interface::Interface host_;  ///< only Interface::host: what the functions so far ask for
   NodesOfOrigins* nodes_;
-  std::unordered_map<const TypedGraph*, uint32_t> functions_;
+  std::unordered_map<const TypedGraph*, Callee> functions_;
+  ImageSlotTable images_;
   std::unordered_set<std::string> names_;
 };
 
@@ -190,18 +193,23 @@ std::string ModuleLowering::unique_name(const std::string& wanted) {
   return name;
 }
 
-void ModuleLowering::add_callees(const TypedGraph& graph, const Needs& needs) {
+void ModuleLowering::add_callees(const TypedGraph& graph, Needs& needs) {
+  std::unordered_set<const TypedGraph*> added;
   for (size_t i = 0; i < graph.nodes.size(); ++i) {
     const TypedGraph* callee = graph.nodes[i].callee.get();
-    if (!needs.nodes[i] || callee == nullptr || functions_.contains(callee)) continue;
-    Bindings bindings;
-    functions_[callee] = add_function(*callee, unique_name(authored_name(callee->graph.name)), bindings);
+    if (!needs.nodes[i] || callee == nullptr || !added.insert(callee).second) continue;
+    if (!functions_.contains(callee)) {
+      Callee made;
+      made.function = add_function(*callee, unique_name(authored_name(callee->graph.name)), made.bindings);
+      functions_[callee] = std::move(made);
+    }
+    needs.add_callee(functions_[callee].bindings);
   }
 }
 
 uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const Bindings& bindings,
                                const Needs& needs, std::span<const Operand> roots,
-                               std::vector<ir::Result> results, const ImageSlots& images) {
+                               std::vector<ir::Result> results) {
   const auto index = static_cast<uint32_t>(module_.functions.size());
   ir::Function& function = module_.functions.emplace_back();
   function.name = std::move(name);
@@ -211,8 +219,8 @@ uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const 
 
   ir::Builder b(module_, index);
   Environment environment(b, graph, bindings, host_);
-  environment.images = &images;
-  environment.function_of = [this](const TypedGraph& callee) { return functions_.at(&callee); };
+  environment.images = &images_.of(graph);
+  environment.callee_of = [this](const TypedGraph& callee) -> const Callee& { return functions_.at(&callee); };
   if (nodes_ != nullptr) {
     nodes_->resize(module_.functions.size());
     environment.node_of_origin = &nodes_->back();
@@ -229,18 +237,41 @@ uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const 
   return index;
 }
 
-uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name, Bindings& bindings) {
-  const Needs needs(graph, graph.outputs);
-  add_callees(graph, needs);
-  const std::vector<std::vector<std::string>> inputs = parameter_names(graph);
-  size_t count = 0;
-  for (const std::vector<std::string>& columns : inputs) count += columns.size();
-  for (uint32_t i = 0; i < inputs.size(); ++i) {
-    const size_t number = bindings.size() / inputs_of_a_group + 1;
-    const std::string group = count > most_plain_inputs ? "inputs_" + std::to_string(number) : "";
-    for (Binding& binding : bind_input(graph, i, inputs[i], group, false))
-      bindings.push_back(std::move(binding));
+/// Makes the parameters of a function plain ones, or groups many: no two have one name. `own`: how many come from inputs.
+void name_as_arguments(std::vector<Binding>& bindings, size_t own) {
+  std::unordered_set<std::string> taken;
+  for (size_t i = 0; i < own; ++i) taken.insert(bindings[i].parameter.name);
+  for (size_t i = own; i < bindings.size(); ++i) {
+    ir::Parameter& parameter = bindings[i].parameter;
+    const bool is_image = std::holds_alternative<interface::source::Image>(bindings[i].source);
+    if (taken.contains(parameter.name) && !parameter.group.empty() && !is_image)
+      parameter.name = parameter.group + "_" + parameter.name;
+    while (!taken.insert(parameter.name).second) parameter.name += "_";
+    parameter.group.clear();
   }
+  if (bindings.size() <= most_plain_inputs) return;
+  // A struct holds uniform values, or varying ones.
+  std::array<size_t, 2> counts{};
+  for (Binding& binding : bindings) {
+    const bool uniform = binding.parameter.uniform;
+    const size_t number = counts[uniform ? 1 : 0]++ / inputs_of_a_group + 1;
+    binding.parameter.group = (uniform ? "uniform_inputs_" : "inputs_") + std::to_string(number);
+  }
+}
+
+uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name, Bindings& bindings) {
+  Needs needs(graph, graph.outputs);
+  add_callees(graph, needs);
+  if (needs.light_at) declare_light_at();
+  const std::vector<std::vector<std::string>> inputs = parameter_names(graph);
+  for (uint32_t i = 0; i < inputs.size(); ++i) {
+    if (graph.graph.inputs[i].type == Type::filename) continue;
+    for (Binding& binding : bind_input(graph, i, inputs[i], "", false)) bindings.push_back(std::move(binding));
+  }
+  const size_t own = bindings.size();
+  add_surface(needs, bindings);
+  add_images_and_lights(graph, needs, bindings);
+  name_as_arguments(bindings, own);
   std::vector<std::pair<std::string, Type>> outputs;
   for (size_t i = 0; i < graph.outputs.size(); ++i)
     outputs.emplace_back(graph.graph.outputs[i].name, graph.outputs[i].needed);
@@ -269,6 +300,25 @@ void ModuleLowering::declare_light_at() {
   function.results = {{"direction", ir::vector_type(3)}, {"color", ir::vector_type(3)}};
 }
 
+void ModuleLowering::add_surface(const Needs& needs, Bindings& bindings) {
+  for (const interface::SurfaceValue value : interface::surface_values())
+    if (needs.surface[value.index()]) bindings.push_back(interface::bind(value));
+  for (size_t m = 0; m < interface::space_matrix_count; ++m)
+    for (uint32_t c = 0; c < needs.columns[m]; ++c)
+      bindings.push_back(interface::bind(static_cast<interface::SpaceMatrix>(m), c));
+  if (needs.time) bindings.push_back(interface::bind_time());
+}
+
+void ModuleLowering::add_images_and_lights(const TypedGraph& graph, const Needs& needs, Bindings& bindings) {
+  const ImageSlots& images = images_.of(graph);
+  std::vector<bool> reads(images.slots.size());
+  for (const auto& [node, slots] : images.of_node)
+    for (const uint32_t slot : slots) reads[slot] = reads[slot] || needs.nodes[node];
+  for (uint32_t i = 0; i < reads.size(); ++i)
+    if (reads[i]) bindings.push_back(interface::bind_image(i, images.slots[i].name));
+  if (needs.lights) bindings.push_back(interface::bind_light_count());
+}
+
 /// What an effect's or a post's parameters are bound to, as far as they are needed.
 void ModuleLowering::add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const {
   const std::vector<std::vector<std::string>> columns = parameter_names(graph);
@@ -283,33 +333,21 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
                                               const std::string& prefix) {
   const std::span<const Operand> roots = outputs_of(graph, pass, part);
   support::assert_that(!roots.empty(), "the pass has no such part");
-  const Needs needs(graph, roots);
+  Needs needs(graph, roots);
   const std::string name = unique_name(prefix + std::string(function_of(part)));
   add_callees(graph, needs);
   if (needs.light_at) declare_light_at();
 
   Bindings bindings;
-  for (const interface::SurfaceValue value : interface::surface_values())
-    if (needs.surface[value.index()]) bindings.push_back(interface::bind(value));
-  for (size_t m = 0; m < interface::space_matrix_count; ++m)
-    for (uint32_t c = 0; c < needs.columns[m]; ++c)
-      bindings.push_back(interface::bind(static_cast<interface::SpaceMatrix>(m), c));
-  if (needs.time) bindings.push_back(interface::bind_time());
+  add_surface(needs, bindings);
   add_parameters(graph, needs, bindings);
-  const ImageSlots images = image_slots(graph);
-  std::vector<bool> reads(images.slots.size());
-  for (size_t i = 0; i < graph.nodes.size(); ++i)
-    if (needs.nodes[i] && graph.nodes[i].row != nullptr && graph.nodes[i].row->is<nodes::Image>())
-      reads[images.of_node[i]] = true;
-  for (uint32_t i = 0; i < reads.size(); ++i)
-    if (reads[i]) bindings.push_back(interface::bind_image(i, images.slots[i].name));
-  if (needs.lights) bindings.push_back(interface::bind_light_count());
-  const uint32_t entry = build(graph, name, bindings, needs, roots, {result_of(part)}, images);
+  add_images_and_lights(graph, needs, bindings);
+  const uint32_t entry = build(graph, name, bindings, needs, roots, {result_of(part)});
   return interface_of(entry, std::move(bindings));
 }
 
 interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
-  const Needs needs(graph, graph.outputs);
+  Needs needs(graph, graph.outputs);
   names_.insert(names::post_process);
   declare_reads(module_, host_, graph, needs.screen);
   for (const interface::HostFunction& read : host_.host) names_.insert(module_.functions[read.function].name);

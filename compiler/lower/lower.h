@@ -39,7 +39,9 @@ struct LowerOptions {
 /// calls, and their declarations have no bodies yet.
 ///
 /// A function document becomes a function whose parameters are the inputs and whose results are the
-/// outputs, in order; a matrix is its columns: "m_0", "m_1", ...
+/// outputs, in order; a matrix is its columns: "m_0", "m_1", ... Behind the inputs stand the other values that it or
+/// a function that it calls reads, as a pass has them (below) but without groups: callers pass theirs on. An image that
+/// is an input has a parameter only where it is read, and one for each decoding.
 ///
 /// A pass becomes `shade` -> (color: vec4) with these parameters, as far as they are used:
 ///   surface.position vec3, .normal vec3, .texcoord vec2, .view_direction vec3, .tangent vec3,

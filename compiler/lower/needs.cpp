@@ -80,6 +80,20 @@ Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
     if (!columns[i].empty()) inputs[i] = Value(columns[i]);
 }
 
+void Needs::add_callee(const std::vector<interface::Binding>& bindings) {
+  namespace source = interface::source;
+  for (const interface::Binding& binding : bindings) {
+    if (const auto* attribute = std::get_if<source::Attribute>(&binding.source))
+      surface[attribute->value.index()] = true;
+    if (const auto* column = std::get_if<source::MatrixColumn>(&binding.source)) {
+      size_t& count = columns[static_cast<size_t>(column->matrix)];
+      count = std::max<size_t>(count, column->column + 1);
+    }
+    time |= std::holds_alternative<source::Time>(binding.source);
+    lights |= std::holds_alternative<source::LightCount>(binding.source);
+  }
+}
+
 Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     : nodes(graph.nodes.size()), inputs(graph.graph.inputs.size()) {
   const auto need = [&](const Operand& operand) {

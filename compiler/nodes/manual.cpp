@@ -81,6 +81,18 @@ std::string line_text(std::string_view name, std::string_view doc) {
   return "  " + padded(std::string(name), 18) + " " + std::string(first_sentence(doc)) + "\n";
 }
 
+/// The ports of a function, those with a default in brackets, and its outputs: "alpha float, [n float] -> out float".
+std::string signature_text(const Row& row) {
+  std::string ports, outputs;
+  for (const Port& port : row.ports) {
+    const std::string text = std::string(port.name) + " " + types_text(port.type.accepts);
+    ports += (ports.empty() ? "" : ", ") + (port.required(true) ? text : "[" + text + "]");
+  }
+  for (const Output& output : row.outputs)
+    outputs += (outputs.empty() ? "" : ", ") + std::string(output.name) + " " + types_text(output.type.accepts);
+  return "    " + ports + (ports.empty() ? "" : " ") + "-> " + outputs + "\n";
+}
+
 /// A cell of a table: no bars.
 std::string cell(std::string text) {
   for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.replace(at, 1, "\\|");
@@ -141,7 +153,7 @@ std::string table_text(std::span<const Row> library) {
   }
   text += "\nformulas\n" + line_text(graph::expression_type, graph::expression_doc);
   if (!library.empty()) text += "\nlibrary\n";
-  for (const Row& row : library) text += line_text(row.name, row.doc);
+  for (const Row& row : library) text += line_text(row.name, row.doc) + signature_text(row);
   return text;
 }
 

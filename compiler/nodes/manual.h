@@ -14,7 +14,8 @@ std::string type_text(const PortType& type);
 /// "0.5", "true", "[0.2126, 0.7152, 0.0722]", "\"world\"", "the surface's normal"; empty if the port is required.
 std::string default_text(const Port& port);
 
-/// Every node and every function of the library with the first sentence of its documentation, by group.
+/// Every node and every function of the library with the first sentence of its documentation, by group; functions with
+/// their ports.
 std::string table_text(std::span<const Row> library);
 /// The documentation of a row, its ports and outputs.
 std::string row_text(const Row& row);

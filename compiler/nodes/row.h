@@ -31,8 +31,8 @@ inline const std::vector<std::string_view> space_names{"world", "object", "view"
 constexpr Space space_of(uint32_t choice) { return choice == 3 ? Space::object : static_cast<Space>(choice); }
 
 /// The default of a port: none (the port is required), a number for every component (for a matrix: for the diagonal), a
-/// boolean (0 for other types), three numbers, a text, or a surface attribute (required in function documents, which
-/// have no surface).
+/// boolean (0 for other types), three numbers, a text, or a surface attribute (required in posts, which have no
+/// surface).
 using Default =
     std::variant<std::monostate, float, bool, std::array<float, 3>, std::string_view, SurfaceValue>;
 
@@ -45,7 +45,7 @@ struct Port {
   /// Of a choice: a link to an integer input may take its place, whose values are called as the first of the choices.
   bool takes_input = false;
 
-  /// `has_surface`: the document is an effect.
+  /// `has_surface`: the document is an effect, or a function that effects may call.
   bool required(bool has_surface) const {
     return value.index() == 0 || (!has_surface && std::holds_alternative<SurfaceValue>(value));
   }
@@ -128,7 +128,8 @@ using Custom = void (*)(Site&);
 using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative,
                               Image, Screen, Fetch, WorldPosition, SumTaps, TapIndex, Custom>;
 
-/// The kinds of documents in which a node is available.
+/// The kinds of documents in which a node is available. A function may use what is available in effects; then only
+/// effects can call it, or for `drawn` nodes also posts (check/stage_needs.h).
 enum class Availability : uint8_t { anywhere, drawn /**< effects and posts */, effects, posts };
 
 /// The error of a port that violates a row's Condition.
@@ -159,7 +160,6 @@ struct Row {
   bool is_sum() const { return is<SumLights>() || is<SumTaps>(); }
   /// Whether its value depends on the iteration of the enclosing sum.
   bool is_summand() const { return is<Light>() || is<TapIndex>(); }
-  /// Function documents have no surface, textures, scene or screen.
   Availability availability() const {
     if (is<Time>()) return Availability::drawn;
     if (is<Surface>() || is<Transform>() || is<Light>() || is<SumLights>() || is<Derivative>() || is<Image>())

@@ -2,6 +2,7 @@
 #include "compiler/nodes/schema.h"
 
 #include "compiler/graph/expression.h"
+#include "compiler/graph/extend.h"
 #include "compiler/nodes/example.h"
 #include "compiler/nodes/manual.h"
 #include "compiler/nodes/schema_json.h"
@@ -135,7 +136,7 @@ SchemaJson node_schema(std::span<const Row> library) {
           {"allOf", branches}};
 }
 
-SchemaJson input_schema(bool is_parameter) {
+std::vector<SchemaKey> input_keys(bool is_parameter) {
   std::vector<std::string_view> types = graph::all_type_names();
   if (!is_parameter) types.push_back(graph::any_type_name);
   std::vector<SchemaKey> keys{{"type", one_of(types), true},
@@ -146,7 +147,29 @@ SchemaJson input_schema(bool is_parameter) {
                               {"value", reference("literal"), is_parameter},
                               {"doc", string_schema()}};
   if (!is_parameter) keys.push_back({"unit", described(boolean_schema(), "a vector of length 1")});
+  return keys;
+}
+
+SchemaJson or_null(SchemaJson schema) { return any_of({std::move(schema), null_schema()}); }
+
+/// A map of changes to the members of a base; null removes one.
+SchemaJson changes_schema(SchemaJson change) { return or_null(map_schema(or_null(std::move(change)))); }
+
+/// What an effect that extends another one says of a parameter of that one.
+SchemaJson parameter_change_schema() {
+  std::vector<SchemaKey> keys = input_keys(true);
+  for (SchemaKey& key : keys) key = {key.name, or_null(std::move(key.schema))};
   return object_schema(keys);
+}
+
+/// And of a node: a whole node, or ports alone. Whether a node of the type has these ports is not checked.
+SchemaJson node_change_schema() {
+  return {{"if", {{"required", {"type"}}}},
+          {"then", reference("node")},
+          {"else",
+           {{"type", "object"},
+            {"properties", {{"doc", or_null(string_schema())}, {"extras", true}}},
+            {"additionalProperties", or_null(reference("port"))}}}};
 }
 
 SchemaJson color_schema() {
@@ -197,15 +220,23 @@ std::string json_schema(std::span<const Row> library, const DocumentSchema& scen
       any_of({boolean_schema(), number_schema(), string_schema(), array_schema(number_schema(), 1, 16)});
   definitions["port"] = any_of({reference("literal"), reference("link")});
   definitions["node"] = node_schema(library);
-  definitions["input"] = input_schema(false);
-  definitions["parameter"] = input_schema(true);
+  definitions["input"] = object_schema(input_keys(false));
+  definitions["parameter"] = object_schema(input_keys(true));
   definitions["pass"] = pass_schema();
   const SchemaJson outputs = with_one_key(map_schema(reference("link")));
   const SchemaJson parameters = map_schema(reference("parameter"));
   definitions["function"] =
       graph_schema("function", {{"inputs", map_schema(reference("input"))}, {"outputs", outputs, true}});
-  definitions["effect"] = graph_schema(
-      "effect", {{"parameters", parameters}, {"passes", array_schema(reference("pass"), 1, 64), true}});
+  const SchemaJson passes = array_schema(reference("pass"), 1, 64);
+  std::vector<SchemaKey> changes = document_keys("effect");
+  changes.insert(changes.end(),
+                 {{graph::extends_key, described(string_schema(), "path of the effect that this one changes"), true},
+                  {"parameters", changes_schema(parameter_change_schema())},
+                  {"passes", passes},
+                  {"nodes", changes_schema(node_change_schema())}});
+  definitions["effect"] = {{"if", {{"required", {graph::extends_key}}}},
+                           {"then", object_schema(changes)},
+                           {"else", graph_schema("effect", {{"parameters", parameters}, {"passes", passes, true}})}};
   definitions["post"] = graph_schema(
       "post",
       {{"parameters", parameters},

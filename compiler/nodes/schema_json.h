@@ -32,6 +32,7 @@ inline SchemaJson any_of(std::vector<SchemaJson> schemas) { return {{"anyOf", st
 inline SchemaJson one_of(std::vector<std::string_view> words) { return {{"enum", std::move(words)}}; }
 inline SchemaJson string_schema() { return {{"type", "string"}}; }
 inline SchemaJson number_schema() { return {{"type", "number"}}; }
+inline SchemaJson null_schema() { return {{"type", "null"}}; }
 inline SchemaJson boolean_schema() { return {{"type", "boolean"}}; }
 inline SchemaJson number_schema(double low, double high) {
   return {{"type", "number"}, {"minimum", low}, {"maximum", high}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures. Only in effects; functions take colours as inputs.
+// Textures. Only in effects and in the functions that they call.
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
@@ -11,7 +11,7 @@ std::vector<Row> texture_rows() {
        "The texture in a file, sampled at `texcoord`; (0, 0) is the upper left corner and (1, 1) the lower right. "
        "Missing channels are 0, a missing fourth channel is 1; greyscale images have three equal channels.",
        {{"file", Filename,
-         "a path, relative to the document, or {\"link\": \"...\"} to a parameter; \"\" for no image"},
+         "a path, relative to the document, or {\"link\": \"...\"} to a parameter or an input; \"\" for no image"},
         {"default", AnyFloat, "the result without an image", 0.0f},
         {"texcoord", Vector2, "the texture coordinates", SurfaceValue{Surface::texcoord}},
         {"uaddressmode", Choice, "the addressing mode to the left and right; constant: `default`", "periodic", modes,

@@ -41,25 +41,26 @@ std::vector<ReadFile> files_of(const check::TypedGraph& graph, const graph::File
     files.push_back({source.path(), {name, role, support::sha256(source.text())}, {}});
   };
   add_document(*graph.graph.source, FileRole::document);
+  for (const support::Source& base : graph.graph.bases) add_document(*base, FileRole::base);
   std::map<std::string, const check::TypedGraph*> functions;
   std::set<const check::TypedGraph*> seen;
   add_functions(graph, functions, seen);
   for (const auto& [path, function] : functions) add_document(*function->graph.source, FileRole::function);
-  const std::string& document = graph.graph.source->path();
-  struct Named {
-    std::string path;  // as to be opened
-    support::Span where;
+  struct Image {
+    std::string path;     ///< to open it
+    support::Span where;  ///< a document names it
   };
-  std::map<std::string, Named> images;  // by canonical path
+  std::map<std::string, Image> images;  // by canonical path
   for (const lower::ImageSlot& slot : lower::image_slots(graph).slots) {
     if (slot.path.empty()) continue;
+    const std::string& document = slot.place.file->path();
     const std::string path = graph::path_beside(document, slot.path);
-    images.emplace(graph::canonical_path(path), Named{path, graph.graph.span(slot.place)});
+    images.emplace(graph::canonical_path(path), Image{path, slot.place});
   }
   for (const auto& [canonical, image] : images) {
     const auto& [path, where] = image;
     ReadFile& read = files.emplace_back(ReadFile{path, {file_name(graph, path, rule), FileRole::image, {}}, where});
-    if (!rule.permits(canonical, graph::home_of(document, rule))) continue;
+    if (!rule.permits(canonical, graph::home_of(where.file->path(), rule))) continue;
     if (const auto text = support::read_file(path, most_image_bytes); text.bytes)
       read.file.sha256 = support::sha256(*text.bytes);
   }

@@ -17,8 +17,8 @@ struct ReadFile {
   support::Span where = {};  ///< of an image: where the document names it
 };
 
-/// The document, then the functions that it uses, then the images that its nodes and parameters name, each by path. Reads
-/// the images, but only those that `rule` lets the document read.
+/// The document, then those that it extends, the functions that it uses, and the images that nodes and parameters name,
+/// each by path. Reads the images, but only those that `rule` lets the document read that names them.
 std::vector<ReadFile> files_of(const check::TypedGraph& graph, const graph::FileRule& rule);
 
 /// The name of a file that a document names: the path from the top of the collection, or of the document's own folder where

@@ -64,7 +64,8 @@ class Reflector {
     for (ReadFile& read : files_of(graph_, options_.files)) made_.files.push_back(std::move(read.file));
     made_.document = made_.files[0].path;
     for (const graph::Input& input : graph_.graph.inputs) made_.parameters.push_back(parameter(input));
-    for (const PureKind kind : {PureKind::shade, PureKind::move_vertex, PureKind::post_process})
+    for (const PureKind kind :
+         {PureKind::shade, PureKind::move_vertex, PureKind::post_process, PureKind::function})
       add_point(kind);
     add_parameters();
     add_images();
@@ -116,31 +117,36 @@ class Reflector {
     const std::vector<PureField> fields = emit::point_fields(pure_, kind);
     if (fields.empty()) return;
     Struct& made = add_struct(role_of_point(kind), emit::point_record(kind), fields);
-    for (size_t i = 0; i < fields.size(); ++i) set_attribute(made.fields[i], fields[i].parameter.name);
+    for (size_t i = 0; i < fields.size(); ++i) set_attribute(made.fields[i], fields[i].parameter.name, kind);
   }
 
   static StructRole role_of_point(PureKind kind) {
     switch (kind) {
       case PureKind::shade:
-      case PureKind::coverage: return StructRole::surface;
+      case PureKind::coverage:
+      case PureKind::function: return StructRole::surface;
       case PureKind::move_vertex: return StructRole::vertex;
       case PureKind::post_process: return StructRole::screen;
-      case PureKind::function: break;
     }
-    support::bug("a function document has no point");
+    support::bug("no such point");
   }
 
-  /// What a field of a surface or a vertex holds, by the name of the function's parameter.
-  static void set_attribute(StructField& field, std::string_view name) {
-    for (const interface::SurfaceValue value : interface::surface_values()) {
-      const std::string attribute = interface::name(value);
-      const auto is = [&](std::string_view suffix) { return name == attribute + std::string(suffix); };
-      if (!is("") && !is(passes::ddx_suffix) && !is(passes::ddy_suffix)) continue;
-      field.attribute = AttributeName{Text(interface::row(value.attribute).name)};
-      if (interface::row(value.attribute).has_spaces) field.space = space_name(value.space);
-      if (is(passes::ddx_suffix)) field.change = Direction::x;
-      if (is(passes::ddy_suffix)) field.change = Direction::y;
-      return;
+  /// What a field of a surface or a vertex holds, by the name of the parameter of a function of this kind.
+  void set_attribute(StructField& field, std::string_view name, PureKind kind) const {
+    for (const PureFunction& function : pure_.functions) {
+      for (const interface::Binding& binding : function.bindings) {
+        const auto* read = std::get_if<source::Attribute>(&binding.source);
+        if (function.kind != kind || read == nullptr) continue;
+        const auto is = [&](std::string_view suffix) {
+          return name == binding.parameter.name + std::string(suffix);
+        };
+        if (!is("") && !is(passes::ddx_suffix) && !is(passes::ddy_suffix)) continue;
+        field.attribute = AttributeName{Text(interface::row(read->value.attribute).name)};
+        if (interface::row(read->value.attribute).has_spaces) field.space = space_name(read->value.space);
+        if (is(passes::ddx_suffix)) field.change = Direction::x;
+        if (is(passes::ddy_suffix)) field.change = Direction::y;
+        return;
+      }
     }
   }
 
@@ -178,8 +184,9 @@ class Reflector {
                                   parameter_name(sampling.filter_input),
                                   parameter_name(sampling.u_input),
                                   parameter_name(sampling.v_input)});
-      for (const StructField& field : made_.structs.back().fields)
-        if (field.image == image.slot.name) made.field = field.name;
+      for (const Struct& declared : made_.structs)
+        for (const StructField& field : declared.fields)
+          if (field.image == image.slot.name) made.field = field.name;
       made_.images.push_back(std::move(made));
     }
   }
@@ -244,17 +251,17 @@ class Reflector {
   }
 
   void set_arguments(Function& made, const PureFunction& function) const {
-    if (function.kind != PureKind::function) {
-      for (const Struct& declared : made_.structs)
-        if (declared.role == role_of_point(function.kind) || declared.role == StructRole::parameters)
-          made.arguments.push_back({declared.glsl, {}, {}});
-      return;
-    }
+    for (const Struct& declared : made_.structs)
+      if (declared.role == role_of_point(function.kind) || declared.role == StructRole::parameters)
+        made.arguments.push_back({declared.glsl, {}, {}, {}});
+    if (function.kind != PureKind::function) return;
     for (const interface::Binding& binding : function.bindings) {
-      const auto* input = std::get_if<source::Input>(&binding.source);
-      support::assert_that(input != nullptr, "an argument of a function document is no input");
-      made.arguments.push_back({ir_type(binding.parameter.type), made_.parameters[input->input].name,
-                                static_cast<Integer>(input->column * binding.parameter.type.width)});
+      const Text type = ir_type(binding.parameter.type);
+      if (const auto* input = std::get_if<source::Input>(&binding.source))
+        made.arguments.push_back({type, made_.parameters[input->input].name,
+                                  static_cast<Integer>(input->column * binding.parameter.type.width), {}});
+      if (const auto* image = std::get_if<source::Image>(&binding.source))
+        made.arguments.push_back({type, {}, {}, shader_.parameters.images[image->slot].slot.name});
     }
   }
 

@@ -253,7 +253,7 @@ class ParameterValues::Resolver {
       const scene::MaterialImage& own = giver_.material->textures.at(name);
       return {own.name, own.bytes, giver_.material_where, own.srgb};
     }
-    return {image.file, nullptr, image.where};
+    return {image.file, nullptr, image.slot.place};
   }
 
   std::optional<int> texture_of(const ImageSource& source, const driver::Image& image) const {

@@ -9,7 +9,7 @@ namespace {
 using nodes::SchemaJson;
 using nodes::SchemaKey;
 
-const SchemaJson null_schema{{"type", "null"}};
+const SchemaJson null_schema = nodes::null_schema();
 const SchemaJson any_object{{"type", "object"}};
 
 SchemaJson definition(Object object) {

@@ -12,11 +12,8 @@
 
 namespace isoshade::scene {
 
-/// The longest chain of scenes that extend each other.
-inline constexpr size_t max_bases = 16;
-
-/// Parses a scene, merges it into the one that it extends ("extends": "path beside it"; graph::merge), and that into
-/// the one that it extends, and applies the settings to the result. Reports what is wrong.
+/// Parses a scene with what it extends (graph::load_document), and applies the settings to the result. Reports what is
+/// wrong.
 std::optional<Scene> load_scene(const support::Source& source, const std::vector<std::string>& settings,
                                 const graph::FileRule& files, support::Diagnostics& diagnostics);
 

@@ -4,8 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "compiler/graph/document.h"
-#include "compiler/graph/files.h"
+#include "compiler/graph/extend.h"
 #include "compiler/graph/graph.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/format.h"
@@ -115,7 +114,7 @@ const std::vector<std::string>& Editor::parameters_of_effect(const std::string& 
   // Errors of the effect are reported when it is compiled.
   Diagnostics unheard;
   const support::Source source = graph::read_document(path, files_, unheard, {document_.source, 0, 0});
-  const auto effect = source ? graph::parse_document(source, unheard) : std::nullopt;
+  const auto effect = source ? graph::load_document(source, files_, unheard) : std::nullopt;
   if (!effect) return found->second;
   if (const Json* parameters = find_object(effect->root, "parameters"))
     for (const Member& member : parameters->members) found->second.push_back(member.key);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/check/stage_needs.h"
 #include "compiler/graph/graph.h"
 #include "tests/unit/front_end.h"
 
@@ -62,7 +63,7 @@ inline const std::vector<Callee>& callees(const std::string& library) {
       if (file.path().extension() != ".json") continue;
       FrontEnd front_end(library);
       const auto graph = front_end.check_file(file.path().string());
-      if (graph == nullptr) continue;
+      if (graph == nullptr || !check::stands_alone(*graph, front_end.diagnostics)) continue;
       Callee callee{fs::relative(file.path(), library).replace_extension().string(), graph->graph.inputs, {}};
       for (size_t i = 0; i < graph->outputs.size(); ++i)
         callee.outputs.emplace_back(graph->graph.outputs[i].name, graph->outputs[i].needed);

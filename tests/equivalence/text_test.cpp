@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "compiler/check/library.h"
+#include "compiler/check/stage_needs.h"
 #include "compiler/driver/driver.h"
 #include "compiler/interface/host.h"
 #include "compiler/targets/glsl/spirv.h"
@@ -33,7 +34,8 @@ std::vector<fs::path> documents(const char* folder) {
   return paths;
 }
 
-/// The programs of all shipped functions, effects and posts, by folder and name.
+/// The programs of all shipped functions that can be evaluated by themselves, of effects and of posts, by folder and
+/// name.
 const std::vector<Texts>& shipped() {
   static const std::vector<Texts> all = [] {
     std::vector<Texts> texts;
@@ -51,6 +53,9 @@ const std::vector<Texts>& shipped() {
         const auto kind = driver::kind_of(source, diagnostics);
         const std::string place = path.parent_path().filename().string() + "_";
         if (kind == graph::DocumentKind::function) {
+          support::Diagnostics unheard;
+          const auto typed = driver::check_document(source, options, diagnostics);
+          if (typed != nullptr && !check::stands_alone(*typed, unheard)) continue;
           if (const auto program = driver::compile_function(source, options, diagnostics))
             add(place + program->name, *program);
         } else if (kind == graph::DocumentKind::post) {

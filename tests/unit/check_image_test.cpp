@@ -94,10 +94,42 @@ TEST(CheckImage, FiltersThatMayBecomeTrilinearNeedMipLevels) {
   }
 }
 
-TEST(CheckImage, RejectsImagesInFunctions) {
-  EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "inputs": {"uv": {"type": "vector2"}},
-    "nodes": {"i": {"type": "image", "file": "a.png", "texcoord": "uv"}}, "outputs": {"out": "i"}})")
-                .find("error[misplaced-node]"),
+std::string painted(const std::string& file) {
+  return R"({"isoshade": 1, "function": "painted", "inputs": {"map": {"type": "filename"},
+    "decal": {"type": "filename", "value": "decal.png"}}, "nodes": {
+"i": {"type": "image", "file": )" +
+         file + R"json(}, "d": {"type": "image", "file": {"link": "decal"}, "to": "vector3"},
+"sum": {"type": "expression", "code": "i + color3(d)", "i": "i", "d": "d"}}, "outputs": {"out": "sum"}})json";
+}
+
+TEST(CheckImage, FunctionsTakeImagesAsInputs) {
+  FrontEnd front_end;
+  front_end.library.add("library/painted.json", painted(R"({"link": "map"})"));
+  for (const char* ports : {R"("map": {"link": "map"})", R"("map": "b.png", "decal": {"link": "map"})"})
+    EXPECT_NE(front_end.check(effect(R"("color": {"type": "painted", )" + std::string(ports) + "}")), nullptr)
+        << front_end.diagnostics.text();
+  const auto error = [](const std::string& ports) {
+    FrontEnd other;
+    other.library.add("library/painted.json", painted(R"({"link": "map"})"));
+    return other.messages(effect(R"("color": {"type": "painted", )" + ports + "}"));
+  };
+  EXPECT_NE(error(R"("map": "map")").find("write {\"link\": \"map\"}"), std::string::npos);
+  EXPECT_NE(error(R"("map": {"link": "tint"})").find("error[type-mismatch]: \"map\" of \"painted\" takes filename"),
+            std::string::npos);
+  EXPECT_NE(error(R"("map": 3)").find("error[wrong-type]"), std::string::npos);
+  EXPECT_NE(error(R"("decal": "b.png")").find("error[missing-port]"), std::string::npos);
+  FrontEnd in_function;
+  in_function.library.add("library/painted.json", painted("\"map\""));
+  EXPECT_NE(in_function.messages(effect(R"("color": {"type": "painted", "map": "b.png"})"))
+                .find("is a path, but \"map\" is an input"),
+            std::string::npos)
+      << in_function.diagnostics.text();
+}
+
+TEST(CheckImage, RejectsFilenamesAsOutputsOfFunctions) {
+  EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "inputs": {"map": {"type": "filename"}},
+    "outputs": {"out": "map"}})")
+                .find("error[type-mismatch]: an output cannot be filename"),
             std::string::npos);
 }
 
@@ -133,6 +165,29 @@ TEST(ImageSlots, AreOnePerFileAndDecoding) {
   EXPECT_EQ(slots[2].name, "d");
   EXPECT_EQ(slots[2].parameter, "");
   EXPECT_EQ(slots[2].decoding, lower::Decoding::srgb);
+}
+
+TEST(ImageSlots, OfFunctionsAreThoseOfTheirCallers) {
+  FrontEnd front_end;
+  front_end.library.add("library/paint/painted.json", painted(R"({"link": "map"})"));
+  const auto typed = front_end.check(effect(R"json("own": {"type": "image", "file": {"link": "map"}, "filtertype": "trilinear"},
+"a": {"type": "paint/painted", "map": {"link": "map"}},
+"b": {"type": "paint/painted", "map": "b.png"},
+"c": {"type": "paint/painted", "map": "b.png", "decal": "decal.png"},
+"color": {"type": "expression", "code": "own * a * b * c", "own": "own", "a": "a", "b": "b", "c": "c"})json"));
+  ASSERT_NE(typed, nullptr) << front_end.diagnostics.text();
+  const auto slots = lower::image_slots(*typed).slots;
+  ASSERT_EQ(slots.size(), 4u);
+  EXPECT_EQ(slots[0].name, "map") << "shared with the image of the effect";
+  EXPECT_TRUE(slots[0].mips);
+  EXPECT_EQ(slots[0].samplings.size(), 2u);
+  EXPECT_EQ(slots[1].name, "a_decal");
+  EXPECT_EQ(slots[1].path, "decal.png");
+  EXPECT_EQ(slots[1].place.file->path(), "library/paint/painted.json") << "the default of the function";
+  EXPECT_EQ(slots[2].name, "b_map");
+  EXPECT_EQ(slots[2].place.file->path(), "test.json");
+  EXPECT_EQ(slots[3].name, "c_decal") << "a path is relative to the document that gives it";
+  EXPECT_EQ(slots[3].place.file->path(), "test.json");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which documents surface and light nodes are available in, and input types that are not supported yet.
+// Light nodes and their sums, spaces, and input types that are not supported yet.
 #include "tests/unit/front_end.h"
 
 namespace isoshade {
@@ -29,16 +29,6 @@ TEST(CheckLights, AcceptsNestedAndSeveralSums) {
   EXPECT_EQ(messages_of(effect(R"("l": {"type": "lightcolor"}, "s": {"type": "sum_lights", "in": "l"},
     "ls": {"type": "multiply", "in1": "l", "in2": "s"}, "color": {"type": "sum_lights", "in": "ls"})")),
             "");
-}
-
-TEST(CheckLights, RejectsSurfaceAndLightNodesInFunctions) {
-  for (const char* type : {"normal", "texcoord", "lightdirection"}) {
-    EXPECT_NE(messages_of(R"({"isoshade": 1, "function": "f", "nodes": {"n": {"type": ")" +
-                          std::string(type) + R"("}}, "outputs": {"out": "n"}})")
-                  .find("error[misplaced-node]: \"" + std::string(type) + "\" is not available in a function document"),
-              std::string::npos)
-        << type;
-  }
 }
 
 TEST(CheckLights, RejectsUnknownSpaces) {

@@ -11,7 +11,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/functions/library.h"
-#include "compiler/graph/document.h"
+#include "compiler/graph/extend.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/ir/validator.h"
 #include "compiler/lower/lower.h"
@@ -46,7 +46,7 @@ class FrontEnd {
 
  private:
   std::shared_ptr<const check::TypedGraph> check(const support::Source& source) {
-    const auto document = graph::parse_document(source, diagnostics);
+    const auto document = graph::load_document(source, library.files(), diagnostics);
     if (!document) return nullptr;
     auto graph = graph::build_graph(*document, diagnostics);
     return graph ? check::check(std::move(*graph), library, diagnostics) : nullptr;

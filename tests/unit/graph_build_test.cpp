@@ -345,7 +345,7 @@ TEST(Build, RejectsFunctionsWithoutOutputs) {
 
 TEST(Links, AreSplitAtDots) {
   Diagnostics diagnostics;
-  const auto link = [&](std::string_view text) { return parse_link(nullptr, text, {}, diagnostics); };
+  const auto link = [&](std::string_view text) { return parse_link(text, {}, {}, diagnostics); };
   EXPECT_EQ(link("a")->name, "a");
   EXPECT_TRUE(link("a")->selectors.empty());
   EXPECT_EQ(link("a.xyz")->selectors, std::vector<std::string>{"xyz"});

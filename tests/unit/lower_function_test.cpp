@@ -91,6 +91,55 @@ TEST(LowerFunction, MatricesBecomeTheirColumns) {
             (std::vector<float>{0, 0, 1, 1, 0, 0, 0, 1, 0, 8, 9, 7}));
 }
 
+TEST(LowerFunction, WhatItReadsFromTheStageFollowsItsInputs) {
+  FrontEnd front_end;
+  front_end.library.add("library/lit.json", R"json({"isoshade": 1, "function": "lit",
+    "inputs": {"normal": {"type": "float"}, "map": {"type": "filename"}, "x": {"type": "color3"}},
+    "nodes": {"n": {"type": "normal"}, "t": {"type": "time"}, "i": {"type": "image", "file": {"link": "map"}},
+              "l": {"type": "lightcolor"}, "s": {"type": "sum_lights", "in": "l"},
+              "v": {"type": "transformvector", "in": "n", "fromspace": "world", "tospace": "view"},
+              "out": {"type": "expression", "code": "s * i + x * color3(v) * color3(t * a)", "s": "s", "i": "i", "x": "x",
+                      "v": "v", "t": "t", "a": "normal"}},
+    "outputs": {"out": "out"}})json");
+  const auto effect = front_end.check(R"({"isoshade": 1, "effect": "e", "nodes": {
+    "c": {"type": "lit", "normal": 1, "map": "a.png", "x": [1, 2, 3]}}, "passes": [{"name": "p", "color": "c"}]})");
+  ASSERT_NE(effect, nullptr) << front_end.diagnostics.text();
+  const auto names = [](const ir::Function& function) {
+    std::string text;
+    for (const ir::Parameter& parameter : function.parameters)
+      text += (parameter.group.empty() ? "" : parameter.group + ".") + parameter.name + " ";
+    return text;
+  };
+  const auto [module, interface] = lower::lower(*effect);
+  EXPECT_EQ(ir::validate(module), "");
+  EXPECT_EQ(names(module.functions[module.find("lit")]),
+            "normal x position surface_normal texcoord view_from_world_0 view_from_world_1 view_from_world_2 time map "
+            "light_count ");
+  EXPECT_EQ(names(module.functions[interface.entry]),
+            "surface.position surface.normal surface.texcoord spaces.view_from_world_0 spaces.view_from_world_1 "
+            "spaces.view_from_world_2 frame.time images.c_map light_count ");
+}
+
+TEST(LowerFunction, ManyValuesAreGroupedUniformOnesApart) {
+  std::string inputs, sum = "\"a0\": {\"type\": \"multiply\", \"in1\": \"x0\", \"in2\": \"t\"}";
+  for (int i = 0; i < 120; ++i) {
+    const std::string number = std::to_string(i);
+    inputs += (i == 0 ? "" : ", ") + std::string("\"x") + number + "\": {\"type\": \"float\"}";
+    sum += ", \"a" + std::to_string(i + 1) + "\": {\"type\": \"add\", \"in1\": \"a" + number + "\", \"in2\": \"x" +
+           number + "\"}";
+  }
+  FrontEnd front_end;
+  const ir::Module module = front_end.lower(R"({"isoshade": 1, "function": "f", "inputs": {)" + inputs +
+                                            R"(}, "nodes": {"t": {"type": "time"}, )" + sum +
+                                            R"(}, "outputs": {"out": "a120"}})");
+  EXPECT_EQ(ir::validate(module), "");
+  const ir::Function& f = module.functions[module.find("f")];
+  ASSERT_EQ(f.parameters.size(), 121u);
+  EXPECT_EQ(f.parameters[0].group, "inputs_1");
+  EXPECT_EQ(f.parameters[119].group, "inputs_2");
+  EXPECT_EQ(f.parameters[120].group, "uniform_inputs_1");
+}
+
 TEST(LowerFunction, SeveralOutputsAreNamedByNodeAndOutput) {
   FrontEnd front_end;
   front_end.library.add("library/both.json", R"({"isoshade": 1, "function": "both",

@@ -136,7 +136,8 @@ std::string cpp_program(const Compiled& compiled) {
 
 std::vector<std::string> shipped_documents() {
   std::vector<std::string> documents;
-  for (const char* folder : {"materials", "effects", "effects/bloom", "library/brdf", "library/fog"})
+  for (const char* folder : {"materials", "effects", "effects/bloom", "library/brdf", "library/fog",
+                             "library/material"})
     if (fs::exists(graphs + "/" + folder))
       for (const auto& entry : fs::directory_iterator(graphs + "/" + folder))
         if (entry.path().extension() == ".json")

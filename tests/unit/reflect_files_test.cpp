@@ -89,6 +89,26 @@ TEST_F(ReflectedFiles, AreTheDocumentItsFunctionsAndItsImages) {
   EXPECT_EQ(found[4].file.role, FileRole::image);
 }
 
+TEST_F(ReflectedFiles, ListTheDocumentsThatAnEffectExtendsWithTheirFunctionsAndImages) {
+  write("mine/bases/b.json", effect("t.png"));
+  write("mine/bases/t.png", "of the base");
+  write("mine/effects/c.json", R"({"isoshade": 1, "effect": "c", "extends": "../bases/b.json"})");
+  write("mine/effects/d.json", R"({"isoshade": 1, "effect": "d", "extends": "c.json"})");
+  fs::current_path(folder_);
+  FrontEnd front("library");
+  const auto graph = front.check_file("mine/effects/d.json");
+  ASSERT_NE(graph, nullptr) << front.diagnostics.text();
+  const std::vector<ReadFile> found = files_of(*graph, front.library.files());
+  EXPECT_EQ(std::vector<std::string>(names(found)).front(), "effects/d.json");
+  EXPECT_EQ(found[1].file.path, "bases/b.json");
+  EXPECT_EQ(found[1].file.role, FileRole::base);
+  EXPECT_EQ(found[2].file.path, "effects/c.json");
+  EXPECT_EQ(found[2].file.role, FileRole::base);
+  const auto image = std::ranges::find(found, "bases/t.png", [](const ReadFile& file) { return file.file.path; });
+  ASSERT_NE(image, found.end());
+  EXPECT_EQ(image->file.sha256, support::sha256("of the base"));
+}
+
 TEST_F(ReflectedFiles, HaveTheSameNamesInEveryWorkingDirectory) {
   const auto here = names(files("../textures/t.png"));
   for (const char* directory : {"mine", "mine/effects", "library/maths", "mine/textures"})

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "compiler/graph/extend.h"
 #include "runtime/scene/load.h"
 
 namespace isoshade::scene {
@@ -139,7 +140,7 @@ TEST_F(LoadScene, SuggestsExtendsForMisspelledKeys) {
 }
 
 TEST_F(LoadScene, RefusesTooManyLevels) {
-  for (size_t i = 0; i < 2 * max_bases; ++i) {
+  for (size_t i = 0; i < 2 * graph::max_bases; ++i) {
     write("scenes/s" + std::to_string(i) + ".json",
           R"({"isoshade": 1, "scene": "s", "extends": "s)" + std::to_string(i + 1) + R"(.json"})");
   }
