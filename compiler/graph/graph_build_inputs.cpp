@@ -100,7 +100,9 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
       diagnostics_
           .report_unknown(Id::unknown_type, document_.span(*type), "there is no type " + quote(type->string),
                           type->string, all_type_names())
-          .note(type->string == any_type_name ? "only inputs of functions can have type \"any\"" : types_note());
+          .note(type->string == any_type_name ? "only inputs of functions can have type \"any\""
+                : type->string == "image"     ? "an image has the type \"filename\""
+                                              : types_note());
     }
   }
   if (const Json* names = reader.array("enum", Need::optional)) {

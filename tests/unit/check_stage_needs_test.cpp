@@ -130,7 +130,7 @@ TEST_F(StageNeeds, ASumInsideAFunctionCannotTakeALightOfAnotherSum) {
       << "the same for every light";
   const std::string text = messages(effect(R"("l": {"type": "lightcolor"}, "s": {"type": "sums_lights", "k": "l.r"},
 "color": {"type": "sum_lights", "in": "s"})"));
-  EXPECT_NE(text.find("test.json:2:53: error[misplaced-node]: \"sums_lights\" sums over lights, so its inputs cannot "
+  EXPECT_NE(text.find("test.json:2:44: error[misplaced-node]: \"sums_lights\" sums over lights, so its inputs cannot "
                       "depend on a light"),
             std::string::npos)
       << text;
