@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cut-outs of passes: what they may be, what they may not depend on, and the function that they become.
+#include <cmath>
 #include <limits>
 
 #include "tests/unit/front_end.h"
