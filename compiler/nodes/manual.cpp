@@ -53,7 +53,8 @@ std::string surface_text(SurfaceValue value) {
                                         "pixel size",
                                         "corner normal",
                                         "corner normal",
-                                        "corner normal"};
+                                        "corner normal",
+                                        "side that is seen"};
   static_assert(std::size(names) == interface::surface_count);
   const bool object = value.space == Space::object;
   return "the surface's " + std::string(names[static_cast<size_t>(value.attribute)]) +

@@ -180,11 +180,11 @@ class Installed(unittest.TestCase):
         source, build = self.folder / "names", self.folder / "names/build"
         source.mkdir()
         documents = [self.prefix / "share/isoshade" / name for name in
-                     ("materials/cook_torrance.json", "effects/cartoon.json", "effects/height_fog.json", "library/brdf/ggx_d.json")]
+                     ("materials/cook_torrance.json", "effects/cartoon.json", "effects/leaves.json", "effects/height_fog.json", "library/brdf/ggx_d.json")]
         lines, expected = "", {}
         for wrapper, languages in (("none", "glsl cpp glsl-es"), ("forward", "glsl glsl-es spirv"), ("isoshade", "glsl cpp spirv")):
             lines += f"add_library({wrapper} INTERFACE)\n"
-            for document in documents[:3] if wrapper == "forward" else documents:
+            for document in documents[:4] if wrapper == "forward" else documents:
                 lines += f"isoshade_add_graph({wrapper} {document} WRAPPER {wrapper} TARGETS {languages})\n"
             folder = build / f"{wrapper}.isoshade" / (wrapper if wrapper != "none" else "")
             lines += (f"get_target_property(files {wrapper} ISOSHADE_FILES)\n"
@@ -208,7 +208,7 @@ class Installed(unittest.TestCase):
                  "scene.json": '{"isoshade": 1, "scene": "s"}',
                  "unnamed.json": '{"isoshade": 1, "effect": 3}',
                  "without_passes.json": '{"isoshade": 1, "effect": "e"}',
-                 "based.json": '{"isoshade": 1, "effect": "e", "extends": "f.json", "passes": [{"name": "base"}]}',
+                 "based.json": '{"isoshade": 1, "effect": "e", "extends": "nowhere.json"}',
                  "unnamed_pass.json": '{"isoshade": 1, "effect": "e", "passes": [{}]}',
                  "long.json": '{"isoshade": 1, "effect": "e", "passes": [{"name": "' + 200 * "p" + '"}]}'}
         for name, text in texts.items():
@@ -225,8 +225,8 @@ class Installed(unittest.TestCase):
                 ("text.json", "is not a document of isoshade"),
                 ("scene.json", "is not an effect, a post or a function"),
                 ("unnamed.json", '"effect" in'),
-                ("without_passes.json WRAPPER forward", "does not list its own passes"),
-                ("based.json WRAPPER forward", "does not list its own passes"),
+                ("without_passes.json WRAPPER forward", "has no passes"),
+                ("based.json WRAPPER forward", "which does not exist"),
                 ("unnamed_pass.json WRAPPER forward", '"passes.0.name" in'),
                 ("long.json WRAPPER isoshade", "are too long for names of files")):
             with self.subTest(arguments):
