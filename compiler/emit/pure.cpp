@@ -15,8 +15,7 @@ using interface::HostRow;
 namespace place = interface::place;
 
 /// One for each struct of points.
-constexpr std::array kinds_of_points{PureKind::shade, PureKind::move_vertex, PureKind::post_process,
-                                     PureKind::function};
+constexpr std::array kinds_of_points{PureKind::shade, PureKind::move_vertex, PureKind::post_process};
 
 /// The local that holds a function's point.
 std::string_view point_name(PureKind kind) {

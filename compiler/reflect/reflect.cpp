@@ -64,9 +64,7 @@ class Reflector {
     for (ReadFile& read : files_of(graph_, options_.files)) made_.files.push_back(std::move(read.file));
     made_.document = made_.files[0].path;
     for (const graph::Input& input : graph_.graph.inputs) made_.parameters.push_back(parameter(input));
-    for (const PureKind kind :
-         {PureKind::shade, PureKind::move_vertex, PureKind::post_process, PureKind::function})
-      add_point(kind);
+    for (const PureKind kind : {PureKind::shade, PureKind::move_vertex, PureKind::post_process}) add_point(kind);
     add_parameters();
     add_images();
     for (const PureFunction& function : pure_.functions) made_.functions.push_back(this->function(function));
@@ -131,12 +129,12 @@ class Reflector {
     support::bug("no such point");
   }
 
-  /// What a field of a surface or a vertex holds, by the name of the parameter of a function of this kind.
+  /// What a field of a surface or a vertex holds, by the name of the parameter of a function that takes the same struct.
   void set_attribute(StructField& field, std::string_view name, PureKind kind) const {
     for (const PureFunction& function : pure_.functions) {
       for (const interface::Binding& binding : function.bindings) {
         const auto* read = std::get_if<source::Attribute>(&binding.source);
-        if (function.kind != kind || read == nullptr) continue;
+        if (emit::point_record(function.kind) != emit::point_record(kind) || read == nullptr) continue;
         const auto is = [&](std::string_view suffix) {
           return name == binding.parameter.name + std::string(suffix);
         };

@@ -25,7 +25,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 TEST(CheckCutouts, TakeABooleanOrAFloatAndMarkTheirNodesUsed) {
   EXPECT_EQ(messages_of(R"("cutout": "front")", R"(, "front": {"type": "frontfacing"})").find("error"), std::string::npos);
-  EXPECT_FALSE(has(messages_of(R"("cutout": "front")", R"(, "front": {"type": "frontfacing"})"), "\"front\""));
+  EXPECT_FALSE(has(messages_of(R"("cutout": "front")", R"(, "front": {"type": "frontfacing"})"), "node \"front\""));
   EXPECT_FALSE(has(messages_of(R"("cutout": "tint.a", "cutoff": 0.75)"), "error"));
   EXPECT_FALSE(has(messages_of(R"("cutout": "uv.x", "cutoff": "level")"), "error"));
   EXPECT_FALSE(has(messages_of(R"("cutout": "steps", "cutoff": "steps")"), "error"));

@@ -54,7 +54,7 @@ TEST(CheckImage, RejectsCubicFilterAndListsTheFilters) {
 
 std::string chosen(const std::string& parameter, const std::string& ports) {
   return R"({"isoshade": 1, "effect": "e", "parameters": {"mode": )" + parameter +
-         R"(, "tint": {"type": "color3", "value": 1}}, "nodes": {"color": {"type": "image", "file": "a.png", )" + ports +
+         R"(, "tint": {"type": "color3", "value": [1, 1, 1]}}, "nodes": {"color": {"type": "image", "file": "a.png", )" + ports +
          R"(}}, "passes": [{"name": "p", "color": "color"}]})";
 }
 

@@ -236,7 +236,7 @@ TEST_F(Gltf, RejectsOtherVersions) {
 
 TEST_F(Gltf, IgnoresFaultsInUnusedParts) {
   std::string json = square_json();
-  json.insert(1, R"("extras": {"source": -1}, "animations": [{"channels": [{"sampler": -1}]}], )");
+  json.insert(1, R"("extras": {"source": -1}, "animations": [{"channels": [{"target": -1}]}], )");
   EXPECT_TRUE(load(glb(json, square_data()))) << diagnostics_.text();
 }
 

@@ -221,7 +221,7 @@ TEST_F(GltfMaterials, SamplersChooseTheNearestFilter) {
 }
 
 TEST_F(GltfMaterials, EmissiveStrengthMultipliesTheFactor) {
-  const std::string emissive = R"("metallicFactor": 1}, "emissiveFactor": [0.5, 1, 0])";
+  const std::string emissive = R"("baseColorTexture": {"index": 0}}, "emissiveFactor": [0.5, 1, 0])";
   const auto color = [&](const std::string& extension) {
     return material(R"({"source": 0})", emissive + extension + R"(, "extras": {)").emissive_color;
   };
@@ -233,7 +233,7 @@ TEST_F(GltfMaterials, EmissiveStrengthMultipliesTheFactor) {
 
 TEST_F(GltfMaterials, UnlitIsAValueOfItsOwn) {
   const auto values = [&](const std::string& extensions) {
-    return material(R"({"source": 0})", R"("metallicFactor": 1}, "extensions": {)" + extensions + R"(}, "extras": {)")
+    return material(R"({"source": 0})", R"("baseColorTexture": {"index": 0}}, "extensions": {)" + extensions + R"(}, "extras": {)")
         .values;
   };
   EXPECT_EQ(values(R"("KHR_materials_unlit": {})").at("unlit"), std::vector{1.0f});
