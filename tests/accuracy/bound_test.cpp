@@ -88,6 +88,8 @@ class Measurement {
     const auto value = static_cast<double>(std::bit_cast<float>(runner_.word(operation)));
     const Real& exact = exact_.number(operation);
     ++verdict_.compared;
+    // A decision is no number: where its operands have errors, it may go either way.
+    if (tape_.operations[operation].scalar != ir::Scalar::floating) return 0;
     const auto wrong = [&](const std::string& what) {
       if (verdict_.wrong.empty())
         verdict_.wrong = tape_.outputs[output].name + " " + where + ": " + what + ", computed " +

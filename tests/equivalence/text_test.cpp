@@ -264,7 +264,7 @@ TEST(Text, HasTheSameStructureInBothLanguages) {
     std::erase_if(glsl, [](const std::string& name) { return name == "canonical" || name == "main"; });
     EXPECT_EQ(glsl, matches(texts.cpp, function_head));
     const auto body = [](const std::string& text, const std::string& end) {
-      return text.substr(0, text.find(end));
+      return text.substr(0, std::min(text.find(end), text.find("\nvoid main() {")));
     };
     const auto comments = [&](const std::string& text, const std::string& end) {
       std::vector<std::string> all = matches(body(text, end), "(?:\n *|; +)(// [^\n]*)");

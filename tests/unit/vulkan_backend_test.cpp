@@ -88,7 +88,8 @@ layout(location = 0) out vec4 color;
 void main() {
   int triangle = texelFetch(ids, ivec2(gl_FragCoord.xy), 0).x - 1;
   if (triangle < 0) discard;
-  int object = triangles[16 * triangle + 3] >> 2;
+  int object = triangles[16 * triangle + 3] >> )" +
+         std::to_string(lower::triangle_flag::bits) + R"(;
   if (int(objects[object + )" + std::to_string(lower::object_word::program) +
          R"(]) != push.program) discard;
   color = vec4(gl_FragCoord.xy, float(triangle) + lights[push.light_count - 1], )" +

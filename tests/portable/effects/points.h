@@ -118,6 +118,11 @@ Surface surface_at(const Attributes& attributes, int point) {
   FIELDS(texcoord1)
 #undef FIELDS
 #undef FIELD
+  if constexpr (requires { surface.front_facing; }) {
+    surface.front_facing = vector_at<vec3<F>>(attributes.values, Attributes::position, point).x >= F(-0.4f);
+    // With what pads it.
+    bytes += sizeof surface.front_facing < sizeof(float) ? sizeof(float) : sizeof surface.front_facing;
+  }
   if (bytes != sizeof surface)
     __builtin_trap();  // the effect needs an attribute that this program does not know
   return surface;
