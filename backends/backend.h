@@ -13,6 +13,7 @@
 #include "compiler/driver/program.h"
 #include "compiler/interface/pass_state.h"
 #include "compiler/support/diagnostics.h"
+#include "runtime/raster/clip.h"
 
 namespace isoshade::backends {
 
@@ -56,6 +57,7 @@ struct View {
   std::vector<Draw> draws;    ///< in the order in which they are drawn
   std::vector<size_t> reads;  ///< earlier views (indices into Frame::views) whose targets its programs read
   float background[4] = {0, 0, 0, 0};
+  raster::DepthBias depth_bias = {};
 };
 
 /// The item that takes the most room in an array of a frame, for messages; empty if there is none.

@@ -182,8 +182,9 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect&
                       const CompileOptions& options) {
   lower::Lowered lowered = lower_with_buffers(typed, {pass});
   name_words(lowered.module, effect.parameters, lower::object_word::parameters);
-  const uint32_t kernel =
-      lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), options.lights);
+  lower::LightKinds lights = options.lights;
+  lights.shadows &= typed.graph.passes[pass].receives_shadow;
+  const uint32_t kernel = lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), lights);
   Program program{lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
                   options.tier};
   program.bindings = std::move(lowered.interface.bindings);
@@ -231,7 +232,7 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), pass.enabled, pass.double_sided,
-                             cutoff_parameter(*typed, i), vertex_program(*typed, i, effect, options),
+                             cutoff_parameter(*typed, i), pass.casts_shadow, vertex_program(*typed, i, effect, options),
                              pixel_program(*typed, i, effect, options), cutout_program(*typed, i, effect, options)});
   }
   return effect;
@@ -353,7 +354,8 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
           case lower::PassPart::color:
             kind = emit::PureKind::shade;
             shader.passes.push_back(
-                {pass.name, pass.state, i, {}, {}, pass.position_space, pass.enabled, pass.double_sided});
+                {pass.name, pass.state, i, {}, {}, pass.position_space, pass.enabled, pass.double_sided,
+                 pass.casts_shadow, pass.receives_shadow});
             break;
           case lower::PassPart::position:
             kind = emit::PureKind::move_vertex;

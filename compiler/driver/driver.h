@@ -40,6 +40,7 @@ struct EffectPass {
   std::optional<size_t> enabled;       ///< index of a parameter field; the pass is drawn if it is not 0
   std::optional<size_t> double_sided;  ///< index of a parameter field; no face is culled if it is not 0
   std::optional<size_t> cutoff;        ///< index of a parameter field; there is no cut-out if it is 0 or less
+  bool casts_shadow = true;
   Program vertex;
   Program pixel;
   std::optional<Program> cutout;  ///< whether a pixel is drawn; every pixel is if there is none

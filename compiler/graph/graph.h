@@ -155,6 +155,8 @@ struct Pass {
   std::optional<uint32_t> double_sided;  ///< in Graph::inputs: no face is culled if this parameter is not 0
   std::optional<Link> cutout;  ///< the pass is drawn where it holds: a boolean, or a float of at least `cutoff`
   std::optional<Link> cutoff;  ///< of a float; 0 and less: drawn everywhere
+  bool casts_shadow = true;    ///< whether lights that have shadows draw it into them
+  bool receives_shadow = true;
   Link color;                  ///< surface output
   TextRange place;
 };

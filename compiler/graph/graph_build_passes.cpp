@@ -77,6 +77,9 @@ void GraphBuilder::read_pass(const Json& json) {
   for (const auto& [key, parameter] : {std::pair("enabled", &pass.enabled), std::pair("double_sided", &pass.double_sided)})
     if (const Json* named = reader.value(key, Need::optional)) *parameter = read_switch(*named, key);
   read_cutout(reader, pass);
+  // A hull around an object, which shows its back faces as an outline, has no shadow of its own.
+  pass.casts_shadow = reader.boolean("casts_shadow", pass.state.cull != interface::Cull::front);
+  pass.receives_shadow = reader.boolean("receives_shadow", true);
   if (const Json* color = reader.value("color")) {
     if (std::optional<Link> found = this->color(*color)) pass.color = std::move(*found);
   }

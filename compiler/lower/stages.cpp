@@ -3,6 +3,7 @@
 
 #include "compiler/lower/forward.h"
 #include "compiler/lower/sampling.h"
+#include "compiler/lower/shadow.h"
 #include "compiler/lower/surface.h"
 
 namespace isoshade::lower {
@@ -125,6 +126,7 @@ Float distance_falloff(Kernel& k, Int record, Float squared_distance) {
 
 /// light_at(index, position)
 void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
+  if (kinds.shadows) add_shadow_at(module);
   Kernel k(module, function);
   k.b.finish(light_values(k, k.integer(0) * Int(light_word::stride), k.vector3(1), kinds));
 }
@@ -132,7 +134,11 @@ void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
 }  // namespace
 
 std::array<ir::ValueId, 2> light_values(Kernel& k, Int record, Vec3 position, LightKinds kinds) {
-  const auto finish = [&](Vec3 direction, Vec3 color) { return std::array{direction.value, color.value}; };
+  const auto finish = [&](Vec3 direction, Vec3 color) {
+    if (!kinds.shadows) return std::array{direction.value, color.value};
+    const Float visible(k.b, k.call("shadow_at", {record.id(k.b), position.value})[0]);
+    return std::array{direction.value, (color * functions::splat<3>(visible)).value};
+  };
   const Vec3 direction = k.load3(FrameBuffer::lights, record, light_word::direction);
   const Vec3 color = k.load3(FrameBuffer::lights, record, light_word::color);
   if (!kinds.point && !kinds.spot) return finish(direction, color);

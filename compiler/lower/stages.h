@@ -41,6 +41,7 @@ struct LightKinds {
   bool directional = true;
   bool point = true;
   bool spot = true;
+  bool shadows = false;  ///< whether any has a shadow that the surface receives
 };
 
 /// A module with the frame's buffers and no function.

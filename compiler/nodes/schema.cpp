@@ -189,6 +189,10 @@ SchemaJson pass_schema() {
                                                 "drawn where it holds: a boolean, or a float of at least \"cutoff\"")},
                            {"cutoff", described(any_of({reference("link"), number_schema()}),
                                                 "of a float \"cutout\": default 0.5; 0: drawn everywhere")},
+                           {"casts_shadow", described(boolean_schema(),
+                                                      "whether lights with shadows see it: default true, but false for "
+                                                      "a pass that culls front faces, as outlines do")},
+                           {"receives_shadow", described(boolean_schema(), "whether shadows fall on it: default true")},
                            {"color", color_schema(), true}});
   return object_schema(keys);
 }

@@ -279,6 +279,8 @@ class Reflector {
       if (pass.enabled) made.enabled = shader_.parameters.fields[*pass.enabled].name;
       if (pass.double_sided) made.double_sided = shader_.parameters.fields[*pass.double_sided].name;
       made.cut_out = pass.coverage.has_value();
+      made.casts_shadow = pass.casts_shadow;
+      made.receives_shadow = pass.receives_shadow;
       made.moves_vertices = pass.move_vertex.has_value();
       if (made.moves_vertices)
         made.position_space = space_name(static_cast<interface::Space>(pass.position_space));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
@@ -242,6 +243,23 @@ class Assembler {
     return 0;
   }
 
+  /// `area`: of the triangle, doubled, in square units; positive.
+  void move_away(std::array<Corner, 3>& corners, int64_t area) const {
+    const DepthBias& bias = surface_.bias;
+    const auto depth = [&](int i) { return static_cast<double>(lanes::from_bits_normal(corners[i].depth)); };
+    const double z0 = depth(0), z1 = depth(1) - z0, z2 = depth(2) - z0;
+    const double x1 = corners[1].x - corners[0].x, x2 = corners[2].x - corners[0].x;
+    const double y1 = corners[1].y - corners[0].y, y2 = corners[2].y - corners[0].y;
+    const double pixel = static_cast<double>(units) / static_cast<double>(area);
+    const double across = std::abs(z1 * y2 - z2 * y1) * pixel, down = std::abs(z2 * x1 - z1 * x2) * pixel;
+    const double slope = bias.slope * (across + down) + bias.constant;
+    for (int i = 0; i < 3; ++i) {
+      const double z = depth(i);
+      const double moved = std::max(z - (slope + bias.relative * z), 0.0);
+      corners[i].depth = lanes::bits_nonnan(lanes::from_bits_normal(lanes::bits(static_cast<float>(moved))));
+    }
+  }
+
   void emit(std::array<Corner, 3> corners, std::array<uint32_t, 3> indices) {
     const auto& [a, b, c] = corners;
     const int64_t area =
@@ -258,6 +276,8 @@ class Assembler {
     if (centres_between(left, top, right, bottom).within(viewport_.pixels()).empty()) return;
     // The longest edge along an axis spans the bounds.
     const bool wide = right - left >= 1 << 15 || bottom - top >= 1 << 15;
+
+    if (surface_.bias.is_set()) move_away(corners, std::abs(area));
 
     namespace word = lower::triangle_word;
     namespace flag = lower::triangle_flag;

@@ -16,6 +16,14 @@ inline constexpr int max_image_size = 8192;
 /// How far to the left of and above the image positions may lie, in pixels.
 inline constexpr int max_before_image = 2048;
 
+/// How far the depth of a triangle is moved away from the viewer, as depth.
+struct DepthBias {
+  float slope = 0;     ///< times the sum of what the depth changes by from a pixel to the next, along x and along y
+  float relative = 0;  ///< times the depth
+  float constant = 0;
+  bool is_set() const { return slope > 0 || relative > 0 || constant > 0; }
+};
+
 /// One draw after its vertex stage.
 struct Surface {
   std::span<const float>
@@ -28,6 +36,7 @@ struct Surface {
   /// clockwise.
   bool mirrored = false;
   bool cutout = false;  ///< its triangles get triangle_flag::cutout
+  DepthBias bias = {};
 };
 
 /// Appends the surface's triangles to `triangles` (records of lower/frame_layout.h), in the order of its indices, and

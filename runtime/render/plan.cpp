@@ -8,6 +8,7 @@
 
 #include "compiler/ir/printer.h"
 #include "compiler/lower/frame_layout.h"
+#include "compiler/lower/shadow.h"
 #include "compiler/support/visible.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/render/clock.h"
@@ -15,6 +16,7 @@
 #include "runtime/render/parameters.h"
 #include "runtime/render/records.h"
 #include "runtime/render/samples.h"
+#include "runtime/render/shadows.h"
 #include "runtime/render/skips.h"
 #include "runtime/render/textures.h"
 #include "runtime/render/visibility.h"
@@ -38,6 +40,7 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
     kinds.directional |= light.kind == scene::LightKind::directional;
     kinds.point |= light.kind == scene::LightKind::point;
     kinds.spot |= light.kind == scene::LightKind::spot;
+    kinds.shadows |= light.shadow.has_value();
   }
   return kinds;
 }
@@ -67,7 +70,11 @@ class Planner {
                      const FindTexture& find_texture);
   void place_object(size_t o);
   /// Adds a view. The camera and the size of a pixel are those of an image of this size.
-  void add_view(const scene::Camera& camera, int width, int height, backends::Target target);
+  void add_view(const scene::Camera& camera, const scene::View& view, int width, int height, backends::Target target);
+  /// Adds the records of the lights, and a view for each of their shadow maps.
+  void add_lights(const scene::View& picture);
+  std::vector<Hull> find_hulls(const scene::View& picture) const;
+  bool is_shadow_map(size_t view) const { return view + 1 < plan_.frame.views.size(); }
   /// One copy of an object in one view.
   struct Appearance {
     glm::mat4 projected;
@@ -106,10 +113,13 @@ class Planner {
 bool Planner::compile_effects() {
   driver::CompileOptions options = options_.compiler;
   options.lights = kinds_of(scene_.lights);
-  std::map<std::string, size_t> known;
+  const bool shadows = options.lights.shadows;
+  std::map<std::pair<std::string, bool>, size_t> known;
   bool good = true;
   for (const Object& object : scene_.objects) {
-    const auto [found, is_new] = known.try_emplace(object.effect, plan_.effects.size());
+    options.lights.shadows = shadows && object.receives_shadow;
+    const auto [found, is_new] =
+        known.try_emplace({object.effect, options.lights.shadows}, plan_.effects.size());
     effect_of_object_.push_back(found->second);
     if (!is_new) continue;
     const support::Source source = read_document(object.effect, object.effect_where);
@@ -221,6 +231,9 @@ bool Planner::make_objects() {
   Count vertices{"vertices", max_drawn_vertices};
   Count triangles{"triangles", max_drawn_triangles};
   Count words{"words of object records", max_object_words};
+  size_t views = 1;
+  for (const scene::Light& light : scene_.lights) views += shadow_map_count(light);
+  Count draws_of_views{"draws, those of shadows too,", max_draws};
   const StoredMesh no_mesh{{MeshPart{}}};
   bool good = true;
   const FindTexture find_texture = [&](const ImageSource& source,
@@ -242,6 +255,7 @@ bool Planner::make_objects() {
       continue;
     }
     const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
+    draws_of_views.total += draws * static_cast<int64_t>(mesh.parts.size() * views);
     mesh_of_object_.push_back(*number);
     note_largest_mesh(object, mesh);
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
@@ -250,7 +264,7 @@ bool Planner::make_objects() {
       words.total += draws * (lower::object_word::parameters + lower::view_word::matrix +
                               parameters_.back()[part].word_count());
     }
-    for (const Count* count : {&vertices, &triangles, &words}) {
+    for (const Count* count : {&vertices, &triangles, &words, &draws_of_views}) {
       if (count->total <= count->limit) continue;
       diagnostics_
           .report(Id::too_large, object.name_where,
@@ -275,8 +289,12 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
   for (size_t p = 0; p < effect.passes.size(); ++p) {
     const driver::EffectPass& pass = effect.passes[p];
-    const auto may_see = [&](const Appearance& view) { return !view.outside || pass.moves_vertices; };
-    const bool unseen = std::ranges::none_of(copy.views, may_see);
+    const auto may_see = [&](size_t v) {
+      if (is_shadow_map(v) && !(object.casts_shadow && pass.casts_shadow)) return false;
+      return !copy.views[v].outside || pass.moves_vertices;
+    };
+    bool unseen = true;
+    for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v);
     bool left_out = false;
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
       if (!options_.disabled && effect.parameters.is_off(pass.enabled, parameters[part])) {
@@ -292,8 +310,12 @@ void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& ski
         draw.cutout = pass.cutout && effect.parameters.cuts_out(pass.cutoff, parameters[part]);
         if (pass.cutout && !draw.cutout) ++skipped[p].uncut;
         plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
-        for (size_t v = 0; v < copy.views.size(); ++v)
-          if (may_see(copy.views[v])) place_draw(draw, copy.views[v], plan_.frame.views[v]);
+        for (size_t v = 0; v < copy.views.size(); ++v) {
+          if (!may_see(v)) continue;
+          backends::Draw seen = draw;
+          if (is_shadow_map(v)) seen.state = {interface::Cull::none, interface::DepthTest::nearer};
+          place_draw(seen, copy.views[v], plan_.frame.views[v]);
+        }
       }
     }
     if (left_out) ++skipped[p].unseen;
@@ -345,11 +367,56 @@ void Planner::place_object(size_t o) {
   report_skips(object, effect, static_cast<int64_t>(mesh.parts.size()), skipped, plan_.stats.skips);
 }
 
-void Planner::add_view(const scene::Camera& camera, int width, int height, backends::Target target) {
-  cameras_.push_back(scene::make_view(camera, width, height));
-  backends::View& view = plan_.frame.views.emplace_back();
-  view.target = std::move(target);
-  view.words = view_words(camera, cameras_.back(), width, height);
+void Planner::add_view(const scene::Camera& camera, const scene::View& view, int width, int height,
+                       backends::Target target) {
+  cameras_.push_back(view);
+  backends::View& added = plan_.frame.views.emplace_back();
+  added.target = std::move(target);
+  added.words = view_words(camera, view, width, height);
+}
+
+std::vector<Hull> Planner::find_hulls(const scene::View& picture) const {
+  // Of a mesh whose passes move vertices; an author who moves them further leaves their shadows incomplete.
+  constexpr float moved = 0.5f;
+  std::vector<Hull> hulls;
+  for (size_t o = 0; o < scene_.objects.size(); ++o) {
+    const Object& object = scene_.objects[o];
+    const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+    const std::vector<driver::EffectPass>& passes = plan_.effects[effect_of_object_[o]].passes;
+    const bool casts = object.casts_shadow && std::ranges::any_of(passes, &driver::EffectPass::casts_shadow);
+    const bool moves = std::ranges::any_of(passes, &driver::EffectPass::moves_vertices);
+    const int64_t count = scene::instance_count(object);
+    for (int64_t i = 0; i < count; ++i) {
+      const glm::mat4 model = scene::model_matrix(object, scene::instance(object, i));
+      const glm::mat4 projected = scene::multiply(picture.projection, model);
+      const bool is_seen = moves || !outside_view(mesh.low, mesh.high, projected, scene::max_size, scene::max_size);
+      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts, is_seen});
+    }
+  }
+  return hulls;
+}
+
+void Planner::add_lights(const scene::View& picture) {
+  namespace word = lower::light_word;
+  const bool any = std::ranges::any_of(scene_.lights, [](const scene::Light& light) { return light.shadow.has_value(); });
+  const std::vector<Hull> hulls = any ? find_hulls(picture) : std::vector<Hull>{};
+  backends::Frame& frame = plan_.frame;
+  for (const scene::Light& light : scene_.lights) {
+    auto record = scene::light_record(light);
+    const std::vector<ShadowMap> maps = light.shadow ? shadow_maps(light, hulls, picture) : std::vector<ShadowMap>{};
+    if (light.shadow && maps.empty()) plan_.stats.skips.push_back({"shadow of " + light.name, "it darkens nothing that is seen"});
+    if (!maps.empty()) {
+      record[word::shadow] = static_cast<float>(1 + frame.views.size() * lower::shadow_map_records);
+      record[word::shadow_maps] = static_cast<float>(maps.size());
+      record[word::softness] = scene::canonical(light.shadow->softness);
+    }
+    for (const ShadowMap& map : maps) {
+      const int size = light.shadow->size;
+      add_view(map.camera, map.view, size, size, {"the shadow of light " + quote(light.name), size, size, false});
+      frame.views.back().depth_bias = map.bias;
+    }
+    frame.lights.insert(frame.lights.end(), record.begin(), record.end());
+  }
 }
 
 std::optional<Plan> Planner::plan() {
@@ -370,12 +437,12 @@ std::optional<Plan> Planner::plan() {
   {
     const lanes::FpGuard guard;
     frame.frame = frame_words(scene_);
-    add_view(scene_.camera, width, height, {"the picture", side * width, side * height});
+    const scene::View picture = scene::make_view(scene_.camera, width, height);
+    add_lights(picture);
+    const size_t shadow_maps = frame.views.size();
+    add_view(scene_.camera, picture, width, height, {"the picture", side * width, side * height});
+    for (size_t i = 0; i < shadow_maps; ++i) frame.views.back().reads.push_back(i);
     for (size_t i = 0; i < 4; ++i) frame.views.back().background[i] = scene::canonical(scene_.background[i]);
-    for (const scene::Light& light : scene_.lights) {
-      const auto record = scene::light_record(light);
-      frame.lights.insert(frame.lights.end(), record.begin(), record.end());
-    }
     for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
     auto posts = plan_posts(scene_, posts_, width, height, options_.skip, plan_.stats.skips, diagnostics_);
     if (!posts) return std::nullopt;

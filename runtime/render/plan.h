@@ -19,6 +19,7 @@ namespace isoshade::render {
 inline constexpr int64_t max_drawn_vertices = 8'000'000;   ///< 16 bytes each, after the vertex stage
 inline constexpr int64_t max_drawn_triangles = 8'000'000;  ///< 64 bytes each, once clipped and snapped
 inline constexpr int64_t max_object_words = 16'000'000;    ///< of all records and matrices
+inline constexpr int64_t max_draws = 4'000'000;            ///< of all views
 
 struct PlanOptions {
   int width = 0;  ///< of the image; 0: the scene's own size

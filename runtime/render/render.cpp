@@ -80,7 +80,8 @@ class FrameRenderer {
     for (size_t d = 0; d < draws.size(); ++d) {
       const backends::Draw& draw = draws[d];
       support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
-      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout},
+      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout,
+                             pass.view.depth_bias},
                             pass.view.target.width, pass.view.target.height, vertices_, triangles_);
       support::release(clip[d]);
     }

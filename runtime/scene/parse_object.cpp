@@ -161,6 +161,8 @@ Object parse_object(const Document& document, const Member& member, Diagnostics&
     object.transform = parse_transform(document, *transform, what, diagnostics);
   if (const Json* parameters = reader.read(key::parameters))
     object.parameters = parse_parameters(document, *parameters, diagnostics);
+  object.casts_shadow = reader.read(key::casts_shadow);
+  object.receives_shadow = reader.read(key::receives_shadow);
   if (const Json* repeat = reader.read(key::repeat)) {
     if (repeat->items.size() > key::repeat.type.most) {
       diagnostics.report(

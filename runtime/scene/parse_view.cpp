@@ -31,6 +31,17 @@ void check_view(const Camera& camera, support::Span where, Diagnostics& diagnost
       .suggest("for a view straight down, \"up\": [0, 0, -1]");
 }
 
+Shadow parse_shadow(const Document& document, const Json& json, Diagnostics& diagnostics) {
+  namespace key = format::shadow;
+  Shadow shadow;
+  format::Reader<format::Object::shadow> reader(document, json, "the shadow of a light", diagnostics);
+  shadow.size = static_cast<int>(reader.read(key::size));
+  shadow.bias = reader.read(key::bias);
+  shadow.softness = reader.read(key::softness);
+  reader.finish();
+  return shadow;
+}
+
 }  // namespace
 
 Camera parse_camera(const Document& document, const Json& json, Diagnostics& diagnostics) {
@@ -74,6 +85,7 @@ Light parse_light(const Document& document, const Member& member, Diagnostics& d
     light.inner_angle = reader.read(key::inner_angle);
     light.outer_angle = reader.read(key::outer_angle);
   }
+  if (const Json* shadow = reader.read(key::shadow)) light.shadow = parse_shadow(document, *shadow, diagnostics);
   if (!reader.finish()) return light;
   if (light.direction == glm::vec3(0)) {
     diagnostics.report(Id::degenerate, document.span(member.value),

@@ -43,6 +43,14 @@ struct Camera {
 enum class LightKind : uint8_t { directional, point, spot };
 inline constexpr std::string_view light_names[] = {"directional", "point", "spot"};
 
+/// How a light is kept from what lies behind other objects.
+struct Shadow {
+  int size = 1024;     ///< side of a shadow map, in pixels
+  float bias = 1;      ///< of the depth in the map, in units of what a plane needs
+  float softness = 2;  ///< width of the edge of a shadow, in pixels of the map
+};
+inline constexpr int max_shadow_size = 4096;
+
 struct Light {
   static constexpr float default_intensity = 1;
   static constexpr float default_inner_angle = 0;
@@ -59,6 +67,7 @@ struct Light {
   float inner_angle = default_inner_angle;  ///< spot: degrees from the axis up to which the light is full
   float outer_angle =
       default_outer_angle;  ///< spot: degrees from the axis where the light ends; greater than inner_angle
+  std::optional<Shadow> shadow;
 };
 
 /// Scale, then rotate, then translate.
@@ -99,6 +108,7 @@ struct Object {
   Transform transform;
   std::vector<Parameter> parameters;  ///< names are unique, also among the variations
   std::vector<Repeat> repeat;         ///< at most 3 axes
+  bool casts_shadow = true, receives_shadow = true;
   support::Span name_where, effect_where;
   support::Span mesh_where;  ///< nowhere if the command line names the file
 };

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/render/shadows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "runtime/scene/host_math.h"
+
+namespace isoshade::render {
+namespace {
+
+using glm::vec3;
+
+/// The widest spot that one map shows: the outer angle in degrees.
+constexpr float widest_cone = 60;
+/// Part of the scene's size at which a point light or a spot begins to see.
+constexpr float near_part = 0.0009765625f;  // 2^-10
+/// Enlarges what a directional light looks at, against rounding.
+constexpr float slack = 0.001f;
+
+/// The smallest box along the axes around points.
+struct Bounds {
+  vec3 low{INFINITY}, high{-INFINITY};
+  void add(const vec3& point) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], point[i]);
+      high[i] = std::max(high[i], point[i]);
+    }
+  }
+  bool empty() const { return !(low.x <= high.x); }
+};
+
+/// A plane through the eye, or along the view: distance(p) = dot(normal, p) + offset, not negative inside.
+struct Plane {
+  vec3 normal;
+  float offset;
+  float distance(const vec3& p) const { return scene::dot(normal, p) + offset; }
+};
+
+/// The four sides of what the picture shows.
+std::array<Plane, 4> sides_of(const glm::mat4& projection) {
+  const auto row = [&](int r) {
+    return glm::vec4(projection[0][r], projection[1][r], projection[2][r], projection[3][r]);
+  };
+  const auto plane = [](const glm::vec4& v) { return Plane{vec3(v.x, v.y, v.z), v.w}; };
+  const glm::vec4 w = row(3);
+  return {plane(w + row(0)), plane(w - row(0)), plane(w + row(1)), plane(w - row(1))};
+}
+
+/// The part of a convex polygon that is inside.
+std::vector<vec3> clip(const std::vector<vec3>& polygon, const Plane& plane) {
+  std::vector<vec3> kept;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const float at_a = plane.distance(a), at_b = plane.distance(b);
+    if (at_a >= 0) kept.push_back(a);
+    if ((at_a >= 0) != (at_b >= 0)) kept.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+  }
+  return kept;
+}
+
+/// Calls use(p) for points whose convex hull is the part of the box that the picture may show.
+template <class Use>
+void for_seen_points(const Hull& hull, const scene::View& picture, const std::array<Plane, 4>& sides, const Use& use) {
+  constexpr int faces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
+  for (const auto& face : faces) {
+    std::vector<vec3> polygon;
+    for (const int corner : face) polygon.push_back(hull.corners[static_cast<size_t>(corner)]);
+    for (const Plane& side : sides) polygon = clip(polygon, side);
+    std::ranges::for_each(polygon, use);
+  }
+  // The sides meet in the eye, which may lie in the box. Whether it does is not asked: it is near enough.
+  if (picture.eye.w == 0) return;
+  const vec3 eye(picture.eye);
+  Bounds box;
+  for (const vec3& corner : hull.corners) box.add(corner);
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) inside = inside && box.low[i] <= eye[i] && eye[i] <= box.high[i];
+  if (inside) use(eye);
+}
+
+/// A direction across `along` that no rounding makes parallel to it.
+vec3 up_across(const vec3& along) {
+  const bool steep = std::abs(along.y) > 0.9f * std::max(std::abs(along.x), std::abs(along.z));
+  return steep ? vec3(0, 0, -1) : vec3(0, 1, 0);
+}
+
+/// The number of texels at each edge of a map that only the filter reads.
+float margin_of(const scene::Shadow& shadow) { return std::ceil(shadow.softness * 0.5f) + 1; }
+
+raster::DepthBias bias_of(const scene::Shadow& shadow, bool perspective) {
+  // The filter compares with texels whose centres lie so far away, and positions are rounded to 1/256.
+  const float reach = shadow.softness * 0.5f + 0.5f + 0.01f;
+  constexpr float rounding = 7.62939453e-06f;  // 2^-17
+  return {shadow.bias * reach, perspective ? shadow.bias * rounding : 0.0f, perspective ? 0.0f : shadow.bias * rounding};
+}
+
+/// Scales the picture about its middle so that its old edges lie `margin` texels inside.
+void add_margin(scene::View& view, const scene::Shadow& shadow) {
+  const auto size = static_cast<float>(shadow.size);
+  const float scale = std::max(size - 2 * margin_of(shadow), 1.0f) / size;
+  view.clip_from_view[0][0] *= scale;
+  view.clip_from_view[1][1] *= scale;
+  view.projection = scene::multiply(view.clip_from_view, view.view);
+}
+
+ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow) {
+  ShadowMap map{camera, scene::make_view(camera, shadow.size, shadow.size), {}};
+  add_margin(map.view, shadow);
+  map.bias = bias_of(shadow, camera.projection == scene::Projection::perspective);
+  return map;
+}
+
+std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<const Hull> hulls,
+                                          const scene::View& picture) {
+  const vec3 back = scene::normalize(-light.direction);
+  const vec3 up = up_across(back);
+  const vec3 right = scene::normalize(scene::cross(up, back)), upright = scene::cross(back, right);
+  const auto in_light = [&](const vec3& p) {
+    return vec3(scene::dot(right, p), scene::dot(upright, p), scene::dot(back, p));
+  };
+  const std::array<Plane, 4> sides = sides_of(picture.projection);
+  Bounds seen;
+  for (const Hull& hull : hulls)
+    if (hull.is_seen) for_seen_points(hull, picture, sides, [&](const vec3& p) { seen.add(in_light(p)); });
+  if (seen.empty()) return {};
+  float nearest = seen.high.z;
+  bool casts = false;
+  for (const Hull& hull : hulls) {
+    if (!hull.casts) continue;
+    Bounds box;
+    for (const vec3& corner : hull.corners) box.add(in_light(corner));
+    const bool beside = box.high.x < seen.low.x || box.low.x > seen.high.x || box.high.y < seen.low.y ||
+                        box.low.y > seen.high.y || box.high.z < seen.low.z;
+    if (beside) continue;
+    casts = true;
+    nearest = std::max(nearest, box.high.z);
+  }
+  if (!casts) return {};
+  const vec3 middle = (seen.low + seen.high) * 0.5f;
+  const vec3 extent = vec3(seen.high.x, seen.high.y, nearest) - seen.low;
+  const float widest = std::max({extent.x, extent.y, 1e-6f});
+  const float depth = std::max(extent.z, widest * slack);
+  const float begin = nearest + depth * slack;
+  scene::Camera camera;
+  camera.projection = scene::Projection::orthographic;
+  camera.position = right * middle.x + upright * middle.y + back * begin;
+  camera.target = camera.position - back * std::max(depth, widest);
+  camera.up = up;
+  camera.height = widest * (1 + slack);
+  camera.near = 0;
+  camera.far = depth * (1 + 2 * slack);
+  return {map_of(camera, *light.shadow)};
+}
+
+}  // namespace
+
+std::array<vec3, 8> corners_of(const vec3& low, const vec3& high, float margin, const glm::mat4& model) {
+  const vec3 diagonal = high - low;
+  const float length = std::sqrt(scene::dot(diagonal, diagonal));
+  const vec3 least = low - vec3(margin * length), most = high + vec3(margin * length);
+  std::array<vec3, 8> corners;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const auto end = [&](int axis) { return (i >> axis & 1) != 0 ? most[axis] : least[axis]; };
+    corners[i] = vec3(scene::multiply(model, glm::vec4(end(0), end(1), end(2), 1)));
+  }
+  return corners;
+}
+
+size_t shadow_map_count(const scene::Light& light) {
+  if (!light.shadow) return 0;
+  const bool is_wide = light.kind == scene::LightKind::spot && light.outer_angle > widest_cone;
+  return light.kind == scene::LightKind::point || is_wide ? 6 : 1;
+}
+
+std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture) {
+  if (light.kind == scene::LightKind::directional) return map_of_directional(light, hulls, picture);
+  const bool is_needed = std::ranges::any_of(hulls, &Hull::is_seen) && std::ranges::any_of(hulls, &Hull::casts);
+  if (!is_needed) return {};
+  Bounds all;
+  for (const Hull& hull : hulls)
+    for (const vec3& corner : hull.corners) all.add(corner);
+  const vec3 diagonal = all.high - all.low;
+  scene::Camera camera;
+  camera.position = light.position;
+  camera.near = std::max({diagonal.x, diagonal.y, diagonal.z, 1e-6f}) * near_part;
+  std::vector<ShadowMap> maps;
+  // Far enough to differ from the position.
+  const vec3 away = glm::abs(light.position);
+  const float far_enough = std::max({away.x, away.y, away.z, 1.0f});
+  const auto add = [&](const vec3& along, float fov) {
+    camera.target = light.position + along * far_enough;
+    camera.up = up_across(along);
+    camera.fov = fov;
+    maps.push_back(map_of(camera, *light.shadow));
+  };
+  if (shadow_map_count(light) == 1) {
+    add(scene::normalize(light.direction), 2 * light.outer_angle);
+  } else {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const float sign : {1.0f, -1.0f}) {
+        vec3 along(0);
+        along[axis] = sign;
+        add(along, 90);
+      }
+    }
+  }
+  return maps;
+}
+
+}  // namespace isoshade::render

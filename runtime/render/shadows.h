@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the shadow maps of a light look, and how large what they show is.
+#pragma once
+
+#include <array>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "runtime/raster/clip.h"
+#include "runtime/scene/placement.h"
+#include "runtime/scene/scene.h"
+
+namespace isoshade::render {
+
+/// A box around a copy of an object, in world space.
+struct Hull {
+  std::array<glm::vec3, 8> corners;  ///< bit i of the index: the high end along axis i of object space
+  bool casts = false;                ///< a shadow
+  bool is_seen = false;              ///< by the camera of the picture, maybe
+};
+/// The corners low ... high of a box in object space. `margin`: of what its passes may move vertices beyond it, as a part
+/// of its diagonal.
+std::array<glm::vec3, 8> corners_of(const glm::vec3& low, const glm::vec3& high, float margin, const glm::mat4& model);
+
+struct ShadowMap {
+  scene::Camera camera;
+  scene::View view;
+  raster::DepthBias bias;
+};
+
+/// How many maps a light has.
+size_t shadow_map_count(const scene::Light& light);
+
+/// The maps of a light that has a shadow: one for a directional light, fitted to what the picture shows of the boxes and
+/// as deep as what may darken it; one for a spot, around its cone; six for a point light, and for a spot wider than 60
+/// degrees, towards +x -x +y -y +z -z. Every map has a margin for the filter. Empty if there is nothing that it could
+/// darken. The caller holds a lanes::FpGuard.
+
+std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture);
+
+}  // namespace isoshade::render
