@@ -35,9 +35,16 @@ struct Corner {
 
 /// A bit for each plane that a vertex lies outside of.
 using Outside = uint8_t;
-enum Plane : Outside { near_plane = 1, right_plane = 2, left_plane = 4, bottom_plane = 8, top_plane = 16 };
-constexpr Plane planes[] = {near_plane, right_plane, left_plane, bottom_plane, top_plane};
-constexpr Outside unusable = 32;  ///< not finite, or too near to the eye for the division
+enum Plane : Outside {
+  near_plane = 1,
+  far_plane = 2,
+  right_plane = 4,
+  left_plane = 8,
+  bottom_plane = 16,
+  top_plane = 32
+};
+constexpr Plane planes[] = {near_plane, far_plane, right_plane, left_plane, bottom_plane, top_plane};
+constexpr Outside unusable = 64;  ///< not finite, or too near to the eye for the division
 
 bool finite(float x) { return (lanes::bits_nonnan(x) & lanes::exponent_bits) != lanes::exponent_bits; }
 
@@ -68,6 +75,7 @@ class Viewport {
   double distance(Plane plane, const Point& p) const {
     switch (plane) {
       case near_plane: return static_cast<double>(p.w) - p.z;
+      case far_plane: return p.z;
       case right_plane: return right_ * p.w - p.x;
       case left_plane: return left_ * p.w + p.x;
       case bottom_plane: return bottom_ * p.w + p.y;
@@ -116,9 +124,9 @@ struct ClipVertex {
   std::array<float, vertex_stride> attributes;
 };
 
-/// A triangle cut by five planes has eight corners. Rounding can make one edge cross a plane twice; in the worst case
-/// each plane then adds half as many corners: 3, 4, 6, 9, 13, 19.
-constexpr int most_corners = 19;
+/// A triangle cut by six planes has nine corners. Rounding can make one edge cross a plane twice; in the worst case
+/// each plane then adds half as many corners: 3, 4, 6, 9, 13, 19, 28.
+constexpr int most_corners = 28;
 
 struct Polygon {
   std::array<ClipVertex, most_corners> vertices;
@@ -255,7 +263,7 @@ class Assembler {
     const double slope = bias.slope * (across + down) + bias.constant;
     for (int i = 0; i < 3; ++i) {
       const double z = depth(i);
-      const double moved = std::max(z - (slope + bias.relative * z), 0.0);
+      const double moved = z - (slope + bias.relative * z);  // may be negative, or the triangle would tilt
       corners[i].depth = lanes::bits_nonnan(lanes::from_bits_normal(lanes::bits(static_cast<float>(moved))));
     }
   }

@@ -43,7 +43,7 @@ struct Surface {
 /// the records of the vertices that clipping makes to `vertices`. Width and height are 1 to 8192 pixels.
 ///
 /// Drops triangles that are culled, have no area, cover no pixel centre of the image, or have a vertex that is not
-/// finite. Clips at the near plane, 2048 pixels left of and above the image's first pixel, and 8190 pixels (or the
+/// finite. Clips at the near and the far plane, 2048 pixels left of and above the image's first pixel, and 8190 pixels (or the
 /// image's size, if greater) right of and below it. Triangles that share an edge share both ends of what clipping
 /// leaves of it.
 void clip_and_snap(const Surface& surface, int width, int height, std::vector<float>& vertices,

@@ -89,11 +89,19 @@ vec3 up_across(const vec3& along) {
 /// The number of texels at each edge of a map that only the filter reads.
 float margin_of(const scene::Shadow& shadow) { return std::ceil(shadow.softness * 0.5f) + 1; }
 
-raster::DepthBias bias_of(const scene::Shadow& shadow, bool perspective) {
+raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& camera, const scene::View& view) {
   // The filter compares with texels whose centres lie so far away, and positions are rounded to 1/256.
   const float reach = shadow.softness * 0.5f + 0.5f + 0.01f;
+  // What the facet of a curved surface lacks where its neighbour is steeper: as if each had at least this slope.
+  constexpr float least_slope = 0.1f;
   constexpr float rounding = 7.62939453e-06f;  // 2^-17
-  return {shadow.bias * reach, perspective ? shadow.bias * rounding : 0.0f, perspective ? 0.0f : shadow.bias * rounding};
+  // World units across a texel, of an image that is 2 units high; in perspective for each unit of distance.
+  const float texel = 2 / (view.clip_from_view[1][1] * static_cast<float>(shadow.size));
+  const bool perspective = camera.projection == scene::Projection::perspective;
+  // Orthographic depth falls by clip_from_view[2][2] a unit; depth in perspective is near / distance.
+  const float fall = perspective ? 1.0f : view.clip_from_view[2][2];
+  const float least = shadow.bias * (least_slope * texel * reach * fall + rounding);
+  return {shadow.bias * reach, perspective ? least : 0.0f, perspective ? 0.0f : least};
 }
 
 /// Scales the picture about its middle so that its old edges lie `margin` texels inside.
@@ -108,7 +116,7 @@ void add_margin(scene::View& view, const scene::Shadow& shadow) {
 ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow) {
   ShadowMap map{camera, scene::make_view(camera, shadow.size, shadow.size), {}};
   add_margin(map.view, shadow);
-  map.bias = bias_of(shadow, camera.projection == scene::Projection::perspective);
+  map.bias = bias_of(shadow, camera, map.view);
   return map;
 }
 
