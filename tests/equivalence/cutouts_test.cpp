@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cut-outs give the same bits on every backend, whatever hides them, moves them or turns them over.
 #include <algorithm>
-#include <deque>
 #include <filesystem>
 
 #include "backends/cpu/lane_count.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/render/samples.h"
-#include "tests/equivalence/scenes.h"
+#include "tests/equivalence/scene_folder.h"
 #include "tests/unit/gltf_files.h"
-#include "tests/unit/scene_documents.h"
-#include "tests/unit/temporary_folder.h"
 
 namespace isoshade::equivalence {
 namespace {
-
-struct Size {
-  int width, height;
-};
 
 /// Holes in every way: by a boolean, by a float at its default cutoff, by derivatives, over what is nearer, on vertices
 /// that move, and by the side that is seen.
@@ -57,31 +50,16 @@ const std::string members = R"("size": [160, 120], "camera": {"position": [1, 1.
                 "transform": {"rotate": [90, 10, 0], "translate": [0, 0, 2]},
                 "parameters": {"level": 0.9, "both": true}}})";
 
-class Cutouts : public ::testing::Test {
+class Cutouts : public SceneFolder {
  protected:
   Cutouts() {
     folder_.write("holes.json", effect);
     folder_.write("solid.json", R"({"isoshade": 1, "effect": "solid", "passes": [{"name": "p", "color": [0.2, 0.3, 0.4]}]})");
   }
 
-  render::Plan plan(Size size, int samples, const std::string& text = members) {
-    support::Diagnostics diagnostics;
-    const auto document = isoshade::testing::document_of(isoshade::testing::scene_text(text), diagnostics,
-                                                         (folder_.path() / "scene.json").string());
-    auto scene = document ? scene::parse_scene(*document, diagnostics) : std::nullopt;
-    EXPECT_TRUE(scene) << diagnostics.text();
-    scenes_.push_back(std::move(*scene));
-    scenes_.back().samples = samples;
-    return equivalence::plan(scenes_.back(), size.width, size.height);
-  }
-
-  isoshade::testing::TemporaryFolder folder_;
-  std::deque<scene::Scene> scenes_;
+  using SceneFolder::plan;
+  render::Plan plan(Size size, int samples) { return plan(size, samples, members); }
 };
-
-std::string text(Size size, int samples) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height) + ", " + std::to_string(samples) + " samples";
-}
 
 TEST_F(Cutouts, AreIdenticalForEveryLaneCountAndOnTheInterpreter) {
   const auto interpreter = interpreter::create();
