@@ -122,9 +122,10 @@ bool Planner::compile_effects() {
         known.try_emplace({object.effect, options.lights.shadows}, plan_.effects.size());
     effect_of_object_.push_back(found->second);
     if (!is_new) continue;
-    const support::Source source = read_document(object.effect, object.effect_where);
+    const bool is_reported = !good && known.contains({object.effect, !options.lights.shadows});
+    const support::Source source = is_reported ? nullptr : read_document(object.effect, object.effect_where);
     auto effect = source != nullptr ? driver::compile_effect(source, options, diagnostics_) : std::nullopt;
-    if (!effect && !diagnostics_.full() && !diagnostics_.all().empty()) {
+    if (!effect && !is_reported && !diagnostics_.full() && !diagnostics_.all().empty()) {
       diagnostics_.all().back().note(object.effect_where, "the effect of " + quote(object.name));
     }
     good = good && effect.has_value();
@@ -390,7 +391,8 @@ std::vector<Hull> Planner::find_hulls(const scene::View& picture) const {
       const glm::mat4 model = scene::model_matrix(object, scene::instance(object, i));
       const glm::mat4 projected = scene::multiply(picture.projection, model);
       const bool is_seen = moves || !outside_view(mesh.low, mesh.high, projected, scene::max_size, scene::max_size);
-      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts, is_seen});
+      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts,
+                       object.receives_shadow && is_seen});
     }
   }
   return hulls;

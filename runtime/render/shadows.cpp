@@ -131,7 +131,7 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
   const std::array<Plane, 4> sides = sides_of(picture.projection);
   Bounds seen;
   for (const Hull& hull : hulls)
-    if (hull.is_seen) for_seen_points(hull, picture, sides, [&](const vec3& p) { seen.add(in_light(p)); });
+    if (hull.shows) for_seen_points(hull, picture, sides, [&](const vec3& p) { seen.add(in_light(p)); });
   if (seen.empty()) return {};
   float nearest = seen.high.z;
   bool casts = false;
@@ -184,7 +184,7 @@ size_t shadow_map_count(const scene::Light& light) {
 
 std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture) {
   if (light.kind == scene::LightKind::directional) return map_of_directional(light, hulls, picture);
-  const bool is_needed = std::ranges::any_of(hulls, &Hull::is_seen) && std::ranges::any_of(hulls, &Hull::casts);
+  const bool is_needed = std::ranges::any_of(hulls, &Hull::shows) && std::ranges::any_of(hulls, &Hull::casts);
   if (!is_needed) return {};
   Bounds all;
   for (const Hull& hull : hulls)

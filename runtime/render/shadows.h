@@ -18,7 +18,7 @@ namespace isoshade::render {
 struct Hull {
   std::array<glm::vec3, 8> corners;  ///< bit i of the index: the high end along axis i of object space
   bool casts = false;                ///< a shadow
-  bool is_seen = false;              ///< by the camera of the picture, maybe
+  bool shows = false;                ///< shadows that fall on it, maybe: it receives them, and the camera may see it
 };
 /// The corners low ... high of a box in object space. `margin`: of what its passes may move vertices beyond it, as a part
 /// of its diagonal.

@@ -123,6 +123,42 @@ TEST(ClipAndSnap, MirroredSurfacesCullTheOtherWinding) {
     }
 }
 
+TEST(ClipAndSnap, CutsAtTheFarPlane) {
+  // Depth falls from 0.5 at the left edge to -0.5 at the right one: it is 0 in the middle, and 0.25 halfway there.
+  const Clipped result =
+      run({-1, 3, 0.5f, 1, -1, -3, 0.5f, 1, 1, 0, -0.5f, 1}, one_triangle, Cull::none, 8, 8);
+  ASSERT_EQ(result.count(), 2);
+  for (int i = 0; i < 2; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int x = result.at(i, word::position + 2 * k);
+      EXPECT_LE(x, 4 * 256);
+      EXPECT_EQ(result.number(i, word::depth + k), 0.5f - 0.125f * static_cast<float>(x) / 256);
+    }
+  EXPECT_EQ(run({-1, 1, -0.5f, 1, -1, -1, -0.1f, 1, 1, 0, -0.5f, 1}, one_triangle, Cull::none, 8, 8).count(), 0);
+}
+
+TEST(ClipAndSnap, BiasMovesATriangleAwayByItsSlope) {
+  // Depth grows by 1/16 a pixel to the right and falls by 1/32 a pixel downwards.
+  const std::vector<float> clip = {-1, 1, 0.25f, 1, 1, 1, 0.75f, 1, -1, -1, 0, 1};
+  const auto depths = [&](DepthBias bias) {
+    std::vector<float> vertices(3 * stride);
+    std::vector<int32_t> triangles;
+    Surface surface;
+    surface.clip = clip;
+    surface.indices = one_triangle;
+    surface.state.cull = Cull::none;
+    surface.bias = bias;
+    clip_and_snap(surface, 8, 8, vertices, triangles);
+    std::multiset<float> found;
+    for (int i = 0; i < 3; ++i) found.insert(std::bit_cast<float>(triangles.at(static_cast<size_t>(word::depth + i))));
+    return found;
+  };
+  EXPECT_EQ(depths({}), (std::multiset<float>{0, 0.25f, 0.75f}));
+  EXPECT_EQ(depths({2, 0, 0}), (std::multiset<float>{-0.1875f, 0.0625f, 0.5625f}));
+  EXPECT_EQ(depths({0, 0.5f, 0}), (std::multiset<float>{0, 0.125f, 0.375f}));
+  EXPECT_EQ(depths({0, 0, 0.125f}), (std::multiset<float>{-0.125f, 0.125f, 0.625f}));
+}
+
 TEST(ClipAndSnap, RoundsTiesToEven) {
   // A 2x2 image: x in units is 256 * x + 256.
   const auto snapped = [](float unit) {
