@@ -106,6 +106,7 @@ struct ScreenPass {
   const driver::Program* program = nullptr;
   int width = 0;  ///< of the image that it makes
   int height = 0;
+  int first_row = 0;  ///< of those that are made; `height` rows from there on. The record of the image has all rows.
   std::span<const float> frame;
   std::span<const float> view;    ///< the camera alone
   std::span<const float> record;  ///< parameters and numbers of taps, as `objects`

@@ -236,7 +236,7 @@ bool CpuBackend::post(const ScreenPass& pass, std::vector<float>& rgba, Diagnost
   const size_t rows = std::max<size_t>(1, row_chunk / width);
   workers_.for_each((height + rows - 1) / rows, [&](size_t chunk) {
     for (size_t y = chunk * rows; y < std::min(height, (chunk + 1) * rows); ++y)
-      kernels->front()->post(buffers.views(), 0, static_cast<int>(y), pass.width,
+      kernels->front()->post(buffers.views(), 0, pass.first_row + static_cast<int>(y), pass.width,
                              rgba.data() + 4 * width * y);
   });
   return true;

@@ -193,7 +193,7 @@ class InterpreterBackend final : public backends::Backend {
     for (int y = 0; y < pass.height; ++y) {
       for (int x = 0; x < pass.width; ++x) {
         std::array<uint32_t, 4> result;
-        runner.run({x, y}, result);
+        runner.run({x, pass.first_row + y}, result);
         for (const uint32_t bits : result) rgba[next++] = std::bit_cast<float>(bits);
       }
     }

@@ -208,7 +208,7 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
     const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
-    device_->run_screen(*pipeline, pass.width, pass.height, rgba);
+    device_->run_screen(*pipeline, pass.width, pass.height, pass.first_row, rgba);
     return true;
   });
 }

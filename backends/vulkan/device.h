@@ -104,8 +104,9 @@ class Device {
   void render(std::span<const Call> visibility, std::span<const Call> color, const float (&background)[4],
               const Window& window, backends::Image& image);
 
-  /// Runs a full-screen pipeline of Output::color over an image: `rgba` has 4 floats a pixel, rows top down.
-  void run_screen(PipelineIndex pipeline, int width, int height, std::span<float> rgba);
+  /// Runs a full-screen pipeline of Output::color over rows of an image: `rgba` has 4 floats a pixel, rows top down. The
+  /// last row is below max_frame_side().
+  void run_screen(PipelineIndex pipeline, int width, int height, int first_row, std::span<float> rgba);
 
   /// Runs a full-screen pipeline of Output::words over `rows` <= max_table_rows rows: sets push.count and
   /// push.width. Record r of `output` receives the first `record_words` <= 4 * attachments words of row r.

@@ -163,7 +163,7 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
   }
 }
 
-void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span<float> rgba) {
+void Device::run_screen(PipelineIndex pipeline, int width, int height, int first_row, std::span<float> rgba) {
   impl_->prepare_attachments(width, height, true);
   const WindowAttachments& attachments = impl_->attachments;
   const size_t row_bytes = static_cast<size_t>(width) * pixel_bytes;
@@ -171,7 +171,8 @@ void Device::run_screen(PipelineIndex pipeline, int width, int height, std::span
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
   impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
                  vk::MemoryPropertyFlagBits::eHostCached);
-  const Call call{.pipeline = pipeline, .scissor = {0, 0, width, height}};
+  const Call call{
+      .pipeline = pipeline, .push = {.origin_y = first_row}, .scissor = {0, first_row, width, height}};
   for (int first = 0; first < height; first += band) {
     const int rows = std::min(band, height - first);
     impl_->submit([&](const vk::raii::CommandBuffer& commands) {

@@ -61,6 +61,7 @@ struct Post {
   std::vector<std::string> images;  ///< names of further input images
   std::vector<bool> reads;          ///< whether it reads the image that it processes, then each of `images`
   bool reads_depth = false;
+  bool is_pointwise = false;      ///< of images it reads no pixel but the one that it makes, and the size does not matter
   std::optional<size_t> enabled;  ///< index of a parameter field; the post is skipped if it is 0
   Program program;
 };

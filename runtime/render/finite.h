@@ -31,7 +31,7 @@ struct NonFiniteReport {
     NonFinite made;
   };
   std::vector<Post> posts;  ///< that made some though every image they read was finite
-  NonFinite result;         ///< after the posts
+  NonFinite result;         ///< after the posts that have run
 
   bool none() const { return drawn.count == 0 && posts.empty() && result.count == 0; }
 };

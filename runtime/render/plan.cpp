@@ -462,6 +462,7 @@ std::optional<Plan> Planner::plan() {
   stats.texture_bytes = static_cast<int64_t>(4 * (frame.texels.size() + frame.texel_bytes.size()));
   stats.lights = frame.light_count;
   stats.posts = static_cast<int64_t>(plan_.posts.steps.size());
+  stats.sample_posts = plan_.samples > 1 ? static_cast<int64_t>(plan_.posts.sample_steps) : 0;
   stats.plan_seconds = clock.lap();
   return std::move(plan_);
 }

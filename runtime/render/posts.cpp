@@ -11,6 +11,7 @@
 #include "compiler/support/visible.h"
 #include "runtime/render/parameters.h"
 #include "runtime/render/records.h"
+#include "runtime/render/samples.h"
 
 namespace isoshade::render {
 namespace {
@@ -53,6 +54,7 @@ class ChainPlanner {
   void drop_unread();
   bool check_result(int result) const;
   bool check_size(const PostChain& chain) const;
+  size_t count_sample_steps(const PostChain& chain) const;
 
   const scene::Scene& scene_;
   const std::vector<const driver::Post*>& documents_;
@@ -170,6 +172,20 @@ bool ChainPlanner::check_size(const PostChain& chain) const {
   return true;
 }
 
+size_t ChainPlanner::count_sample_steps(const PostChain& chain) const {
+  size_t count = 0;
+  for (size_t s = 0; s < chain.steps.size(); ++s) {
+    const PostStep& step = chain.steps[s];
+    const auto image = static_cast<int>(s);
+    const bool is_alone = chain.result != image && chain.last_reader[s] <= image;
+    const bool is_whole = step.width == width_ && step.height == height_;
+    const bool follows = step.sources[0] == image || step.sources[0] == PostStep::not_read;
+    if (!step.post->is_pointwise || !is_alone || !is_whole || !follows) break;
+    if (step.post->reads_depth) count = s + 1;
+  }
+  return count;
+}
+
 std::optional<PostChain> ChainPlanner::plan() {
   PostChain chain;
   bool good = true;
@@ -205,6 +221,7 @@ std::optional<PostChain> ChainPlanner::plan() {
   }
   chain.result = number_of(static_cast<int>(planned_.size()) - 1);
   if (!check_size(chain)) return std::nullopt;
+  chain.sample_steps = count_sample_steps(chain);
   return chain;
 }
 
@@ -256,14 +273,53 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
   return ChainPlanner(scene, documents, width, height, skip, skips, diagnostics).plan();
 }
 
-bool run_posts(const PostChain& chain, const backends::Frame& frame, backends::Backend& backend,
+bool run_sample_posts(const PostChain& chain, const backends::Frame& frame, int first_row, backends::Backend& backend,
+                      backends::Image& samples, DrawStats& stats, Diagnostics& diagnostics) {
+  std::vector<NonFiniteReport::Post>& reports = stats.non_finite.posts;
+  bool was_finite = find_non_finite(samples.rgba, samples.width).count == 0;
+  const backends::View& view = frame.picture();
+  const int width = view.target.width, height = view.target.height;
+  for (size_t s = 0; s < chain.sample_steps; ++s) {
+    const PostStep& step = chain.steps[s];
+    Layers arrays(width, height);
+    const auto add = [&](bool is_read, std::span<const float> rows, int channels) {
+      if (is_read)
+        arrays.add_rows(rows, channels, width, height, first_row);
+      else
+        arrays.add_unread(width, height);
+    };
+    add(step.post->reads_depth, samples.depth, 1);
+    add(step.sources[0] != PostStep::not_read, samples.rgba, 4);
+    const backends::ScreenPass pass{.program = &step.post->program,
+                                    .width = width,
+                                    .height = samples.height,
+                                    .first_row = first_row,
+                                    .frame = frame.frame,
+                                    .view = std::span(view.words).first(lower::view_word::camera_words),
+                                    .record = step.record,
+                                    .layers = arrays.floats,
+                                    .layer_records = arrays.records};
+    if (!backend.post(pass, samples.rgba, diagnostics)) return false;
+    NonFinite made = find_non_finite(samples.rgba, width);
+    const bool is_known = std::ranges::find(reports, step.post_number, &NonFiniteReport::Post::post) != reports.end();
+    if (was_finite && made.count > 0 && !is_known) {
+      const int side = samples_each_way(stats.samples);
+      made.x /= side;
+      made.y = (first_row + made.y) / side;
+      reports.push_back({step.post_number, made});
+    }
+    was_finite = made.count == 0;
+  }
+  return true;
+}
+
+bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, backends::Backend& backend,
                backends::Image& image, DrawStats& stats, Diagnostics& diagnostics) {
-  stats.non_finite.result = stats.non_finite.drawn;
-  if (chain.steps.empty()) return true;
+  if (first == chain.steps.size()) return true;
   std::vector<Layer> layers(1 + chain.steps.size());
-  layers[0] = {image.width, image.height, std::move(image.rgba), stats.non_finite.drawn.count == 0};
+  layers[first] = {image.width, image.height, std::move(image.rgba), stats.non_finite.result.count == 0};
   int64_t kept = 1;
-  for (size_t s = 0; s < chain.steps.size(); ++s) {
+  for (size_t s = first; s < chain.steps.size(); ++s) {
     const PostStep& step = chain.steps[s];
     Layer& made = layers[s + 1];
     made.width = step.width;

@@ -28,6 +28,9 @@ struct PostChain {
   std::vector<PostStep> steps;
   std::vector<int> last_reader;  ///< of each image: the last step that reads it, or none
   int result = 0;                ///< the image that the scene becomes
+  /// How many steps at the beginning are run for each sample, where a pixel has several: up to the last one that reads
+  /// the depth, if all of them look at no pixel but their own, and nothing else reads what they make.
+  size_t sample_steps = 0;
   static constexpr int none = -1;
 
   /// Whether no step after this one needs an earlier image.
@@ -47,8 +50,13 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
                                     const std::vector<const driver::Post*>& documents, int width, int height,
                                     bool skip, std::vector<Skip>& skips, support::Diagnostics& diagnostics);
 
-/// Runs the chain over the image of the frame. Does not change the depth.
-bool run_posts(const PostChain& chain, const backends::Frame& frame, backends::Backend& backend,
+/// Runs the first steps of the chain (PostChain::sample_steps) over rows of the samples of the picture, which has the
+/// size of its target; the first of them is `first_row`.
+bool run_sample_posts(const PostChain& chain, const backends::Frame& frame, int first_row, backends::Backend& backend,
+                      backends::Image& samples, DrawStats& stats, support::Diagnostics& diagnostics);
+
+/// Runs the chain over the image of the frame, from step `first` on. Does not change the depth.
+bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, backends::Backend& backend,
                backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::render

@@ -62,7 +62,7 @@ int append_matrix(const glm::mat4& projected, std::vector<float>& view) {
 
 Layers::Layers(int width, int height) { add_unread(width, height); }
 
-void Layers::add_record(size_t first, int width, int height, int camera) {
+void Layers::add_record(int64_t first, int width, int height, int camera) {
   namespace word = lower::image_word;
   const size_t begin = records.size();
   records.resize(begin + word::stride);
@@ -74,14 +74,21 @@ void Layers::add_record(size_t first, int width, int height, int camera) {
 }
 
 void Layers::add(std::span<const float> pixels, int width, int height, int camera) {
-  add_record(floats.size(), width, height, camera);
+  add_record(static_cast<int64_t>(floats.size()), width, height, camera);
   floats.insert(floats.end(), pixels.begin(), pixels.end());
+}
+
+void Layers::add_rows(std::span<const float> rows, int channels, int width, int height, int first_row) {
+  // The first row of the image, which is not read, would lie in front of the array.
+  const int64_t before = int64_t{channels} * first_row * width;
+  add_record(static_cast<int64_t>(floats.size()) - before, width, height, no_camera);
+  floats.insert(floats.end(), rows.begin(), rows.end());
 }
 
 void Layers::add_again(size_t record) {
   namespace word = lower::image_word;
   const int32_t* const there = &records[record * word::stride];
-  add_record(static_cast<size_t>(there[word::first]), there[word::width], there[word::height],
+  add_record(there[word::first], there[word::width], there[word::height],
              there[word::camera]);
 }
 

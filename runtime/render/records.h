@@ -44,6 +44,8 @@ struct Layers {
   Layers(int width, int height);
   /// Appends an image, 1 or 4 floats a pixel, and its record. `camera`: see image_word.
   void add(std::span<const float> pixels, int width, int height, int camera = no_camera);
+  /// Appends rows of an image of this size and number of floats a pixel, from `first_row` on: no others are read.
+  void add_rows(std::span<const float> rows, int channels, int width, int height, int first_row);
   /// Appends the record of an image that is there already.
   void add_again(size_t record);
   /// Appends the record of an image that the program does not read. Posts may still ask for the size of the depth.
@@ -55,7 +57,7 @@ struct Layers {
   static constexpr int no_camera = -1;
 
  private:
-  void add_record(size_t first, int width, int height, int camera);
+  void add_record(int64_t first, int width, int height, int camera);
 };
 
 }  // namespace isoshade::render

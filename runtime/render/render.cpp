@@ -55,12 +55,14 @@ class FrameRenderer {
       if (!draw_view(v, v + 1 == frame_.views.size() ? image : targets_[v])) return false;
       release_unread(v);
     }
-    if (!run_posts(plan_.posts, frame_, backend_, image, stats_, diagnostics_)) return false;
+    if (!run_posts(plan_.posts, sample_steps(), frame_, backend_, image, stats_, diagnostics_)) return false;
     stats_.post_seconds = lap();
     return true;
   }
 
  private:
+  size_t sample_steps() const { return plan_.samples > 1 ? plan_.posts.sample_steps : 0; }
+
   /// Seconds since the last call, without those that the backend built programs.
   double lap() {
     const double before = std::exchange(built_, backend_.build_seconds());
@@ -101,8 +103,14 @@ class FrameRenderer {
     }
     const backends::ViewPass pass{frame_, view, layers.floats, layers.records};
     if (!make_triangles(pass)) return false;
-    const int samples = v + 1 == frame_.views.size() ? plan_.samples : 1;
-    if (!draw(pass, samples, vertices_, triangles_, backend_, image, stats_, diagnostics_)) return false;
+    const bool is_picture = v + 1 == frame_.views.size();
+    ProcessSamples process;
+    if (is_picture && sample_steps() > 0)
+      process = [&](int first_row, backends::Image& samples) {
+        return run_sample_posts(plan_.posts, frame_, first_row, backend_, samples, stats_, diagnostics_);
+      };
+    if (!draw(pass, is_picture ? plan_.samples : 1, vertices_, triangles_, process, backend_, image, stats_, diagnostics_))
+      return false;
     stats_.draw_seconds += lap();
     return true;
   }

@@ -80,11 +80,36 @@ bool draw_parts(const backends::View& view, int side, std::span<const int32_t> t
   return true;
 }
 
+/// The same in windows as wide as the picture, whose samples are processed before they are resolved.
+bool draw_rows(const backends::ViewPass& pass, int side, std::span<const float> vertices,
+               std::span<const int32_t> triangles, const ProcessSamples& process, backends::Backend& backend,
+               Image& image, DrawStats& stats, support::Diagnostics& diagnostics) {
+  const backends::Target& target = pass.view.target;
+  image.resize(target.width / side, target.height / side);
+  const int rows = std::max(1, max_part_size * max_part_size / (target.width * side));
+  std::vector<int32_t> selected;
+  for (int y = 0; y < image.height; y += rows) {
+    const Window window{0, side * y, target.width, side * std::min(rows, image.height - y)};
+    ++stats.parts;
+    select_triangles(triangles, window, selected);
+    Image samples;
+    {
+      // The backend is used otherwise below.
+      const auto renderer = backend.begin(pass, vertices, diagnostics);
+      if (renderer == nullptr || !renderer->draw(window, selected, samples, diagnostics)) return false;
+    }
+    if (!process(window.y, samples)) return false;
+    while (samples.width > image.width) halve(samples);
+    copy_part(samples, 0, y, image);
+  }
+  return true;
+}
+
 /// Counts the pixels of the image that are not finite, and finds the object that the first of them shows by drawing its
 /// samples again.
 bool note_non_finite(int side, std::span<const int32_t> triangles, backends::ViewRenderer& renderer,
                      const Image& image, NonFiniteReport& report, support::Diagnostics& diagnostics) {
-  report.drawn = find_non_finite(image.rgba, image.width);
+  report.drawn = report.result = find_non_finite(image.rgba, image.width);
   if (report.drawn.count == 0) return true;
   const Window pixel{side * report.drawn.x, side * report.drawn.y, side, side};
   std::vector<int32_t> selected;
@@ -92,7 +117,10 @@ bool note_non_finite(int side, std::span<const int32_t> triangles, backends::Vie
   Image drawn;
   if (!renderer.draw(pixel, selected, drawn, diagnostics)) return false;
   const NonFinite sample = find_non_finite(drawn.rgba, side);
-  if (sample.count == 0) return true;
+  if (sample.count == 0) {
+    report.drawn = {};  // a post that is run for each sample made them
+    return true;
+  }
   const float depth = drawn.depth[static_cast<size_t>(sample.y) * static_cast<size_t>(side) + static_cast<size_t>(sample.x)];
   report.object = object_at(selected, pixel.x + sample.x, pixel.y + sample.y, depth);
   return true;
@@ -134,16 +162,18 @@ void halve(Image& image) {
 }
 
 bool draw(const backends::ViewPass& pass, int samples, std::span<const float> vertices,
-          std::span<const int32_t> triangles, backends::Backend& backend, Image& image, DrawStats& stats,
-          support::Diagnostics& diagnostics) {
+          std::span<const int32_t> triangles, const ProcessSamples& process, backends::Backend& backend,
+          Image& image, DrawStats& stats, support::Diagnostics& diagnostics) {
   const backends::Target& target = pass.view.target;
   const int side = samples_each_way(samples);
   support::assert_that(target.has_color || side == 1, "several samples of a target without color");
+  const bool in_rows = side > 1 && process;
+  if (in_rows && !draw_rows(pass, side, vertices, triangles, process, backend, image, stats, diagnostics))
+    return false;
   const auto renderer = backend.begin(pass, vertices, diagnostics);
   if (renderer == nullptr) return false;
-  const bool drawn = side == 1
-                         ? renderer->draw({0, 0, target.width, target.height}, triangles, image, diagnostics)
-                         : draw_parts(pass.view, side, triangles, *renderer, image, stats, diagnostics);
+  const bool drawn = in_rows || (side == 1 ? renderer->draw({0, 0, target.width, target.height}, triangles, image, diagnostics)
+                                           : draw_parts(pass.view, side, triangles, *renderer, image, stats, diagnostics));
   const bool is_picture = &pass.view == &pass.frame.picture();
   return drawn &&
          (!is_picture || note_non_finite(side, triangles, *renderer, image, stats.non_finite, diagnostics));

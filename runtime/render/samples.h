@@ -4,6 +4,7 @@
 // picture is divided.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "backends/backend.h"
@@ -23,15 +24,19 @@ bool check_samples(const scene::Scene& scene, int width, int height, support::Di
 
 /// Replaces each two by two samples by their mean, separately for r, g, b, a and depth. Sides are even.
 ///
-/// The mean of the (reversed) depth gives the best posts. Fog over the resolved picture should equal the mean of fog
-/// over each sample; in scenes/fog_valley.json the mean depth misses it by a root mean square of 0.0022 in encoded
-/// color, and the nearest, the farthest, a fixed or the middle sample by 0.0027 to 0.0080.
+/// The mean of the (reversed) depth gives the best posts, of those that are not run for each sample. Fog over the resolved
+/// picture should equal the mean of fog over each sample; in scenes/fog_valley.json the mean depth misses it by a root
+/// mean square of 0.0022 in encoded color, and the nearest, the farthest, a fixed or the middle sample by 0.0027 to 0.0080.
 void halve(backends::Image& image);
 
+/// What is done to the samples of rows of the picture, of which the first is `first_row`, before they are resolved.
+using ProcessSamples = std::function<bool(int first_row, backends::Image& samples)>;
+
 /// Draws a view, whose target has samples_each_way(samples) samples in each pixel of the image along each axis; a
-/// target without color has one sample a pixel. Notes pixels of the picture that are not finite.
+/// target without color has one sample a pixel. Notes pixels of the picture that are not finite. `process` may be empty;
+/// it may use the backend.
 bool draw(const backends::ViewPass& pass, int samples, std::span<const float> vertices,
-          std::span<const int32_t> triangles, backends::Backend& backend, backends::Image& image,
-          DrawStats& stats, support::Diagnostics& diagnostics);
+          std::span<const int32_t> triangles, const ProcessSamples& process, backends::Backend& backend,
+          backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::render

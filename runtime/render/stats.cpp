@@ -19,7 +19,9 @@ std::string text(const PlanStats& stats) {
       stats.copies, stats.draws, stats.lights, stats.meshes, stats.mesh_vertices, stats.vertices,
       stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, textures,
       1e3 * stats.plan_seconds);
-  if (stats.posts > 0) text += fmt::format("posts:    {}\n", stats.posts);
+  if (stats.posts > 0)
+    text += fmt::format("posts:    {}{}\n", stats.posts,
+                        stats.sample_posts > 0 ? fmt::format(", {} for each sample", stats.sample_posts) : "");
   for (const Skip& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
   return text;
 }

@@ -26,6 +26,7 @@ struct PlanStats {
   int64_t texture_bytes = 0;              ///< that they take
   int64_t lights = 0;
   int64_t posts = 0;  ///< that are run
+  int64_t sample_posts = 0;  ///< of them, those that are run for each sample
   double compile_seconds = 0, plan_seconds = 0;
   std::vector<Skip> skips;
 };

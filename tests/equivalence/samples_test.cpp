@@ -43,6 +43,24 @@ void expect_parts_to_make_up_the_whole(backends::Backend& backend) {
 
 TEST(Samples, DrawingInPartsMatchesDrawingAtOnceOnCpu) { expect_parts_to_make_up_the_whole(*cpu_backend()); }
 
+TEST(Samples, FogIsThatOfEachSample) {
+  // Its picture is that of a scene as large as all samples, resolved. (Nothing in it depends on the size of a pixel.)
+  const auto cpu = cpu_backend();
+  for (const char* name : {"fog_balls", "fog_valley"}) {
+    const std::string path = scene_path(name);
+    for (const int samples : {4, 16}) {
+      const int side = render::samples_each_way(samples);
+      const render::Plan made = plan_of(path, samples, 331, 90);
+      EXPECT_EQ(made.posts.sample_steps, made.posts.steps.size());
+      const backends::Image image = draw(made, *cpu);
+      render::Plan large = plan_of(path, 1, side * 331, side * 90);
+      backends::Image whole = draw(large, *cpu);
+      while (whole.width > image.width) render::halve(whole);
+      expect_identical(whole, image, text(path, samples, image));
+    }
+  }
+}
+
 TEST(Samples, MatchTheRecordedHashes) {
   const auto cpu = cpu_backend();
   const auto hash = [&](int samples) {

@@ -40,7 +40,7 @@ class Screen {
     add({width, height, {}});
     add(depth);
     for (const Pixels& image : images) add(image);
-    pass_ = {&post.program, width, height, frame, view, record_, images_, records_};
+    pass_ = {&post.program, width, height, 0, frame, view, record_, images_, records_};
   }
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;

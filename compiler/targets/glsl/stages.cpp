@@ -113,7 +113,7 @@ std::string post_main() {
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
          "  ivec2 at = ivec2(gl_FragCoord.xy);\n"
-         "  color = intBitsToFloat(canonical(post(at.x, at.y)));\n"
+         "  color = intBitsToFloat(canonical(post(at.x, at.y + push.origin_y)));\n"
          "}\n";
 }
 
@@ -211,7 +211,7 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
       body = eval_main(module.functions[entry], texts[entry]);
       break;
     case lower::Stage::post:
-      interface = "layout(location = 0) out vec4 color;\n";
+      interface = std::string(push_constants) + "layout(location = 0) out vec4 color;\n";
       body = post_main();
       break;
   }
