@@ -238,43 +238,6 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   return effect;
 }
 
-namespace {
-
-/// Whether the result depends on nothing but what the camera and the two images of every post have at the pixel.
-bool is_pointwise(const lower::Lowered& post) {
-  namespace source = interface::source;
-  const auto& [module, interface] = post;
-  std::vector<ir::ValueId> own_pixel;
-  for (size_t i = 0; i < interface.bindings.size(); ++i) {
-    const interface::Source& from = interface.bindings[i].source;
-    const auto* screen = std::get_if<source::ScreenValue>(&from);
-    const bool needs_grid = std::holds_alternative<source::OffsetInPixel>(from) ||
-                            std::holds_alternative<source::SizeOfImage>(from) ||
-                            std::holds_alternative<source::TapCount>(from) ||
-                            (screen != nullptr && (screen->value == interface::Screen::pixel ||
-                                                   screen->value == interface::Screen::size));
-    if (needs_grid) return false;
-    if (std::holds_alternative<source::PixelOfImage>(from))
-      own_pixel.push_back(module.functions[interface.entry].blocks[0].parameters[i]);
-  }
-  for (uint32_t f = 0; f < module.functions.size(); ++f) {
-    const ir::Function& function = module.functions[f];
-    for (const ir::Instruction& instruction : function.instructions) {
-      const interface::HostFunction* const read =
-          instruction.op == ir::Opcode::call ? interface.find(instruction.imm) : nullptr;
-      if (read == nullptr) continue;
-      const bool is_own_image = read->image == interface::image_record::depth || read->image == interface::image_record::color;
-      const bool is_own_pixel = std::ranges::all_of(function.operands_of(instruction), [&](ir::ValueId operand) {
-        return std::ranges::find(own_pixel, operand) != own_pixel.end();
-      });
-      if (f != interface.entry || !is_own_image || !is_own_pixel) return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
-
 std::optional<Post> compile_post(const support::Source& source, const CompileOptions& options,
                                  Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::post, options, diagnostics);
@@ -294,7 +257,7 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
   for (size_t i = 0; i <= post.images.size(); ++i)
     post.reads.push_back(interface.find(interface::Host::image, lower::post_image(i)) != ir::none);
   post.reads_depth = interface.find(interface::Host::depth, lower::depth_image) != ir::none;
-  post.is_pointwise = is_pointwise(lowered);
+  post.is_pointwise = lower::is_pointwise(lowered);
   const std::vector<lower::TapSum> sums = lower::tap_sums(*typed);
   for (const lower::TapSum& sum : sums) {
     post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));

@@ -227,4 +227,36 @@ ir::ValueId relative_position(ir::Builder& b, const ScreenInputs& screen) {
   return (origin + ray * functions::splat<3>(distance)).value;
 }
 
+bool is_pointwise(const Lowered& post) {
+  namespace source = interface::source;
+  const auto& [module, interface] = post;
+  std::vector<ir::ValueId> own_pixel;
+  for (size_t i = 0; i < interface.bindings.size(); ++i) {
+    const interface::Source& from = interface.bindings[i].source;
+    const auto* screen = std::get_if<source::ScreenValue>(&from);
+    const bool needs_grid = std::holds_alternative<source::OffsetInPixel>(from) ||
+                            std::holds_alternative<source::SizeOfImage>(from) ||
+                            std::holds_alternative<source::TapCount>(from) ||
+                            (screen != nullptr && (screen->value == interface::Screen::pixel ||
+                                                   screen->value == interface::Screen::size));
+    if (needs_grid) return false;
+    if (std::holds_alternative<source::PixelOfImage>(from))
+      own_pixel.push_back(module.functions[interface.entry].blocks[0].parameters[i]);
+  }
+  for (uint32_t f = 0; f < module.functions.size(); ++f) {
+    const ir::Function& function = module.functions[f];
+    for (const ir::Instruction& instruction : function.instructions) {
+      const interface::HostFunction* const read =
+          instruction.op == ir::Opcode::call ? interface.find(instruction.imm) : nullptr;
+      if (read == nullptr) continue;
+      const bool is_own_image = read->image == interface::image_record::depth || read->image == interface::image_record::color;
+      const bool is_own_pixel = std::ranges::all_of(function.operands_of(instruction), [&](ir::ValueId operand) {
+        return std::ranges::find(own_pixel, operand) != own_pixel.end();
+      });
+      if (f != interface.entry || !is_own_image || !is_own_pixel) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace isoshade::lower
