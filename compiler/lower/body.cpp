@@ -339,7 +339,7 @@ void Body::make_sum(uint32_t index) {
       tap_ = first == 0 ? turn : b_.op(ir::Opcode::iadd, {turn, b_.constant(first)});
     }
     if (asks_light) {
-      const std::array arguments{turn, environment_.surface[world_position.index()]};
+      const std::array arguments{turn, environment_.surface[shown_position.index()]};
       b_.set_origin(add_origin("light", index));
       light_ = b_.call(environment_.interface.find(interface::Host::light), arguments);
     }

@@ -30,6 +30,8 @@ struct Needs {
   Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
   /// Adds what a function that one of the nodes calls has as parameters, but for its inputs and images.
   void add_callee(const std::vector<interface::Binding>& bindings);
+  /// No vertices move: what is seen is the mesh itself.
+  void show_mesh();
 };
 
 /// A function of the module that a body calls.
@@ -58,6 +60,8 @@ struct Environment {
 };
 
 inline constexpr interface::SurfaceValue world_position{interface::Surface::position};
+/// Where lights are asked. It equals world_position unless the pass moves vertices: then it is a parameter of its own.
+inline constexpr interface::SurfaceValue shown_position{interface::Surface::shown_position};
 
 /// The value that a node of a surface attribute reads.
 interface::SurfaceValue surface_value(const check::TypedGraph& graph, const check::Node& node);

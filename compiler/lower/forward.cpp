@@ -19,7 +19,8 @@ ir::Type type_of(const ForwardInput& input) {
       return input.width == 1 ? ir::float_type : ir::vector_type(input.width);
     case Kind::pixel:
     case Kind::index: return ir::int_type;
-    case Kind::position: return ir::vector_type(3);
+    case Kind::position:
+    case Kind::shown: return ir::vector_type(3);
     case Kind::front: return ir::bool_type;
   }
   support::bug("no such input");
@@ -36,6 +37,7 @@ std::string name_of(const ForwardInput& input) {
     case Kind::index: return "index";
     case Kind::position: return "position";
     case Kind::front: return "front";
+    case Kind::shown: return "shown_position";
     case Kind::words: break;
   }
   for (const ir::RecordField& field : fields_of(input.buffer))
@@ -115,7 +117,8 @@ ForwardFunction add_forward_surface(ir::Module& module, std::span<const interfac
   return add(module, name, {}, results_of(bindings), [&](Kernel& k, Inputs& inputs) {
     SurfacePoint surface(k, k.constant(0), [&](int width, int word) {
       return inputs.of({Kind::attribute, FrameBuffer::vertices, word, width});
-    }, [&] { return Bool(k.b, inputs.of({Kind::front, {}, 0, 1})); });
+    }, {[&] { return Bool(k.b, inputs.of({Kind::front, {}, 0, 1})); },
+        [&] { return Vec3(k.b, inputs.of({Kind::shown, {}, 0, 3})); }});
     std::vector<ir::ValueId> values;
     for (const interface::Binding& binding : bindings)
       values.push_back(k.named(binding.parameter.name,

@@ -20,7 +20,8 @@ struct ForwardInput {
     pixel,      ///< x (word 0) or y (word 1) of the pixel, an int
     index,      ///< of a light
     position,   ///< in world space
-    front       ///< whether the front of the triangle is seen
+    front,      ///< whether the front of the triangle is seen
+    shown       ///< where what is seen lies in world space
   } kind{};
   FrameBuffer buffer{};
   int word = 0, width = 0;

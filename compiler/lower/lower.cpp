@@ -164,7 +164,8 @@ class ModuleLowering {
 
   /// Lowers the documents that the needed nodes call, and adds what these need.
   void add_callees(const TypedGraph& graph, Needs& needs);
-  uint32_t add_function(const TypedGraph& graph, std::string name, Bindings& bindings);
+  /// `is_alone`: no pass calls it, which may move vertices.
+  uint32_t add_function(const TypedGraph& graph, std::string name, Bindings& bindings, bool is_alone = false);
   /// Adds a function whose parameters are the bindings'; a colour without alpha gets one where four components are
   /// wanted, and a cut-out is compared with its cutoff where a boolean is wanted.
   uint32_t build(const TypedGraph& graph, std::string name, const Bindings& bindings, const Needs& needs,
@@ -225,6 +226,8 @@ uint32_t ModuleLowering::build(const TypedGraph& graph, std::string name, const 
     nodes_->resize(module_.functions.size());
     environment.node_of_origin = &nodes_->back();
   }
+  if (environment.surface[shown_position.index()] == ir::none)
+    environment.surface[shown_position.index()] = environment.surface[world_position.index()];
   std::vector<ir::ValueId> values;
   for (const Value& value : build_body(b, graph, needs, environment, roots))
     values.insert(values.end(), value.ids().begin(), value.ids().end());
@@ -259,10 +262,11 @@ void name_as_arguments(std::vector<Binding>& bindings, size_t own) {
   }
 }
 
-uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name, Bindings& bindings) {
+uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name, Bindings& bindings, bool is_alone) {
   Needs needs(graph, graph.outputs);
   add_callees(graph, needs);
   if (needs.light_at) declare_light_at();
+  if (is_alone) needs.show_mesh();
   const std::vector<std::vector<std::string>> inputs = parameter_names(graph);
   for (uint32_t i = 0; i < inputs.size(); ++i) {
     if (graph.graph.inputs[i].type == Type::filename) continue;
@@ -287,7 +291,7 @@ interface::Interface ModuleLowering::add_function_document(const TypedGraph& gra
   const std::string name = authored_name(graph.graph.name);
   names_.insert(name);
   Bindings bindings;
-  const uint32_t entry = add_function(graph, name, bindings);
+  const uint32_t entry = add_function(graph, name, bindings, true);
   return interface_of(entry, std::move(bindings));
 }
 
@@ -334,9 +338,11 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
   const std::span<const Operand> roots = outputs_of(graph, pass, part);
   support::assert_that(!roots.empty(), "the pass has no such part");
   Needs needs(graph, roots);
+  const bool moves = has_part(graph, pass, PassPart::position);
   const std::string name = unique_name(prefix + std::string(function_of(part)));
   add_callees(graph, needs);
   if (needs.light_at) declare_light_at();
+  if (!moves) needs.show_mesh();
 
   Bindings bindings;
   add_surface(needs, bindings);

@@ -120,7 +120,13 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     light_at |= node.row->is<nodes::Light>();
     screen.add(graph, *it);
   }
-  surface[world_position.index()] |= light_at;
+  surface[shown_position.index()] |= light_at;
+}
+
+void Needs::show_mesh() {
+  bool& shown = surface[shown_position.index()];
+  surface[world_position.index()] |= shown;
+  shown = false;
 }
 
 }  // namespace isoshade::lower

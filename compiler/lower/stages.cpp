@@ -292,7 +292,7 @@ uint32_t add_cutout_kernel(ir::Module& module, const interface::Interface& inter
            {{"drawn", ir::bool_type}, {"depth", ir::float_type}});
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
-                       [&] { return front_facing(k, k.integer(2)); });
+                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
   SurfaceArguments arguments(k, surface, object, record, ir::none);
   const ir::ValueId drawn = k.named("drawn", k.b.call(interface.entry, arguments.of(interface))[0]);
   k.b.finish(std::array{drawn, depth_of_pixel(k).value});
@@ -312,7 +312,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interf
            {{"color", ir::vector_type(4)}});
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
-                       [&] { return front_facing(k, k.integer(2)); });
+                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
   SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4));
   k.b.finish(k.b.call(interface.entry, arguments.of(interface)));
   return k.index;

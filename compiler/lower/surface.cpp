@@ -79,6 +79,52 @@ Bool front_facing(Kernel& k, Int triangle) {
   return (flags & Int(triangle_flag::back)) == Int(0);
 }
 
+namespace {
+
+/// Where a corner of the triangle lies, from the position of the camera.
+Vec3 corner_position(Kernel& k, Int record, int corner) {
+  const Int view = k.constant(0);
+  const auto word = [&](int at) { return k.load_int(FrameBuffer::triangles, record + Int(at)); };
+  /// From -1 at the left or upper edge of the image to 1 at the other.
+  const auto from_middle = [&](int axis) {
+    const int size = axis == 0 ? image_word::width : image_word::height;
+    const Float pixels = to_float(k.load_int(FrameBuffer::layer_records, view + Int(size)));
+    constexpr float half_units = 128.0f;  // a pixel is 256
+    const Float place = to_float(word(triangle_word::position + 2 * corner + axis)) / Float(half_units);
+    return (place - pixels) / pixels;
+  };
+  const Vec3 right = functions::splat<3>(from_middle(0)), down = functions::splat<3>(from_middle(1));
+  const auto over_screen = [&](int at) {
+    const auto vector = [&](int i) { return k.load3(FrameBuffer::view, view, at + 3 * i); };
+    return (vector(0) + vector(1) * right) + vector(2) * down;
+  };
+  const Float depth = from_bits_normal(word(triangle_word::depth + corner));
+  const auto by_depth = [&](int at) {
+    return k.load(FrameBuffer::view, view, at) + depth * k.load(FrameBuffer::view, view, at + 1);
+  };
+  const Float distance = by_depth(view_word::depth_numerator) / by_depth(view_word::depth_denominator);
+  return over_screen(view_word::ray_origin) + over_screen(view_word::view_ray) * functions::splat<3>(distance);
+}
+
+}  // namespace
+
+Vec3 shown_position(Kernel& k, Int x, Int y, Int triangle) {
+  const Vec3 edges(k.b, k.call("edges_at", {x.id(k.b), y.id(k.b), triangle.id(k.b)})[0]);
+  const Int record = triangle * Int(triangle_word::stride);
+  const auto inverse_w = [&](int i) {
+    return from_bits_normal(k.load_int(FrameBuffer::triangles, record + Int(triangle_word::inverse_w + i)));
+  };
+  const Vec3 weights = functions::attribute_weights<Float>(edges, inverse_w(0), inverse_w(1), inverse_w(2));
+  const auto corner = [&](int i) { return k.named("corner" + std::to_string(i), corner_position(k, record, i)); };
+  const Vec3 from_camera = functions::interpolate<Float>(weights, corner(0), corner(1), corner(2));
+  return k.named("shown_position", k.load3(FrameBuffer::view, k.constant(0), view_word::camera_position) + from_camera);
+}
+
+Seen seen_at_pixel(Kernel& k, Int x, Int y, Int triangle) {
+  return {[&k, triangle] { return front_facing(k, triangle); },
+          [&k, x, y, triangle] { return shown_position(k, x, y, triangle); }};
+}
+
 ir::ValueId SurfacePoint::once(ir::ValueId& value, int width, int word) {
   if (value == ir::none) value = attributes_(width, word);
   return value;
@@ -125,8 +171,11 @@ ir::ValueId SurfacePoint::value(interface::SurfaceValue value) {
     case Surface::corner_normal2: return normal_in(value.space, local_corner_normal(1)).value;
     case Surface::corner_normal3: return normal_in(value.space, local_corner_normal(2)).value;
     case Surface::front_facing:
-      support::assert_that(front_facing_ != nullptr, "a vertex has no side");
-      return front_facing_().value;
+      support::assert_that(seen_.front_facing != nullptr, "a vertex has no side");
+      return seen_.front_facing().value;
+    case Surface::shown_position:
+      support::assert_that(seen_.position != nullptr, "a vertex is not seen");
+      return seen_.position().value;
   }
   support::bug("no such attribute");
 }

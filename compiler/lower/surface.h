@@ -20,17 +20,22 @@ Attributes attributes_of_vertex(Kernel& kernel, Int vertex);
 
 /// Whether the front of the triangle is seen.
 Bool front_facing(Kernel& kernel, Int triangle);
-/// Where a point has that from; empty for a vertex, which has no side.
-using FrontFacing = std::function<Bool()>;
+/// Where what is seen at the pixel lies in world space, by the triangle's corners on the pixel grid.
+Vec3 shown_position(Kernel& kernel, Int x, Int y, Int triangle);
+
+/// Where a point has what only pixels have; a vertex has neither.
+struct Seen {
+  std::function<Bool()> front_facing;
+  std::function<Vec3()> position;
+};
+/// Of the pixel (x, y), where it shows the triangle.
+Seen seen_at_pixel(Kernel& kernel, Int x, Int y, Int triangle);
 
 class SurfacePoint {
  public:
   /// Of the object whose record begins at `object`.
-  SurfacePoint(Kernel& kernel, Int object, Attributes attributes, FrontFacing front_facing = {})
-      : k_(kernel),
-        object_(object),
-        attributes_(std::move(attributes)),
-        front_facing_(std::move(front_facing)) {}
+  SurfacePoint(Kernel& kernel, Int object, Attributes attributes, Seen seen = {})
+      : k_(kernel), object_(object), attributes_(std::move(attributes)), seen_(std::move(seen)) {}
 
   ir::ValueId value(interface::SurfaceValue value);
   Vec3 column(interface::SpaceMatrix matrix, uint32_t number);
@@ -67,7 +72,7 @@ class SurfacePoint {
   Kernel& k_;
   Int object_;
   Attributes attributes_;
-  FrontFacing front_facing_;
+  Seen seen_;
   ir::ValueId local_position_ = ir::none;
   ir::ValueId local_normal_ = ir::none;
   ir::ValueId local_outline_normal_ = ir::none;

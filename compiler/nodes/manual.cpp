@@ -42,6 +42,7 @@ std::string types_text(TypeSet types) {
 
 std::string surface_text(SurfaceValue value) {
   constexpr std::string_view names[] = {"position",
+                                        "position that is seen",
                                         "normal",
                                         "texture coordinates",
                                         "second texture coordinates",

@@ -416,6 +416,7 @@ void Planner::add_lights(const scene::View& picture) {
       const int size = light.shadow->size;
       add_view(map.camera, map.view, size, size, {"the shadow of light " + quote(light.name), size, size, false});
       frame.views.back().depth_bias = map.bias;
+      widen_rays(frame.views.back().words, map.margin);
     }
     frame.lights.insert(frame.lights.end(), record.begin(), record.end());
   }

@@ -53,6 +53,13 @@ std::vector<float> view_words(const scene::Camera& camera, const scene::View& vi
   return words;
 }
 
+void widen_rays(std::span<float> view_words, float factor) {
+  namespace word = lower::view_word;
+  // Behind the vector in the middle stand the differences to the right and to the lower edge.
+  for (const int first : {word::view_ray + 3, word::ray_origin + 3})
+    for (float& difference : view_words.subspan(static_cast<size_t>(first), 6)) difference = scene::canonical(difference * factor);
+}
+
 int append_matrix(const glm::mat4& projected, std::vector<float>& view) {
   const size_t first = view.size();
   view.resize(first + lower::view_word::matrix);

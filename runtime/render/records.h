@@ -32,6 +32,9 @@ std::vector<float> frame_words(const scene::Scene& scene);
 /// The camera of lower::view_word, for an image of this size; matrices are appended to it.
 std::vector<float> view_words(const scene::Camera& camera, const scene::View& view, int width, int height);
 
+/// For an image that is wider than the camera's picture by a factor: camera rays lead to its edges.
+void widen_rays(std::span<float> view_words, float factor);
+
 /// Appends the matrix of a draw, object space -> clip space, and returns its first word.
 int append_matrix(const glm::mat4& projected, std::vector<float>& view);
 

@@ -104,18 +104,14 @@ raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& came
   return {shadow.bias * reach, perspective ? least : 0.0f, perspective ? 0.0f : least};
 }
 
-/// Scales the picture about its middle so that its old edges lie `margin` texels inside.
-void add_margin(scene::View& view, const scene::Shadow& shadow) {
-  const auto size = static_cast<float>(shadow.size);
-  const float scale = std::max(size - 2 * margin_of(shadow), 1.0f) / size;
-  view.clip_from_view[0][0] *= scale;
-  view.clip_from_view[1][1] *= scale;
-  view.projection = scene::multiply(view.clip_from_view, view.view);
-}
-
+/// The edges of the camera's picture lie as many texels inside of the map as the filter reaches.
 ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow) {
   ShadowMap map{camera, scene::make_view(camera, shadow.size, shadow.size), {}};
-  add_margin(map.view, shadow);
+  const auto size = static_cast<float>(shadow.size);
+  map.margin = size / std::max(size - 2 * margin_of(shadow), 1.0f);
+  map.view.clip_from_view[0][0] /= map.margin;
+  map.view.clip_from_view[1][1] /= map.margin;
+  map.view.projection = scene::multiply(map.view.clip_from_view, map.view.view);
   map.bias = bias_of(shadow, camera, map.view);
   return map;
 }

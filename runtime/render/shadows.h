@@ -28,6 +28,7 @@ struct ShadowMap {
   scene::Camera camera;
   scene::View view;
   raster::DepthBias bias;
+  float margin = 1;  ///< how much wider the map is than the picture of the camera
 };
 
 /// How many maps a light has.

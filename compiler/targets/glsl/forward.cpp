@@ -46,6 +46,7 @@ class Pair {
     for (const ForwardLayout::Attribute& attribute : varying_attributes())
       out += "  isoshade_at_" + attribute.vertex + " = " + attribute.name + ";\n";
     out += moves ? moved_position() : "  vec4 position = vec4(isoshade_in_position, 1.0);\n";
+    if (has_shown_position()) out += "  isoshade_shown_position = " + world_position() + ";\n";
     return out + "  gl_Position = " + clip_position() + ";\n}\n";
   }
 
@@ -95,8 +96,23 @@ class Pair {
     return all;
   }
 
+  /// Whether the fragment shader asks where moved vertices have brought what it shows.
+  bool has_shown_position() const {
+    return program_.point && std::ranges::any_of(program_.point->inputs, [](const ForwardInput& input) {
+             return input.kind == ForwardInput::Kind::shown;
+           });
+  }
+
   std::string varyings(std::string_view direction) const {
     std::string out;
+    if (has_shown_position()) {
+      // Behind the attributes, whose locations may have gaps.
+      size_t location = 0;
+      for (const ForwardLayout::Attribute& attribute : layout_.attributes)
+        location = std::max(location, static_cast<size_t>(attribute.location) + 1);
+      if (!is_es_) out += "layout(location = " + number(location) + ") ";
+      out.append(direction).append(" vec3 isoshade_shown_position;\n");
+    }
     for (const ForwardLayout::Attribute& attribute : varying_attributes()) {
       if (!is_es_) out += "layout(location = " + number(static_cast<size_t>(attribute.location)) + ") ";
       out.append(direction).append(" ").append(attribute.type).append(" isoshade_at_").append(attribute.vertex) += ";\n";
@@ -148,6 +164,7 @@ class Pair {
       case ForwardInput::Kind::index: return {"index"};
       case ForwardInput::Kind::position: return {"position"};
       case ForwardInput::Kind::front: return {"gl_FrontFacing"};
+      case ForwardInput::Kind::shown: return {"isoshade_shown_position"};
       case ForwardInput::Kind::words: return words_of(input);
     }
     support::bug("no such input");
@@ -328,6 +345,16 @@ class Pair {
     if (!program_.move_vertex || program_.position_space == graph::PositionSpace::object)
       return to_clip + to_view + "(isoshade_object.world_from_object * position))";
     return program_.position_space == graph::PositionSpace::world ? to_clip + to_view + "position)" : to_clip + "position";
+  }
+
+  /// The moved position.
+  std::string world_position() const {
+    switch (program_.position_space) {
+      case graph::PositionSpace::object: return "(isoshade_object.world_from_object * position).xyz";
+      case graph::PositionSpace::view: return "(isoshade_view.world_from_view * position).xyz";
+      case graph::PositionSpace::world: break;
+    }
+    return "position.xyz";
   }
 
   std::string full_screen_triangle() const {
