@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "backends/cpu/shade.h"
-#include "backends/cpu/workers.h"
 #include "backends/shared.h"
+#include "backends/workers.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
@@ -17,11 +17,13 @@
 namespace isoshade::cpu {
 namespace {
 
+using backends::Cache;
 using backends::Draw;
 using backends::Frame;
 using backends::Image;
 using backends::ScreenPass;
 using backends::ViewPass;
+using backends::Workers;
 using driver::Program;
 using lower::FrameBuffer;
 using support::Diagnostics;

@@ -16,6 +16,8 @@
 namespace isoshade::cpu {
 namespace {
 
+using backends::Cache;
+using backends::write_file;
 using support::Diagnostics;
 using support::Id;
 using support::quote;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/cpu/cache.h"
+#include "backends/cache.h"
 #include "backends/cpu/compiler.h"
 #include "compiler/driver/program.h"
 
@@ -61,7 +61,7 @@ using CppText = std::function<std::string(const driver::Program&)>;
 class KernelStore {
  public:
   /// `keep`: a folder that receives the text of every program that is used, named after its document; empty: none.
-  KernelStore(Compiler compiler, Cache cache, LaneCount lanes, CppText cpp, std::string keep);
+  KernelStore(Compiler compiler, backends::Cache cache, LaneCount lanes, CppText cpp, std::string keep);
 
   /// The kernel of each program; missing ones are compiled in parallel. Nothing if one fails. The store owns them.
   std::optional<std::vector<const Kernel*>> kernels(std::span<const driver::Program* const> programs,
@@ -80,7 +80,7 @@ class KernelStore {
   std::string key_of(const std::string& text) const;
 
   Compiler compiler_;
-  Cache cache_;
+  backends::Cache cache_;
   LaneCount lanes_;
   CppText cpp_;
   std::string keep_;

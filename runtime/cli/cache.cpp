@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade cache: prints the folder and the size of the cache of compiled C++, or clears it.
-#include "backends/cpu/cache.h"
+#include "backends/cache.h"
 
 #include <cstdio>
 
@@ -11,14 +11,14 @@ namespace isoshade::cli {
 
 int cache(const CacheArguments& arguments, const Common& common) {
   support::Diagnostics diagnostics = make_diagnostics(common);
-  const auto cache = cpu::Cache::open("", diagnostics);
-  const bool usual = cache && cache->folder() == cpu::Cache::usual_folder();
+  const auto cache = backends::Cache::open("", diagnostics);
+  const bool usual = cache && cache->folder() == backends::Cache::usual_folder();
   if (cache && !usual)
     std::printf("there is no cache: every run compiles again\n");
   else if (cache) {
-    const cpu::CacheContents held = cache->contents();
-    const cpu::CacheContents left = arguments.clear ? cache->clear() : held;
-    const cpu::CacheLimit limit;
+    const backends::CacheContents held = cache->contents();
+    const backends::CacheContents left = arguments.clear ? cache->clear() : held;
+    const backends::CacheLimit limit;
     std::printf("%s\n", cache->folder().c_str());
     if (arguments.clear)
       std::printf("%zu entries deleted, %zu left\n", held.entries - left.entries, left.entries);

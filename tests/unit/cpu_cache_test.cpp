@@ -5,12 +5,16 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "backends/cpu/cache.h"
+#include "backends/cache.h"
 #include "tests/unit/cpu_folders.h"
 
 namespace isoshade::cpu {
 namespace {
 
+using backends::Cache;
+using backends::CacheContents;
+using backends::CacheLimit;
+using backends::write_file;
 using support::Diagnostics;
 using support::Id;
 

@@ -13,6 +13,7 @@
 namespace isoshade::cpu {
 namespace {
 
+using backends::Cache;
 using driver::Program;
 using driver::Stage;
 using support::Diagnostics;

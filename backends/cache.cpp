@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "backends/cpu/cache.h"
+#include "backends/cache.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -16,7 +16,7 @@
 #include "compiler/support/sha256.h"
 #include "compiler/support/visible.h"
 
-namespace isoshade::cpu {
+namespace isoshade::backends {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,11 +124,20 @@ bool is_usable(const std::string& folder) {
          access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
-constexpr std::string_view entry_ending = ".so";
+std::string_view ending_of(EntryKind kind) {
+  switch (kind) {
+    case EntryKind::code: return ".so";
+    case EntryKind::maps: return ".maps";
+  }
+  return "";
+}
 
 bool is_entry_name(const std::string& name) {
-  return name.size() == hash_digits + entry_ending.size() && name.ends_with(entry_ending) &&
-         name.find_first_not_of("0123456789abcdef") == hash_digits;
+  const auto is = [&](EntryKind kind) {
+    const std::string_view ending = ending_of(kind);
+    return name.size() == hash_digits + ending.size() && name.ends_with(ending);
+  };
+  return (is(EntryKind::code) || is(EntryKind::maps)) && name.find_first_not_of("0123456789abcdef") == hash_digits;
 }
 
 struct Entry {
@@ -201,7 +210,7 @@ std::string Cache::usual_folder() {
   return "";
 }
 
-std::string Cache::entry_name(const std::string& key) { return key + std::string(entry_ending); }
+std::string Cache::entry_name(const std::string& key, EntryKind kind) { return key + std::string(ending_of(kind)); }
 
 std::optional<Cache> Cache::open(const std::string& folder, Diagnostics& diagnostics) {
   const std::string wanted = folder.empty() ? usual_folder() : folder;
@@ -249,20 +258,21 @@ std::string seal_of(const std::string& name, std::string_view contents) {
 
 }  // namespace
 
-std::optional<std::string> Cache::find(const std::string& name) const {
+std::optional<std::string> Cache::read(const std::string& name) const {
   const std::string path = folder_ + "/" + name;
   const File file(path, O_RDONLY);
   if (!file.is_open() || !file.is_own()) return std::nullopt;
   std::string text;
-  if (file.read_all(text) && text.size() > seal_bytes) {
-    const std::string_view contents = std::string_view(text).substr(0, text.size() - seal_bytes);
-    const std::string_view seal = std::string_view(text).substr(contents.size());
-    if (seal == seal_of(name, contents)) {
-      utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // marks it as just used
-      return path;
-    }
-  }
-  return std::nullopt;
+  if (!file.read_all(text) || text.size() <= seal_bytes) return std::nullopt;
+  const std::string seal = text.substr(text.size() - seal_bytes);
+  text.resize(text.size() - seal_bytes);
+  if (seal != seal_of(name, text)) return std::nullopt;
+  utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // marks it as just used
+  return text;
+}
+
+std::optional<std::string> Cache::find(const std::string& name) const {
+  return read(name) ? std::optional(folder_ + "/" + name) : std::nullopt;
 }
 
 std::optional<support::TemporaryFolder> Cache::workshop(Diagnostics& diagnostics,
@@ -300,4 +310,4 @@ bool write_file(const std::string& path, std::string_view text, Diagnostics& dia
   return true;
 }
 
-}  // namespace isoshade::cpu
+}  // namespace isoshade::backends

@@ -11,7 +11,7 @@
 
 #include "runtime/lanes/lanes.h"
 
-namespace isoshade::cpu {
+namespace isoshade::backends {
 
 class Workers {
  public:
@@ -42,4 +42,4 @@ class Workers {
   std::optional<tbb::global_control> more_;
 };
 
-}  // namespace isoshade::cpu
+}  // namespace isoshade::backends

@@ -12,12 +12,18 @@
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/temporary.h"
 
-namespace isoshade::cpu {
+namespace isoshade::backends {
 
 /// The size limit; when it is exceeded, the least recently used entries are deleted until half of it is left.
 struct CacheLimit {
   size_t entries = 1000;
   uint64_t bytes = uint64_t{256} << 20;
+};
+
+/// What an entry is.
+enum class EntryKind : uint8_t {
+  code,  ///< a shared object
+  maps   ///< of an environment (runtime/environment)
 };
 
 /// The contents of a cache.
@@ -37,13 +43,15 @@ class Cache {
   static std::string usual_folder();
 
   /// The file name for a key, 64 hex digits. The cache ignores files with other names.
-  static std::string entry_name(const std::string& key);
+  static std::string entry_name(const std::string& key, EntryKind kind = EntryKind::code);
 
   const std::string& folder() const { return folder_; }
   CacheContents contents() const;
 
   /// The path of the entry; nothing if it is missing or damaged. The next store() replaces a damaged entry.
   std::optional<std::string> find(const std::string& name) const;
+  /// The contents of the entry, likewise.
+  std::optional<std::string> read(const std::string& name) const;
 
   /// A folder to make an entry in. Also deletes abandoned workshops, and entries beyond the size limit.
   std::optional<support::TemporaryFolder> workshop(support::Diagnostics& diagnostics,
@@ -67,4 +75,4 @@ class Cache {
 /// Writes a file; reports errors such as a full disk.
 bool write_file(const std::string& path, std::string_view text, support::Diagnostics& diagnostics);
 
-}  // namespace isoshade::cpu
+}  // namespace isoshade::backends
