@@ -112,6 +112,7 @@ struct ScreenPass {
   std::span<const float> record;  ///< parameters and numbers of taps, as `objects`
   std::span<const float> layers;
   std::span<const int32_t> layer_records;
+  const Frame* textures = nullptr;  ///< whose textures it reads; null if it reads none
 };
 
 /// Draws a view window by window. The backend prepares once what all windows share.

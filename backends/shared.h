@@ -39,7 +39,8 @@ bool for_each_array(const ScreenPass& pass, const Use& use) {
   using lower::FrameBuffer;
   return use(FrameBuffer::frame, pass.frame) && use(FrameBuffer::view, pass.view) &&
          use(FrameBuffer::objects, pass.record) && use(FrameBuffer::layers, pass.layers) &&
-         use(FrameBuffer::layer_records, pass.layer_records);
+         use(FrameBuffer::layer_records, pass.layer_records) &&
+         (pass.textures == nullptr || for_each_texture_array(*pass.textures, use));
 }
 
 /// The pixel program of the object whose record begins at this word: an index into frame.programs.

@@ -51,9 +51,13 @@ enum class StageNeed : uint8_t {
   images,       ///< textures
   lights,       ///< the lights of the scene
   derivatives,  ///< changes from pixel to pixel
+  // What posts have, too.
+  environment,  ///< the environment of the scene
   time
 };
 inline constexpr size_t stage_need_count = static_cast<size_t>(StageNeed::time) + 1;
+/// Whether posts have what is needed.
+constexpr bool posts_have(StageNeed need) { return need >= StageNeed::environment; }
 inline constexpr uint32_t no_node = ~0u;
 
 struct TypedGraph;

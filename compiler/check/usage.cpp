@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <utility>
 
 #include "compiler/check/stage_needs.h"
 #include "compiler/check/work.h"
@@ -63,6 +64,7 @@ void check_summands(Work& work) {
 /// Why a node that needs something is not available in the vertex stage.
 const char* missing_at_vertices(StageNeed need, const PlacedNode& cause) {
   if (need == StageNeed::lights) return "lights exist only for pixels";
+  if (need == StageNeed::environment) return "the environment exists only for pixels";
   if (need == StageNeed::pixel) return "it is known only for pixels";
   return may_be_trilinear(cause.graph, cause.get())
              ? "its mip level exists only for pixels; \"closest\" and \"linear\" filtering need none"
@@ -86,7 +88,8 @@ void check_positions(Work& work) {
     if (!reached[*it]) continue;
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
-    for (const StageNeed need : {StageNeed::lights, StageNeed::derivatives, StageNeed::pixel}) {
+    for (const StageNeed need :
+         {StageNeed::lights, StageNeed::environment, StageNeed::derivatives, StageNeed::pixel}) {
       if (!needs(typed, *it, need)) continue;
       support::Diagnostic& report =
           work.report(Id::misplaced_node, graph.nodes[*it].type_place,
@@ -114,12 +117,14 @@ void check_pixels(Work& work, std::span<const Operand> outputs, const std::strin
     const Node& node = typed.nodes[*it];
     std::ranges::for_each(typed.operands_of(node), reach);
     const bool at_vertices = needs(typed, *it, StageNeed::vertex);
-    if (!at_vertices && (has_lights || !needs(typed, *it, StageNeed::lights))) continue;
+    const bool at_light = needs(typed, *it, StageNeed::lights);
+    if (!at_vertices && (has_lights || (!at_light && !needs(typed, *it, StageNeed::environment)))) continue;
     const graph::Node& source = work.graph().nodes[*it];
     support::Diagnostic& report =
         work.report(Id::misplaced_node, source.type_place,
                     "the " + quote(part) + " of a pass cannot depend on " + quote(source.label()));
-    note_calls(report, typed, *it, at_vertices ? StageNeed::vertex : StageNeed::lights);
+    note_calls(report, typed, *it,
+               at_vertices ? StageNeed::vertex : at_light ? StageNeed::lights : StageNeed::environment);
     if (at_vertices)
       report.suggest("it is available only for vertices: use it for \"position\"");
     else
@@ -135,7 +140,7 @@ void check_calls_of_post(Work& work) {
     const TypedGraph* callee = typed.nodes[i].callee.get();
     if (callee == nullptr) continue;
     const auto missing = [&](uint32_t node) { return node != no_node; };
-    const auto all = std::span(callee->needed_by).first(static_cast<size_t>(StageNeed::time));
+    const auto all = std::span(callee->needed_by).first(static_cast<size_t>(StageNeed::environment));
     const auto found = std::ranges::find_if(all, missing);
     if (found == all.end()) continue;
     const auto need = static_cast<StageNeed>(found - all.begin());
@@ -223,6 +228,31 @@ void check_derivatives(Work& work) {
     typed.has_derivative |= output.from == From::node && derivative[output.index] != nothing;
 }
 
+/// Reports derivatives of values that depend on the environment, whose maps have none.
+void check_derivatives_of_environment(Work& work) {
+  const TypedGraph& typed = work.typed;
+  std::vector<bool> depends(typed.nodes.size());
+  for (const uint32_t i : typed.order) {
+    const Node& node = typed.nodes[i];
+    const std::span<const Operand> operands = typed.operands_of(node);
+    const bool takes_one = node.row != nullptr && node.row->is<nodes::Derivative>();
+    bool reported = false;
+    for (size_t k = 0; k < operands.size(); ++k) {
+      if (operands[k].from != From::node || !depends[operands[k].index]) continue;
+      depends[i] = true;
+      const bool differentiated = takes_one || (node.callee != nullptr && node.callee->differentiated_inputs[k]) ||
+                                  (may_be_trilinear(typed, node) && k == nodes::image_port::texcoord);
+      if (!differentiated || std::exchange(reported, true)) continue;
+      const graph::Node& source = work.graph().nodes[i];
+      work.report(Id::unsupported, source.type_place,
+                  quote(source.label()) + " takes the derivative of " +
+                      quote(work.graph().nodes[operands[k].index].label()) + ", which depends on the environment")
+          .suggest("take the derivative of a value that does not depend on it");
+    }
+    depends[i] = depends[i] || needs(typed, i, StageNeed::environment);
+  }
+}
+
 /// The number of nodes that all sums together compute per light or tap; stops counting beyond the limit.
 uint64_t nodes_under_sums(const TypedGraph& typed) {
   uint64_t total = 0;
@@ -299,6 +329,7 @@ void check_usage(Work& work) {
   }
   if (work.graph().kind == graph::DocumentKind::post) check_calls_of_post(work);
   check_derivatives(work);
+  check_derivatives_of_environment(work);
   check_size(work);
   if (!work.is_instance()) warn_unused(work);
 }

@@ -258,6 +258,8 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
     post.reads.push_back(interface.find(interface::Host::image, lower::post_image(i)) != ir::none);
   post.reads_depth = interface.find(interface::Host::depth, lower::depth_image) != ir::none;
   post.is_pointwise = lower::is_pointwise(lowered);
+  for (const interface::Host host : {interface::Host::environment, interface::Host::irradiance})
+    post.reads_environment |= interface.find(host) != ir::none && options.lights.environment.value_or(true);
   const std::vector<lower::TapSum> sums = lower::tap_sums(*typed);
   for (const lower::TapSum& sum : sums) {
     post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
@@ -265,7 +267,7 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
   }
   name_words(lowered.module, post.parameters, 0);
   const uint32_t kernel =
-      lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, sums, 0));
+      lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, sums, 0), options.lights);
   post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {},
                   options.tier};
   post.program.bindings = std::move(lowered.interface.bindings);

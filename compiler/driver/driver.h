@@ -62,6 +62,7 @@ struct Post {
   std::vector<bool> reads;          ///< whether it reads the image that it processes, then each of `images`
   bool reads_depth = false;
   bool is_pointwise = false;      ///< of images it reads no pixel but the one that it makes, and the size does not matter
+  bool reads_environment = false;
   std::optional<size_t> enabled;  ///< index of a parameter field; the post is skipped if it is 0
   Program program;
 };

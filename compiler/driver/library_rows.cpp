@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/library_rows.h"
 
+#include <algorithm>
+
 #include "compiler/nodes/table.h"
 #include "compiler/support/parse_number.h"
 
@@ -37,7 +39,7 @@ std::string doc_of(const check::TypedGraph& function) {
       {StageNeed::surface, "the surface"}, {StageNeed::vertex, "the vertex"},
       {StageNeed::pixel, "the pixel"},     {StageNeed::images, "images"},
       {StageNeed::lights, "the lights"},   {StageNeed::derivatives, "derivatives"},
-      {StageNeed::time, "the time"}};
+      {StageNeed::environment, "the environment"}, {StageNeed::time, "the time"}};
   static_assert(std::size(all) == check::stage_need_count);
   std::vector<std::string_view> read;
   for (const auto& [need, name] : all)
@@ -47,8 +49,9 @@ std::string doc_of(const check::TypedGraph& function) {
   text += (text.empty() ? "Reads " : " Reads ");
   for (size_t i = 0; i < read.size(); ++i)
     text += std::string(i == 0 ? "" : i + 1 == read.size() ? " and " : ", ") + std::string(read[i]);
-  const bool only_time = read.size() == 1 && function.needs(StageNeed::time);
-  return text + (only_time ? ": for effects and posts." : ": for effects only.");
+  const bool for_posts =
+      std::ranges::all_of(all, [&](const auto& one) { return check::posts_have(one.first) || !function.needs(one.first); });
+  return text + (for_posts ? ": for effects and posts." : ": for effects only.");
 }
 
 nodes::PortType type_of(const graph::Input& input) {

@@ -165,6 +165,8 @@ bool is_sampler(const PureShader& shader, const ir::Function& function) {
     case interface::Host::sample_trilinear: return true;
     case interface::Host::light:
     case interface::Host::light_change:
+    case interface::Host::environment:
+    case interface::Host::irradiance:
     case interface::Host::texel:
     case interface::Host::texture_size:
     case interface::Host::image:

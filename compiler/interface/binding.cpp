@@ -85,6 +85,10 @@ Binding bind_light_count() {
   return {source::LightCount{}, {"light_count", ir::int_type, "", true}, light_count};
 }
 
+Binding bind_has_environment() {
+  return {source::HasEnvironment{}, {"has_environment", ir::bool_type, "frame", true}, boolean};
+}
+
 Binding bind_image(uint32_t slot, std::string slot_name) {
   return {source::Image{slot}, {std::move(slot_name), ir::int_type, "images", true}, texture};
 }

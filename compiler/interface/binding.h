@@ -141,6 +141,8 @@ struct Image {
   uint32_t slot;  ///< in ImageSlots::slots
 };
 struct LightCount {};
+/// Whether there is an environment.
+struct HasEnvironment {};
 struct ScreenValue {
   Screen value;
 };
@@ -165,7 +167,7 @@ struct TapCount {
 
 using Source =
     std::variant<source::Attribute, source::MatrixColumn, source::Time, source::Input, source::Image,
-                 source::LightCount, source::ScreenValue, source::PixelOfImage, source::OffsetInPixel,
+                 source::LightCount, source::HasEnvironment, source::ScreenValue, source::PixelOfImage, source::OffsetInPixel,
                  source::SizeOfImage, source::TapCount>;
 
 /// Functions for std::visit, one an alternative: what forgets one does not compile.
@@ -189,6 +191,7 @@ Binding bind(SpaceMatrix matrix, uint32_t column);
 Binding bind(Screen value);
 Binding bind_time();
 Binding bind_light_count();
+Binding bind_has_environment();
 /// `slot_name`: ImageSlot::name.
 Binding bind_image(uint32_t slot, std::string slot_name);
 /// `prefix`: what names of the image begin with.
@@ -203,6 +206,8 @@ Binding bind_taps(uint32_t node, std::string node_name, int count);
 enum class Host : uint8_t {
   light,         ///< light_at(index, position) -> (direction, color)
   light_change,  ///< light_at_change(index, position, position_change) -> the change of both; passes::derivatives asks
+  environment,   ///< environment_at(direction, roughness) -> radiance
+  irradiance,    ///< irradiance_at(direction) -> irradiance / pi
   texel,         ///< texel_at(picture, x, y) -> texel
   texture_size,  ///< texture_size(picture) -> (width, height, smaller)
   image,         ///< NAME_at(x, y) -> color: of an image of a post

@@ -49,6 +49,8 @@ std::optional<Answer> answer_of(const HostFunction& function) {
   switch (function.host) {
     case Host::light: return Answer{HostCall::light};
     case Host::light_change: return Answer{HostCall::light_change};
+    case Host::environment: return Answer{HostCall::environment};
+    case Host::irradiance: return Answer{HostCall::irradiance};
     case Host::texel: return Answer{HostCall::texel};
     case Host::texture_size: return Answer{HostCall::image_size};
     case Host::image: return Answer{HostCall::picture, picture_number(function.image)};
@@ -83,6 +85,7 @@ Place place_of(const Binding& binding, bool in_function) {
             return in_function ? Place(place::Argument{}) : Place(place::Parameter{});
           },
           [](const source::LightCount&) { return Place(place::Host{HostCall::light_count}); },
+          [](const source::HasEnvironment&) { return Place(place::Host{HostCall::has_environment}); },
           [](const source::ScreenValue& s) { return place_of(s.value); },
           [](const source::PixelOfImage&) { return Place(place::Point{}); },
           [](const source::OffsetInPixel&) { return Place(place::Point{}); },

@@ -47,6 +47,7 @@ class Body {
   ir::ValueId offset(const Operand& operand);
   Value transform(nodes::Transform what, const Node& node);
   Value image(uint32_t node);
+  Value environment(nodes::Environment what, const Node& node);
   std::vector<uint32_t> nodes_under(uint32_t sum);
   /// Gives the results of a node its name, but for those that stood before it under another.
   void name_results(uint32_t node, ir::ValueId first_new);
@@ -140,6 +141,11 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
   }
   if (const auto* what = std::get_if<nodes::Light>(&row.lowering)) {
     out[0] = light_[static_cast<size_t>(*what)];
+    return;
+  }
+  if (const auto* what = std::get_if<nodes::Environment>(&row.lowering)) {
+    out[0] = environment(*what, node);
+    if (out.size() > 1) out[1] = environment_.has_environment;
     return;
   }
   if (row.is<nodes::Image>()) {
@@ -239,6 +245,17 @@ Value Body::image(uint32_t index) {
   return b_.branch(there, picture, [&] { return std::vector{otherwise}; }).front();
 }
 
+Value Body::environment(nodes::Environment what, const Node& node) {
+  const std::span<const Operand> operands = graph_.operands_of(node);
+  const bool is_radiance = what == nodes::Environment::radiance;
+  const interface::Host host = is_radiance ? interface::Host::environment : interface::Host::irradiance;
+  std::vector<ir::ValueId> arguments;
+  for (const Operand& operand : operands.first(operands.size() - 1)) arguments.push_back(read(operand).id());
+  const ir::ValueId otherwise = read(operands.back()).id();
+  const auto arriving = [&] { return b_.call(environment_.interface.find(host), arguments); };
+  return b_.branch(environment_.has_environment, arriving, [&] { return std::vector{otherwise}; }).front();
+}
+
 ir::ValueId Body::argument(const interface::Binding& binding, const Node& node,
                            std::span<const uint32_t> image_slots, Value& input) {
   namespace source = interface::source;
@@ -256,6 +273,7 @@ ir::ValueId Body::argument(const interface::Binding& binding, const Node& node,
           },
           [&](const source::Image& s) { return environment_.image_slots[image_slots[s.slot]]; },
           [&](const source::LightCount&) { return environment_.light_count; },
+          [&](const source::HasEnvironment&) { return environment_.has_environment; },
           [&](const source::ScreenValue&) { return only_posts(); },
           [&](const source::PixelOfImage&) { return only_posts(); },
           [&](const source::OffsetInPixel&) { return only_posts(); },

@@ -25,6 +25,8 @@ struct Needs {
   bool time = false;
   bool lights = false;    ///< a sum over lights
   bool light_at = false;  ///< what a light gives
+  bool has_environment = false;                ///< whether there is an environment
+  bool radiance = false, irradiance = false;  ///< of the environment
   ScreenNeeds screen;
 
   Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
@@ -52,6 +54,7 @@ struct Environment {
   std::array<std::array<ir::ValueId, 4>, interface::space_matrix_count> matrices{};
   ir::ValueId time = ir::none;
   ir::ValueId light_count = ir::none;
+  ir::ValueId has_environment = ir::none;
   const ImageSlots* images = nullptr;
   std::vector<ir::ValueId> image_slots;  ///< of the slots: the texture, negative for none
   ScreenInputs screen;

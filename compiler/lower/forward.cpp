@@ -136,7 +136,7 @@ ForwardFunction add_forward_light(ir::Module& module) {
   return add(module, "light_at", {{Kind::index, {}, 0, 1}, {Kind::position, {}, 0, 3}},
              {{"direction", ir::vector_type(3)}, {"color", ir::vector_type(3)}}, [](Kernel& k, Inputs&) {
                const auto values =
-                   light_values(k, k.integer(0) * Int(light_word::stride), k.vector3(1), {true, true, true});
+                   light_values(k, k.integer(0) * Int(light_word::stride), k.vector3(1), {});
                return std::vector<ir::ValueId>(values.begin(), values.end());
              });
 }

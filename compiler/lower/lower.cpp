@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "compiler/lower/body.h"
+#include "compiler/lower/environment.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::lower {
@@ -174,6 +175,7 @@ class ModuleLowering {
     return {entry, std::move(bindings), host_.host};
   }
   std::string unique_name(const std::string& wanted);
+  void declare_hosts(const Needs& needs);
   void declare_light_at();
   void add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const;
   /// What stands before and after the parameters of an effect, and after the inputs of a function.
@@ -265,7 +267,7 @@ void name_as_arguments(std::vector<Binding>& bindings, size_t own) {
 uint32_t ModuleLowering::add_function(const TypedGraph& graph, std::string name, Bindings& bindings, bool is_alone) {
   Needs needs(graph, graph.outputs);
   add_callees(graph, needs);
-  if (needs.light_at) declare_light_at();
+  declare_hosts(needs);
   if (is_alone) needs.show_mesh();
   const std::vector<std::vector<std::string>> inputs = parameter_names(graph);
   for (uint32_t i = 0; i < inputs.size(); ++i) {
@@ -295,6 +297,12 @@ interface::Interface ModuleLowering::add_function_document(const TypedGraph& gra
   return interface_of(entry, std::move(bindings));
 }
 
+void ModuleLowering::declare_hosts(const Needs& needs) {
+  if (needs.light_at) declare_light_at();
+  if (needs.radiance) declare_environment(module_, host_, interface::Host::environment);
+  if (needs.irradiance) declare_environment(module_, host_, interface::Host::irradiance);
+}
+
 void ModuleLowering::declare_light_at() {
   if (host_.find(interface::Host::light) != ir::none) return;
   host_.host.push_back({interface::Host::light, static_cast<uint32_t>(module_.functions.size())});
@@ -311,6 +319,7 @@ void ModuleLowering::add_surface(const Needs& needs, Bindings& bindings) {
     for (uint32_t c = 0; c < needs.columns[m]; ++c)
       bindings.push_back(interface::bind(static_cast<interface::SpaceMatrix>(m), c));
   if (needs.time) bindings.push_back(interface::bind_time());
+  if (needs.has_environment) bindings.push_back(interface::bind_has_environment());
 }
 
 void ModuleLowering::add_images_and_lights(const TypedGraph& graph, const Needs& needs, Bindings& bindings) {
@@ -341,7 +350,7 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
   const bool moves = has_part(graph, pass, PassPart::position);
   const std::string name = unique_name(prefix + std::string(function_of(part)));
   add_callees(graph, needs);
-  if (needs.light_at) declare_light_at();
+  declare_hosts(needs);
   if (!moves) needs.show_mesh();
 
   Bindings bindings;
@@ -358,9 +367,11 @@ interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
   declare_reads(module_, host_, graph, needs.screen);
   for (const interface::HostFunction& read : host_.host) names_.insert(module_.functions[read.function].name);
   add_callees(graph, needs);
+  declare_hosts(needs);
 
   Bindings bindings = screen_bindings(graph, needs.screen);
   if (needs.time) bindings.push_back(interface::bind_time());
+  if (needs.has_environment) bindings.push_back(interface::bind_has_environment());
   add_parameters(graph, needs, bindings);
   for (Binding& binding : tap_bindings(graph, needs.screen)) bindings.push_back(std::move(binding));
   const uint32_t entry =

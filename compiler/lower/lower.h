@@ -50,11 +50,13 @@ struct LowerOptions {
 ///   spaces.world_from_object_0 ...  uniform; columns of the matrices between world, object and view space,
 ///     of which the fourth is the translation
 ///   frame.time       float, uniform; seconds
+///   frame.has_environment  bool, uniform
 ///   parameters.NAME  uniform; of the effect, in its order
 ///   images.NAME      int, uniform: a texture (sampling.h), or negative for none; of image_slots()
 ///   light_count      int, uniform: where there is a sum over lights
 /// What a light gives comes from light_at(index: int uniform, position: vec3) -> (direction: vec3, color:
-/// vec3), which is declared without a body where it is needed (see add_pixel_kernel).
+/// vec3), which is declared without a body where it is needed (see add_pixel_kernel). So are environment_at and
+/// irradiance_at (environment.h).
 ///
 /// Its position, if the pass has one, becomes `move_vertex` -> (position: vec3), with the same parameters but for
 /// light_count; the surface is that of the mesh at a vertex.
@@ -68,7 +70,7 @@ struct LowerOptions {
 ///     for those that the document lists
 ///   sizes.screen     vec2, uniform; and .NAME_width, .NAME_height int
 ///   camera.position, .direction vec3, uniform; .depth_numerator, .depth_denominator vec2 (view_word)
-///   frame.time, parameters.NAME  as in a pass
+///   frame.time, frame.has_environment, parameters.NAME  as in a pass
 ///   taps.NODE        int, uniform: how many taps the node sums
 /// It reads images by NAME_at(x: int, y: int) -> (color: vec4), and the depth by depth_at -> (depth: float): declared
 /// without bodies (see add_post_kernel), only called for pixels that the image has.

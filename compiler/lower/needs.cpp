@@ -60,6 +60,7 @@ Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
                      image_slots[s.slot] = id;
                    },
                    [&](const source::LightCount&) { light_count = id; },
+                   [&](const source::HasEnvironment&) { has_environment = id; },
                    [&](const source::ScreenValue& s) { screen.values[static_cast<size_t>(s.value)] = id; },
                    [&](const source::PixelOfImage& s) {
                      ReadImage& image = screen.images[s.image];
@@ -91,6 +92,7 @@ void Needs::add_callee(const std::vector<interface::Binding>& bindings) {
     }
     time |= std::holds_alternative<source::Time>(binding.source);
     lights |= std::holds_alternative<source::LightCount>(binding.source);
+    has_environment |= std::holds_alternative<source::HasEnvironment>(binding.source);
   }
 }
 
@@ -118,6 +120,10 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     time |= node.row->is<nodes::Time>();
     lights |= node.row->is<nodes::SumLights>();
     light_at |= node.row->is<nodes::Light>();
+    if (const auto* what = std::get_if<nodes::Environment>(&node.row->lowering)) {
+      has_environment = true;
+      (*what == nodes::Environment::radiance ? radiance : irradiance) = true;
+    }
     screen.add(graph, *it);
   }
   surface[shown_position.index()] |= light_at;

@@ -2,6 +2,7 @@
 // The kernel around `post_process`: what it reads, by frame_layout.h.
 #include <algorithm>
 
+#include "compiler/lower/environment.h"
 #include "compiler/lower/forward.h"
 #include "compiler/lower/kernel.h"
 #include "compiler/lower/lower.h"
@@ -51,7 +52,8 @@ void define_read(ir::Module& module, uint32_t function, int image) {
 /// The arguments of `post_process`, each made once and only if it is asked for.
 class ScreenPoint {
  public:
-  ScreenPoint(Kernel& kernel, const interface::RecordLayout& record) : k_(kernel), record_(record) {}
+  ScreenPoint(Kernel& kernel, const interface::RecordLayout& record, std::optional<bool> has_environment)
+      : k_(kernel), record_(record), has_environment_(has_environment) {}
 
   ir::ValueId argument(const interface::Binding& binding) {
     namespace source = interface::source;
@@ -67,6 +69,7 @@ class ScreenPoint {
             [&](const source::Image&) { return only_effects(); },
             [&](const source::LightCount&) { return only_effects(); },
             [&](const source::Time&) { return k_.load(FrameBuffer::frame, k_.constant(frame_word::time)).value; },
+            [&](const source::HasEnvironment&) { return has_environment(k_, has_environment_); },
             [&](const source::Input& s) { return field(column_word(record_, s, type)); },
             [&](const source::ScreenValue& s) { return screen(s.value); },
             [&](const source::PixelOfImage& s) { return spot_in(s.image).pixel[index(s.axis)].value; },
@@ -160,6 +163,7 @@ class ScreenPoint {
 
   Kernel& k_;
   const interface::RecordLayout& record_;
+  std::optional<bool> has_environment_;
   std::array<Int, 2> made_{Int(0), Int(0)};
   std::vector<Spot> spots_;
 };
@@ -168,18 +172,19 @@ class ScreenPoint {
 
 std::vector<ir::ValueId> screen_values(Kernel& k, std::span<const interface::Binding> bindings) {
   const interface::RecordLayout none;
-  ScreenPoint screen(k, none);
+  ScreenPoint screen(k, none, false);
   std::vector<ir::ValueId> values;
   for (const interface::Binding& binding : bindings) values.push_back(screen.argument(binding));
   return values;
 }
 
 uint32_t add_post_kernel(ir::Module& module, const interface::Interface& interface,
-                         const interface::RecordLayout& record) {
+                         const interface::RecordLayout& record, LightKinds lights) {
   for (const interface::HostFunction& read : interface.host)
-    define_read(module, read.function, static_cast<int>(read.image));
+    if (read.image != ir::none) define_read(module, read.function, static_cast<int>(read.image));
+  define_environment(module, interface);
   Kernel k(module, "post", {int_parameter("x"), uniform_int("y")}, {{"color", ir::vector_type(4)}});
-  ScreenPoint screen(k, record);
+  ScreenPoint screen(k, record, lights.environment);
   std::vector<ir::ValueId> arguments;
   for (const interface::Binding& binding : interface.bindings) arguments.push_back(screen.argument(binding));
   k.b.finish(k.b.call(interface.entry, arguments));

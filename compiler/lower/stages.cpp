@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/lower/stages.h"
 
+#include "compiler/lower/environment.h"
 #include "compiler/lower/forward.h"
 #include "compiler/lower/sampling.h"
 #include "compiler/lower/shadow.h"
@@ -76,8 +77,13 @@ Vec4 to_clip(Kernel& k, Int matrix, Vec3 position) {
 class SurfaceArguments {
  public:
   SurfaceArguments(Kernel& k, SurfacePoint& surface, Int object, const interface::RecordLayout& record,
-                   ir::ValueId light_count)
-      : k_(k), surface_(surface), object_(object), record_(record), light_count_(light_count) {}
+                   ir::ValueId light_count, std::optional<bool> has_environment = false)
+      : k_(k),
+        surface_(surface),
+        object_(object),
+        record_(record),
+        light_count_(light_count),
+        has_environment_(has_environment) {}
 
   std::vector<ir::ValueId> of(const interface::Interface& interface) {
     std::vector<ir::ValueId> values;
@@ -99,6 +105,7 @@ class SurfaceArguments {
             [&](const source::Input& s) { return field(column_word(record_, s, parameter.type)); },
             [&](const source::Image& s) { return field(record_.images[s.slot]); },
             [&](const source::LightCount&) { return light_count_; },
+            [&](const source::HasEnvironment&) { return has_environment(k_, has_environment_); },
             [&](const source::ScreenValue&) { return only_posts(); },
             [&](const source::PixelOfImage&) { return only_posts(); },
             [&](const source::OffsetInPixel&) { return only_posts(); },
@@ -106,7 +113,8 @@ class SurfaceArguments {
             [&](const source::TapCount&) { return only_posts(); },
         },
         binding.source);
-    return value == light_count_ ? value : k_.named(parameter.name, value);
+    if (value == light_count_ || std::holds_alternative<source::HasEnvironment>(binding.source)) return value;
+    return k_.named(parameter.name, value);
   }
 
   Kernel& k_;
@@ -114,6 +122,7 @@ class SurfaceArguments {
   Int object_;
   const interface::RecordLayout& record_;
   ir::ValueId light_count_;
+  std::optional<bool> has_environment_;
 };
 
 /// glTF KHR_lights_punctual: inverse square, windowed by the range if there is one.
@@ -305,6 +314,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interf
   if (ir::asks_for_derivatives(module)) add_edge_gradients(module);
   if (const uint32_t light_at = interface.find(interface::Host::light); light_at != ir::none)
     define_light_at(module, light_at, lights);
+  define_environment(module, interface);
   define_texture_reads(module, interface);
   Kernel k(module, "pixel",
            {int_parameter("x"), int_parameter("y"), int_parameter("triangle"), uniform_int("object"),
@@ -313,7 +323,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interf
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
                        seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
-  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4));
+  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4), lights.environment);
   k.b.finish(k.b.call(interface.entry, arguments.of(interface)));
   return k.index;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "compiler/graph/graph.h"
@@ -42,6 +43,7 @@ struct LightKinds {
   bool point = true;
   bool spot = true;
   bool shadows = false;  ///< whether any has a shadow that the surface receives
+  std::optional<bool> environment = {};  ///< whether there is one, if that is known
 };
 
 /// A module with the frame's buffers and no function.
@@ -71,6 +73,6 @@ uint32_t add_eval_kernel(ir::Module& module, uint32_t function);
 
 /// Adds `post` around the document's `post_process`, and the bodies of the functions that read images.
 uint32_t add_post_kernel(ir::Module& module, const interface::Interface& interface,
-                         const interface::RecordLayout& record);
+                         const interface::RecordLayout& record, LightKinds lights);
 
 }  // namespace isoshade::lower

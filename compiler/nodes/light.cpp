@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights. Their properties exist only under a sum over all lights.
+// Lights, whose properties exist only under a sum over all lights, and the environment.
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
@@ -21,6 +21,21 @@ std::vector<Row> light_rows() {
        {{"in", AnyFloat, "the contribution of one light"}},
        AnyFloat,
        SumLights{}},
+      {"environment",
+       "The radiance of the scene's environment in a direction in world space, of any length: what a surface of the given "
+       "roughness reflects from there. `exists`: whether the scene has an environment.",
+       {{"direction", Vector3, "towards the environment"},
+        {"roughness", Float, "alpha of GGX, 0 to 1: the radiance is averaged over its lobe around the direction", 0.0f},
+        {"default", Color3, "the result without an environment", 0.0f}},
+       {{"out", Color3}, {"exists", Boolean}},
+       Environment::radiance},
+      {"irradiance",
+       "The light that a surface receives from the scene's environment, as the radiance of a white diffuse surface: the "
+       "irradiance divided by pi.",
+       {{"direction", Vector3, "the normal of the surface in world space, of any length", SurfaceValue{Surface::normal}},
+        {"default", Color3, "the result without an environment", 0.0f}},
+       Color3,
+       Environment::irradiance},
   };
 }
 

@@ -94,6 +94,10 @@ enum class Light : uint8_t {
   color       ///< vec3, linear, including all falloff
 };
 
+/// Reads the environment: the radiance at a roughness, or the irradiance divided by pi. The port `default` replaces it
+/// where there is none.
+enum class Environment : uint8_t { radiance, irradiance };
+
 /// Sums its input over the lights.
 struct SumLights {};
 
@@ -125,7 +129,7 @@ enum class Derivative : uint8_t { x, y, width };
 /// Computes the outputs of a Site from its inputs.
 using Custom = void (*)(Site&);
 
-using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Derivative,
+using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Environment, Derivative,
                               Image, Screen, Fetch, WorldPosition, SumTaps, TapIndex, Custom>;
 
 /// The kinds of documents in which a node is available. A function may use what is available in effects; then only
@@ -161,7 +165,7 @@ struct Row {
   /// Whether its value depends on the iteration of the enclosing sum.
   bool is_summand() const { return is<Light>() || is<TapIndex>(); }
   Availability availability() const {
-    if (is<Time>()) return Availability::drawn;
+    if (is<Time>() || is<Environment>()) return Availability::drawn;
     if (is<Surface>() || is<Transform>() || is<Light>() || is<SumLights>() || is<Derivative>() || is<Image>())
       return Availability::effects;
     const bool screen = is<Screen>() || is<Fetch>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();

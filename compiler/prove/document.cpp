@@ -30,6 +30,8 @@ std::vector<Given> answer_of(interface::Host host) {
     case interface::Host::light_change:
       return {{"change of light.direction", -default_limit, default_limit},
               {"change of light.color", -default_limit, default_limit}};
+    case interface::Host::environment: return {{"environment", 0, most_light}};
+    case interface::Host::irradiance: return {{"irradiance", 0, most_light}};
     case interface::Host::depth: return {{"depth", 0, 1}};
     case interface::Host::image: return {{"image", 0, default_limit}};
     case interface::Host::texel: return texel(Answer::other, 1);

@@ -94,6 +94,26 @@ concept image_size = requires(const Host& host, int_of<F> image) {
   { host.image_size(image) } -> ConvertsTo<ImageSize<int_of<F>>>;
 };
 
+/// Whether there is an environment: light from all directions, far away.
+template <class Host, class F>
+concept has_environment = requires(const Host& host) {
+  { host.has_environment() } -> ConvertsTo<bool>;
+};
+
+/// The radiance that arrives from a direction in world space of any length, averaged over the lobe that a surface of this
+/// roughness (alpha of GGX) reflects. Asked for where there is an environment.
+template <class Host, class F>
+concept environment = requires(const Host& host, vec3<F> direction, F roughness) {
+  { host.environment(direction, roughness) } -> ConvertsTo<vec3<F>>;
+};
+
+/// The irradiance of a surface that faces a direction in world space of any length, divided by pi. Asked for where there
+/// is an environment.
+template <class Host, class F>
+concept irradiance = requires(const Host& host, vec3<F> direction) {
+  { host.irradiance(direction) } -> ConvertsTo<vec3<F>>;
+};
+
 /// Seconds.
 template <class Host, class F>
 concept time = requires(const Host& host) {
@@ -196,6 +216,21 @@ template <class Host>
   requires gives::light_count<Host, float>
 ISOSHADE_INLINE int isoshade_light_count(const Host& host) {
   return host.light_count();
+}
+template <class Host>
+  requires gives::has_environment<Host, float>
+ISOSHADE_INLINE bool isoshade_has_environment(const Host& host) {
+  return host.has_environment();
+}
+template <class F, class Host>
+  requires gives::environment<Host, F>
+ISOSHADE_INLINE vec3<F> isoshade_environment(const Host& host, vec3<F> direction, F roughness) {
+  return host.environment(direction, roughness);
+}
+template <class F, class Host>
+  requires gives::irradiance<Host, F>
+ISOSHADE_INLINE vec3<F> isoshade_irradiance(const Host& host, vec3<F> direction) {
+  return host.irradiance(direction);
 }
 template <class Host>
   requires gives::time<Host, float>

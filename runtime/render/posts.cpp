@@ -335,7 +335,8 @@ bool run_posts(const PostChain& chain, size_t first, const backends::Frame& fram
           .view = std::span(frame.picture().words).first(lower::view_word::camera_words),
           .record = step.record,
           .layers = arrays.floats,
-          .layer_records = arrays.records};
+          .layer_records = arrays.records,
+          .textures = step.post->reads_environment ? &frame : nullptr};
       if (!backend.post(pass, made.rgba, diagnostics)) return false;
     }
     note_non_finite(step, layers, made, stats.non_finite);

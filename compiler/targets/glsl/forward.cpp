@@ -413,6 +413,9 @@ class Pair {
         return begin + "\n  " + result_record("light_at") + " at = " + own("light_at") + "(index, position), next = " +
                own("light_at") + "(index, position + change);\n" +
                "  return isoshade_Light(next.direction - at.direction, next.color - at.color);\n}\n";
+      case HostCall::has_environment: return line("false");
+      case HostCall::environment:
+      case HostCall::irradiance: return line("vec3(0.0)");
       case HostCall::texel:
         return begin + "\n" + choose("isoshade_image", program_.images.size(), "image / " + number(levels), "vec4(0.0)",
                                      [](const std::string& sampler) {
