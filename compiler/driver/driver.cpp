@@ -249,6 +249,7 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
             {},
             false,
             false,
+            false,
             typed->graph.enabled,
             {}};
   for (const graph::InputImage& image : typed->graph.images) post.images.push_back(image.name);

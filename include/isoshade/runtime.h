@@ -70,7 +70,7 @@ struct BackendOptions {
   int threads = 0;       ///< cpu: 0: one for each core
   std::string compiler = {};  ///< cpu: path or name; empty: $ISOSHADE_CXX, c++, g++, clang++
   double compiler_seconds = 120;  ///< cpu: how long it may take for one program
-  std::string cache = {};     ///< cpu: folder of compiled code; empty: isoshade in $XDG_CACHE_HOME or $HOME/.cache
+  std::string cache = {};     ///< folder of compiled code and of maps of environments; empty: isoshade in $XDG_CACHE_HOME or $HOME/.cache
   std::string device = {};    ///< vulkan: part of its name, or its number; empty: a software device if there is one
 };
 

@@ -25,6 +25,7 @@ struct Function::Loaded {
 struct Backend::Opened {
   std::mutex one_at_a_time;
   std::string description;
+  std::string cache;  ///< BackendOptions::cache
   std::unique_ptr<backends::Backend> backend;
 };
 
@@ -67,12 +68,13 @@ bool apply(const RenderOptions& options, scene::Scene& scene, Diagnostics& diagn
 
 /// Draws the scene of `source` with a backend that no other thread uses meanwhile.
 bool draw(const support::Source& source, const RenderOptions& options, check::Library& library,
-          backends::Backend& backend, Image& result, Diagnostics& diagnostics) {
+          backends::Backend& backend, const std::string& cache, Image& result, Diagnostics& diagnostics) {
   auto scene = scene::load_scene(source, options.settings, library.files(), diagnostics);
   if (!scene || !apply(options, *scene, diagnostics)) return false;
   render::PlanOptions plan_options;
   plan_options.width = options.width;
   plan_options.height = options.height;
+  plan_options.cache = cache;
   plan_options.compiler.library = &library;
   plan_options.compiler.reference = backend.name() == "reference";
   plan_options.compiler.tier = api::tier_of(options.precision);
@@ -148,6 +150,7 @@ Outcome Backend::open(const BackendOptions& options) noexcept {
     opened->backend = choice::create(chosen, diagnostics);
     if (opened->backend == nullptr) return false;
     opened->description = opened->backend->description();
+    opened->cache = options.cache;
     opened_ = std::move(opened);
     return true;
   });
@@ -171,7 +174,7 @@ Rendering Backend::render_file(const std::string& path, const RenderOptions& opt
     const support::Source source = api::read(path, library, diagnostics);
     const std::lock_guard lock(opened_->one_at_a_time);
     return source != nullptr &&
-           draw(source, options, library, *opened_->backend, rendering.image, diagnostics);
+           draw(source, options, library, *opened_->backend, opened_->cache, rendering.image, diagnostics);
   });
 }
 
@@ -180,7 +183,8 @@ Rendering Backend::render(const Document& scene, const RenderOptions& options) c
     if (opened_ == nullptr) return report_not_open(diagnostics);
     check::Library library = api::make_library(options.sources);
     const std::lock_guard lock(opened_->one_at_a_time);
-    return draw(api::source_of(scene), options, library, *opened_->backend, rendering.image, diagnostics);
+    return draw(api::source_of(scene), options, library, *opened_->backend, opened_->cache, rendering.image,
+                diagnostics);
   });
 }
 

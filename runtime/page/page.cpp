@@ -94,6 +94,8 @@ std::vector<std::string> find_differences(const scene::Scene& scene, support::Di
   };
   if (scene.samples > 1)
     warn(scene.samples_where, "the page draws one sample a pixel, not " + std::to_string(scene.samples));
+  if (scene.environment)
+    warn(scene.environment->where, "the page draws without the environment");
   if (scene.lights.size() > emit::most_forward_lights)
     warn({}, "the page draws with " + std::to_string(emit::most_forward_lights) + " of the scene's " +
                  std::to_string(scene.lights.size()) + " lights");

@@ -10,6 +10,7 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/shadow.h"
 #include "compiler/support/visible.h"
+#include "runtime/environment/environment.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/meshes.h"
@@ -35,7 +36,7 @@ using support::quote;
 namespace {
 
 lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
-  lower::LightKinds kinds{false, false, false};
+  lower::LightKinds kinds{false, false, false, {}};
   for (const scene::Light& light : lights) {
     kinds.directional |= light.kind == scene::LightKind::directional;
     kinds.point |= light.kind == scene::LightKind::point;
@@ -59,6 +60,10 @@ class Planner {
 
   bool compile_effects();
   bool compile_posts();
+  /// What the programs are compiled for.
+  driver::CompileOptions compile_options() const;
+  /// Adds the maps of the environment to the textures; its first record, or -1 without one. Nothing after an error.
+  std::optional<int> add_environment();
   support::Source read_document(const std::string& path, const support::Span& where);
   /// `cutout`: of a pixel program, the index of the one that belongs to it.
   uint32_t add_program(const driver::Program& program, uint32_t cutout = backends::Frame::no_program);
@@ -110,9 +115,15 @@ class Planner {
   std::vector<const driver::Post*> posts_;  ///< of each post of the scene
 };
 
-bool Planner::compile_effects() {
+driver::CompileOptions Planner::compile_options() const {
   driver::CompileOptions options = options_.compiler;
   options.lights = kinds_of(scene_.lights);
+  options.lights.environment = scene_.environment.has_value();
+  return options;
+}
+
+bool Planner::compile_effects() {
+  driver::CompileOptions options = compile_options();
   const bool shadows = options.lights.shadows;
   std::map<std::pair<std::string, bool>, size_t> known;
   bool good = true;
@@ -158,6 +169,7 @@ support::Source Planner::read_document(const std::string& path, const support::S
 }
 
 bool Planner::compile_posts() {
+  const driver::CompileOptions options = compile_options();
   std::map<std::string, size_t> known;
   std::vector<size_t> document_of_post;
   bool good = true;
@@ -167,7 +179,7 @@ bool Planner::compile_posts() {
     if (!is_new) continue;
     const support::Source source = read_document(post.effect, post.effect_where);
     auto compiled =
-        source != nullptr ? driver::compile_post(source, options_.compiler, diagnostics_) : std::nullopt;
+        source != nullptr ? driver::compile_post(source, options, diagnostics_) : std::nullopt;
     if (!compiled && !diagnostics_.full() && !diagnostics_.all().empty())
       diagnostics_.all().back().note(post.effect_where, "the effect of post " + quote(post.name));
     good = good && compiled.has_value();
@@ -422,6 +434,20 @@ void Planner::add_lights(const scene::View& picture) {
   }
 }
 
+std::optional<int> Planner::add_environment() {
+  if (!scene_.environment) return -1;
+  const scene::Environment& environment = *scene_.environment;
+  if (!environment.file.empty() && !may_read(environment.file, environment.file_where)) return std::nullopt;
+  Clock clock;
+  const auto made = environment::make_environment(
+      environment, {options_.compiler.library, options_.cache, {}}, diagnostics_);
+  if (!made) return std::nullopt;
+  plan_.stats.environment = true;
+  plan_.stats.environment_cached = made->cached;
+  plan_.stats.environment_seconds = clock.lap();
+  return append_levels(made->maps, plan_.frame);
+}
+
 std::optional<Plan> Planner::plan() {
   Clock clock;
   const int width = options_.width > 0 ? options_.width : scene_.width;
@@ -432,6 +458,8 @@ std::optional<Plan> Planner::plan() {
   plan_.stats.compile_seconds = clock.lap();
   if (!make_objects()) return std::nullopt;
   textures_.store(plan_.frame);
+  const std::optional<int> environment = add_environment();
+  if (!environment) return std::nullopt;
   plan_.stats.skips = unread_images(plan_.effects);
 
   backends::Frame& frame = plan_.frame;
@@ -439,7 +467,7 @@ std::optional<Plan> Planner::plan() {
   const int side = samples_each_way(scene_.samples);
   {
     const lanes::FpGuard guard;
-    frame.frame = frame_words(scene_);
+    frame.frame = frame_words(scene_, *environment);
     const scene::View picture = scene::make_view(scene_.camera, width, height);
     add_lights(picture);
     const size_t shadow_maps = frame.views.size();

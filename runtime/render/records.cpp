@@ -34,9 +34,10 @@ void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::s
   objects.insert(objects.end(), parameters.begin(), parameters.end());
 }
 
-std::vector<float> frame_words(const scene::Scene& scene) {
+std::vector<float> frame_words(const scene::Scene& scene, int environment) {
   std::vector<float> words(lower::frame_word::count);
   words[lower::frame_word::time] = scene::canonical(scene.time);
+  words[lower::frame_word::environment] = static_cast<float>(environment);
   return words;
 }
 

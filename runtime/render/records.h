@@ -26,8 +26,8 @@ ObjectTransforms place_of(const scene::Object& object, const scene::Instance& in
 void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::span<const float> parameters,
                    std::vector<float>& objects);
 
-/// The words of lower::frame_word.
-std::vector<float> frame_words(const scene::Scene& scene);
+/// The words of lower::frame_word. `environment`: its first record, or -1.
+std::vector<float> frame_words(const scene::Scene& scene, int environment);
 
 /// The camera of lower::view_word, for an image of this size; matrices are appended to it.
 std::vector<float> view_words(const scene::Camera& camera, const scene::View& view, int width, int height);

@@ -10,14 +10,19 @@ std::string text(const PlanStats& stats) {
                                    ? ""
                                    : fmt::format("textures: {} stored with {} texels in {} bytes\n",
                                                  stats.textures, stats.texels, stats.texture_bytes);
+  const std::string environment =
+      stats.environment ? fmt::format("environment: maps {} in {:.1f} ms\n",
+                                      stats.environment_cached ? "found in the cache" : "computed",
+                                      1e3 * stats.environment_seconds)
+                        : "";
   std::string text = fmt::format(
       "scene:    {} objects, {} draws, {} lights\n"
       "meshes:   {} stored with {} vertices; {} vertices and {} triangles are drawn\n"
       "effects:  {} compiled into {} programs in {:.1f} ms\n"
-      "{}"
+      "{}{}"
       "plan:     {:.1f} ms\n",
       stats.copies, stats.draws, stats.lights, stats.meshes, stats.mesh_vertices, stats.vertices,
-      stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, textures,
+      stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, textures, environment,
       1e3 * stats.plan_seconds);
   if (stats.posts > 0)
     text += fmt::format("posts:    {}{}\n", stats.posts,

@@ -23,6 +23,9 @@ struct PlanStats {
   int64_t meshes = 0, mesh_vertices = 0;  ///< stored
   int64_t effects = 0, programs = 0;      ///< compiled
   int64_t textures = 0, texels = 0;       ///< stored; with mip levels
+  bool environment = false;
+  bool environment_cached = false;  ///< its maps were found in the cache
+  double environment_seconds = 0;   ///< to compute or find its maps
   int64_t texture_bytes = 0;              ///< that they take
   int64_t lights = 0;
   int64_t posts = 0;  ///< that are run

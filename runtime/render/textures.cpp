@@ -146,6 +146,12 @@ int smaller_levels(const scene::ImageHeader& header) {
 
 }  // namespace
 
+int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Frame& frame) {
+  const auto first = static_cast<int>(frame.textures.size() / word::stride);
+  for (size_t i = 0; i < levels.size(); ++i) add_level(levels[i], 0, frame);
+  return first;
+}
+
 void TextureStore::store(backends::Frame& frame) {
   size_t byte_words = 0, float_words = 0;
   for (const Texture& texture : textures_)

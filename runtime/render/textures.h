@@ -35,6 +35,10 @@ struct ImageSource {
 /// The parameters of effects that name images which no pass reads.
 std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects);
 
+/// Appends levels as textures, each the record after the other; returns the record of the first. Call it after
+/// TextureStore::store.
+int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Frame& frame);
+
 class TextureStore {
  public:
   explicit TextureStore(int64_t most_bytes = max_texture_bytes) : most_bytes_(most_bytes) {}

@@ -40,6 +40,10 @@ enum class Object : uint8_t {
 enum class VariationForm : uint8_t { list, steps };
 inline constexpr std::string_view variation_forms[] = {"list", "steps"};
 
+/// Where the light of an environment comes from.
+enum class EnvironmentForm : uint8_t { file, sky };
+inline constexpr std::string_view environment_forms[] = {"file", "sky"};
+
 /// A set of forms of an object, by their numbers.
 using Forms = uint16_t;
 inline constexpr Forms every = 0xffff;

@@ -127,6 +127,8 @@ Camera parse_camera(const graph::Document& document, const graph::Json& json,
                     support::Diagnostics& diagnostics);
 Light parse_light(const graph::Document& document, const graph::Member& member,
                   support::Diagnostics& diagnostics);
+Environment parse_environment(const graph::Document& document, const graph::Json& json,
+                              support::Diagnostics& diagnostics);
 Object parse_object(const graph::Document& document, const graph::Member& member,
                     support::Diagnostics& diagnostics);
 /// `before`: the posts that stand before it.

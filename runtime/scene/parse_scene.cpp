@@ -154,6 +154,8 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
     scene.camera = parse_camera(document, *camera, diagnostics);
   if (const Json* lights = reader.read(format::scene::lights))
     parse_lights(document, *lights, names, scene, diagnostics);
+  if (const Json* environment = reader.read(format::scene::environment))
+    scene.environment = parse_environment(document, *environment, diagnostics);
   scene.background = reader.read(format::scene::background);
   if (const Json* objects = reader.read(format::scene::objects))
     parse_objects(document, *objects, names, scene, diagnostics);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras and lights.
+// Cameras, lights and environments.
 #include "compiler/support/visible.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/host_math.h"
@@ -42,7 +42,55 @@ Shadow parse_shadow(const Document& document, const Json& json, Diagnostics& dia
   return shadow;
 }
 
+Sun parse_sun(const Document& document, const Json& json, Diagnostics& diagnostics) {
+  namespace key = format::sun;
+  Sun sun;
+  format::Reader<format::Object::sun> reader(document, json, "the sun", diagnostics);
+  sun.direction = to_vec3(reader.read(key::direction));
+  sun.color = to_vec3(reader.read(key::color));
+  sun.intensity = reader.read(key::intensity);
+  sun.size = reader.read(key::size);
+  if (reader.finish() && sun.direction == glm::vec3(0))
+    diagnostics.report(Id::degenerate, document.span(json), "\"direction\" of the sun is zero");
+  return sun;
+}
+
+Sky parse_sky(const Document& document, const Json& json, Diagnostics& diagnostics) {
+  namespace key = format::sky;
+  Sky sky;
+  format::Reader<format::Object::sky> reader(document, json, "the sky", diagnostics);
+  sky.horizon = to_vec3(reader.read(key::horizon));
+  sky.zenith = to_vec3(reader.read(key::zenith));
+  sky.ground = to_vec3(reader.read(key::ground));
+  sky.haze = reader.read(key::haze);
+  if (const Json* sun = reader.read(key::sun)) sky.sun = parse_sun(document, *sun, diagnostics);
+  reader.finish();
+  return sky;
+}
+
 }  // namespace
+
+Environment parse_environment(const Document& document, const Json& json, Diagnostics& diagnostics) {
+  namespace key = format::environment;
+  Environment environment;
+  environment.where = document.span(json);
+  format::Reader<format::Object::environment> reader(document, json, "the environment", diagnostics);
+  environment.rotate = reader.read(key::rotate);
+  environment.intensity = reader.read(key::intensity);
+  const bool has_sky = reader.has(key::sky);
+  if (has_sky && reader.has(key::file)) {
+    diagnostics.report(Id::unknown_key, reader.where(key::sky), "the environment has both a \"file\" and a \"sky\"")
+        .suggest("remove one of them; in a scene that extends another one, write \"file\": null or \"sky\": null");
+  }
+  if (!has_sky || reader.has(key::file)) {
+    environment.file = reader.read(key::file);
+    environment.file_where = reader.where(key::file);
+  }
+  if (has_sky)
+    if (const Json* sky = reader.read(key::sky)) environment.sky = parse_sky(document, *sky, diagnostics);
+  reader.finish();
+  return environment;
+}
 
 Camera parse_camera(const Document& document, const Json& json, Diagnostics& diagnostics) {
   namespace key = format::camera;

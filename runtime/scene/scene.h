@@ -70,6 +70,32 @@ struct Light {
   std::optional<Shadow> shadow;
 };
 
+/// A disc in the sky.
+struct Sun {
+  static constexpr float default_size = 1;
+
+  glm::vec3 direction{0, -1, 0};  ///< in which its light travels; any length but 0
+  glm::vec3 color{1, 1, 1};       ///< linear
+  float intensity = 1;            ///< factor of the colour: the irradiance of a surface that faces the sun
+  float size = default_size;      ///< its diameter in degrees
+};
+
+/// The sky of library/sky.json, and a sun.
+struct Sky {
+  glm::vec3 horizon{0, 0, 0}, zenith{0, 0, 0}, ground{0, 0, 0};
+  float haze = 0;
+  std::optional<Sun> sun;
+};
+
+/// Light from all directions, far away: of an image in equirectangular projection, or of a sky.
+struct Environment {
+  std::string file;  ///< empty: `sky`
+  Sky sky;
+  float rotate = 0;     ///< degrees about y
+  float intensity = 1;  ///< a factor
+  support::Span where, file_where;
+};
+
 /// Scale, then rotate, then translate.
 struct Transform {
   glm::vec3 translate{0, 0, 0};
@@ -155,6 +181,7 @@ struct Scene {
   float time = 0;               ///< the value of the node `time`, in seconds
   Camera camera;
   std::vector<Light> lights;
+  std::optional<Environment> environment;
   std::array<float, 4> background = default_background;  ///< linear RGBA
   std::vector<Object> objects;
   std::vector<Post> posts;  ///< in the order in which they run
