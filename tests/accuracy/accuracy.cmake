@@ -72,6 +72,13 @@ isoshade_test(cycles_test
 target_compile_definitions(cycles_test PRIVATE
   ISOSHADE_ACCURACY_GRAPHS="${CMAKE_CURRENT_SOURCE_DIR}/accuracy/graphs"
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+# The maps of environments against integrals in double.
+isoshade_test(environment_accuracy_test
+  SOURCES accuracy/environment_accuracy_test.cpp
+  LINKS isoshade_environment
+  LABEL accuracy
+  TIMEOUT 300)
+
 isoshade_test(fog_test
   SOURCES accuracy/fog_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter

@@ -163,6 +163,23 @@ TEST(Brdf, SmithAlbedoMatchesQuadratureInAWhiteFurnace) {
   }
 }
 
+TEST(Brdf, SplitSumIsNearTheQuadrature) {
+  const Subject split = Subject::document("library/brdf/split_sum");
+  double worst_total = 0, worst_bias = 0, worst_scale = 0;
+  for (const auto& row : table("ggx_split_sum")) {
+    const std::vector<float> found =
+        split({static_cast<float>(row.at("n_dot_v")), static_cast<float>(row.at("alpha"))});
+    const double scale = static_cast<double>(found[0]), bias = static_cast<double>(found[1]);
+    worst_total = std::max(worst_total, std::abs(scale + bias - row.at("scale") - row.at("bias")));
+    worst_bias = std::max(worst_bias, std::abs(bias - row.at("bias")));
+    worst_scale = std::max(worst_scale, std::abs(scale - row.at("scale")));
+  }
+  std::printf("    scale + bias %.5f, bias %.5f, scale %.5f\n", worst_total, worst_bias, worst_scale);
+  EXPECT_LT(worst_total, 0.0084);
+  EXPECT_LT(worst_bias, 0.0144);
+  EXPECT_LT(worst_scale, 0.021);
+}
+
 TEST(Brdf, SmithMaskingIsNearTheReferenceDownToTheHorizon) {
   for (const char* name : {"library/brdf/smith_g_correlated", "library/brdf/smith_g_separable"}) {
     const Subject g = Subject::document(name);

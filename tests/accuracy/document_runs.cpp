@@ -78,6 +78,10 @@ void Surroundings::define(ir::Module& module, const interface::Interface& interf
                             k.load3(FrameBuffer::lights, record, 3).value});
       continue;
     }
+    if (function.host == interface::Host::environment || function.host == interface::Host::irradiance) {
+      k.b.finish(std::array{k.load3(FrameBuffer::layers, k.constant(0), 0).value});
+      continue;
+    }
     const Int pixel = (k.integer(0) * Int(7) + k.integer(1) * Int(13)) & Int(pixels - 1);
     if (function.host == interface::Host::depth)
       k.b.finish(std::array{k.load(FrameBuffer::objects, pixel).value});

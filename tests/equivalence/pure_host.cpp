@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* glsl_host = R"(
 int isoshade_light_count() { return 2; }
+bool isoshade_has_environment() { return true; }
 float isoshade_time() { return 1.25; }
 vec3 isoshade_world_from_object(int column) { return vec3(column == 0, column == 1, 2.0 * float(column == 2) + 0.5 * float(column == 3)); }
 vec3 isoshade_object_from_world(int column) { return vec3(column == 0, column == 1, 0.5 * float(column == 2) + 0.5 * float(column == 3)); }
@@ -44,6 +45,18 @@ isoshade_Light isoshade_light_change(int index, vec3 position, vec3 change) {
   return isoshade_Light(direction, color);
 }
 )";
+constexpr const char* glsl_environment = R"(
+vec3 isoshade_environment(vec3 direction, float roughness) {
+  precise vec3 radiance = vec3(abs(direction.x), roughness, abs(direction.z) * 0.5);
+  return radiance;
+}
+)";
+constexpr const char* glsl_irradiance = R"(
+vec3 isoshade_irradiance(vec3 direction) {
+  precise vec3 radiance = vec3(abs(direction.y) * 0.5, 0.25, abs(direction.x));
+  return radiance;
+}
+)";
 constexpr const char* glsl_texel = R"(
 vec4 isoshade_texel(int image, int x, int y) { return vec4(float(x) * 0.125, float(y) * 0.25, float(image) * 0.5, 1.0); }
 )";
@@ -60,6 +73,7 @@ float isoshade_depth(int x, int y) { return float(x) * 0.125; }
 const char* const cpp_host = R"(
 struct Host {
   int light_count() const { return 2; }
+  bool has_environment() const { return true; }
   float time() const { return 1.25f; }
   vec3<float> world_from_object(int c) const { return {float(c == 0), float(c == 1), 2.0f * float(c == 2) + 0.5f * float(c == 3)}; }
   vec3<float> object_from_world(int c) const { return {float(c == 0), float(c == 1), 0.5f * float(c == 2) + 0.5f * float(c == 3)}; }
@@ -81,6 +95,14 @@ struct Host {
   template <class F>
   isoshade::Light<F> light_change(int, vec3<F>, vec3<F> change) const {
     return {{change.y * 0.5f, F(0.0f), change.x}, {F(0.0f), change.z * 0.5f, F(0.0f)}};
+  }
+  template <class F>
+  vec3<F> environment(vec3<F> direction, F roughness) const {
+    return {abs(direction.x), roughness, abs(direction.z) * 0.5f};
+  }
+  template <class F>
+  vec3<F> irradiance(vec3<F> direction) const {
+    return {abs(direction.y) * 0.5f, F(0.25f), abs(direction.x)};
   }
   template <class I>
   vec4<float_of<I>> texel(I image, I x, I y) const {
@@ -125,6 +147,8 @@ std::string glsl_host_of(const std::string& pure) {
   };
   if (asks("LIGHT")) text += glsl_light;
   if (asks("LIGHT_CHANGE")) text += glsl_light_change;
+  if (asks("ENVIRONMENT")) text += glsl_environment;
+  if (asks("IRRADIANCE")) text += glsl_irradiance;
   if (asks("TEXEL")) text += glsl_texel;
   if (asks("IMAGE_SIZE")) text += glsl_image_size;
   if (asks("PICTURE") || asks("DEPTH")) text += glsl_pictures;
@@ -146,6 +170,16 @@ void define_host(ir::Module& module, const std::map<std::string, interface::Host
         k.b.finish(std::array{
             Vec3(at[1] * Float(0.5f), number(0) + Float(0.5f), at[0]).value,
             Vec3(number(0) + Float(1.0f), at[2] * Float(0.5f), Float(k.b, k.b.constant(0.75f))).value});
+        break;
+      }
+      case interface::HostCall::environment: {
+        const Vec3 at = k.vector3(0);
+        k.b.finish(std::array{Vec3(abs(at[0]), Float(k.b, k.b.parameter(1)), abs(at[2]) * Float(0.5f)).value});
+        break;
+      }
+      case interface::HostCall::irradiance: {
+        const Vec3 at = k.vector3(0);
+        k.b.finish(std::array{Vec3(abs(at[1]) * Float(0.5f), Float(k.b, k.b.constant(0.25f)), abs(at[0])).value});
         break;
       }
       case interface::HostCall::texel:
@@ -179,6 +213,7 @@ ir::ValueId answer(lower::Kernel& k, const interface::place::Host& asked) {
   const auto is = [](bool holds) { return holds ? 1.0f : 0.0f; };
   switch (asked.call) {
     case light_count: return k.b.constant(2);
+    case has_environment: return k.b.constant(true);
     case time: return k.b.constant(1.25f);
     case world_from_object: return vector({is(c == 0), is(c == 1), 2.0f * is(c == 2) + 0.5f * is(c == 3)});
     case object_from_world: return vector({is(c == 0), is(c == 1), 0.5f * is(c == 2) + 0.5f * is(c == 3)});
@@ -195,6 +230,8 @@ ir::ValueId answer(lower::Kernel& k, const interface::place::Host& asked) {
     case depth_denominator: return vector({0.0f, 1.0f});
     case light:
     case light_change:
+    case environment:
+    case irradiance:
     case texel:
     case image_size:
     case picture:

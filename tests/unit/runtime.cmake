@@ -1,5 +1,6 @@
 isoshade_test(scene_test
   SOURCES
+    unit/scene_environment_test.cpp
     unit/scene_exr_test.cpp
     unit/scene_format_test.cpp
     unit/scene_gltf_test.cpp
@@ -25,6 +26,11 @@ isoshade_test(compare_test
     unit/compare_report_test.cpp
     unit/compare_test.cpp
   LINKS isoshade_compare)
+
+isoshade_test(environment_test
+  SOURCES unit/environment_maps_test.cpp
+  LINKS isoshade_environment)
+target_compile_definitions(environment_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
 isoshade_test(render_test
   SOURCES

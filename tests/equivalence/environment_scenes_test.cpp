@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Environments: the same bits on every backend, in effects, in functions that they call, and in posts.
+#include "backends/cpu/lane_count.h"
+#include "runtime/scene/image_file.h"
+#include "tests/equivalence/scenes.h"
+#include "tests/unit/gltf_files.h"
+
+namespace isoshade::equivalence {
+namespace {
+
+class EnvironmentScenes : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::vector<float> texels, depth(32 * 16);
+    for (int i = 0; i < 32 * 16; ++i)
+      for (const float value : {static_cast<float>(i % 7), static_cast<float>(i % 32) * 0.1f, i == 77 ? 900.0f : 0.5f, 1.0f})
+        texels.push_back(value);
+    folder_.write("light.exr", scene::exr({32, 16, texels, depth}));
+    folder_.write("reflected.json", R"({"isoshade": 1, "function": "reflected",
+      "inputs": {"n": {"type": "vector3"}, "r": {"type": "float"}},
+      "nodes": {"v": {"type": "viewdirection"}, "away": {"type": "multiply", "in1": "v", "in2": -1},
+        "d": {"type": "reflect", "in": "away", "normal": "n"},
+        "e": {"type": "environment", "direction": "d", "roughness": "r", "default": [1, 0, 1]}},
+      "outputs": {"out": "e", "exists": "e.exists"}})");
+    folder_.write("shown.json", R"({"isoshade": 1, "effect": "shown", "nodes": {
+      "n": {"type": "normal"}, "uv": {"type": "texcoord"},
+      "mirror": {"type": "reflected.json", "n": "n", "r": "uv.y"},
+      "i": {"type": "irradiance", "default": [0, 1, 0]},
+      "sum": {"type": "add", "in1": "mirror", "in2": "i"},
+      "color": {"type": "ifequal", "value1": "mirror.exists", "value2": true, "in1": "sum", "in2": "i"}},
+      "passes": [{"name": "base", "color": "color"}]})");
+    folder_.write("behind.json", R"({"isoshade": 1, "post": "behind", "nodes": {
+      "c": {"type": "scenecolor"}, "ray": {"type": "viewray"},
+      "e": {"type": "environment", "direction": "ray", "roughness": 0.1},
+      "open": {"type": "subtract", "in1": 1, "in2": "c.a"},
+      "b": {"type": "multiply", "in1": "e", "in2": "open"},
+      "color": {"type": "add", "in1": "b", "in2": "c.rgb"}}, "outputs": {"color": "color"}})");
+  }
+
+  render::Plan plan_of(const std::string& environment, int samples) const {
+    return plan(folder_.write("scene.json", R"({"isoshade": 1, "scene": "s", "samples": )" + std::to_string(samples) +
+                                  R"(, "background": [0, 0, 0, 0],
+      "camera": {"position": [0, 1, 4], "target": [0, 0, 0]},)" + environment + R"(
+      "objects": {"ball": {"mesh": "sphere", "effect": "shown.json"}},
+      "posts": [{"name": "behind", "effect": "behind.json"}]})"), 45, 31);
+  }
+
+  static backends::Image draw_everywhere(const render::Plan& plan, const std::string& what) {
+    const backends::Image image = draw(plan, *interpreter::create());
+    for (const char* lanes : {"1", "4", "8", "16", "8x2", "16x2"})
+      if (cpu::lane_count(lanes)->available())
+        expect_identical(image, draw(plan, *cpu_backend(lanes)), what + " lanes " + lanes);
+#ifdef ISOSHADE_VULKAN
+    const auto vulkan = vulkan_backend();
+    expect_identical(image, draw(plan, *vulkan), what + " vulkan");
+    expect_identical(image, draw(plan, *vulkan), what + " vulkan again");
+#endif
+    return image;
+  }
+
+  testing::Folder folder_;
+};
+
+constexpr const char* from_file = R"("environment": {"file": "light.exr", "rotate": 20, "intensity": 1.5},)";
+
+TEST_F(EnvironmentScenes, AreIdenticalOnEveryBackendAndSampleCount) {
+  for (const int samples : {1, 4, 16}) {
+    const backends::Image image = draw_everywhere(plan_of(from_file, samples), std::to_string(samples));
+    // The corner shows the environment, and so does the ball.
+    EXPECT_GT(image.rgba[0] + image.rgba[1] + image.rgba[2], 0.1f);
+    EXPECT_GT(image.rgba[4 * (15 * 45 + 22)], 0);
+  }
+}
+
+TEST_F(EnvironmentScenes, WithoutOneNodesGiveTheirDefaults) {
+  const backends::Image image = draw_everywhere(plan_of("", 1), "without");
+  const float* const ball = &image.rgba[4 * (15 * 45 + 22)];
+  EXPECT_EQ((std::vector<float>{ball[0], ball[1], ball[2]}), (std::vector<float>{0, 1, 0}));
+  EXPECT_EQ(image.rgba[0] + image.rgba[1] + image.rgba[2], 0);
+}
+
+TEST_F(EnvironmentScenes, ASkyIsIdenticalOnEveryBackend) {
+  draw_everywhere(plan_of(R"("environment": {"sky": {"sun": {"direction": [0, -1, -1], "intensity": 3}}},)", 1), "sky");
+}
+
+}  // namespace
+}  // namespace isoshade::equivalence
