@@ -39,6 +39,8 @@ struct Draw {
   interface::PassState state;
   bool mirrored = false;  ///< by its transform: its front faces are those whose vertices turn clockwise
   bool cutout = false;    ///< drawn only where the cut-out of its pixel program holds
+  /// Blended by its state: its pixel program is of Stage::blend. In a view all such draws come last.
+  bool blended = false;
 };
 
 /// What a view is drawn into.
@@ -55,7 +57,9 @@ struct View {
   Target target;
   std::vector<float> words;   ///< lower::view_word: the camera, then the matrices of the draws
   std::vector<Draw> draws;    ///< in the order in which they are drawn
-  std::vector<size_t> reads;  ///< earlier views (indices into Frame::views) whose targets its programs read
+  /// Earlier views (indices into Frame::views) whose targets its programs read; `nothing` leaves the place of one free.
+  std::vector<size_t> reads;
+  static constexpr size_t nothing = ~size_t{0};
   float background[4] = {0, 0, 0, 0};
   raster::DepthBias depth_bias = {};
 };
@@ -76,7 +80,7 @@ struct Window {
 struct Frame {
   std::vector<const driver::Program*> programs;
   static constexpr uint32_t no_program = ~0u;
-  /// For each program, if it is a pixel program: the one of Stage::cutout that belongs to it, or no_program. Empty if no
+  /// For each program, if it is a pixel program or one of Stage::blend: the one of Stage::cutout that belongs to it, or no_program. Empty if no
   /// pixel program has any.
   std::vector<uint32_t> cutouts;
   std::vector<float> vertices;
@@ -120,7 +124,11 @@ class ViewRenderer {
  public:
   virtual ~ViewRenderer() = default;
   /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order, in pixels of the target) over the
-  /// background, those with triangle_flag::cutout where their cut-out holds, and runs the pixel program once for each pixel of the window that they cover, if the target has color.
+  /// background, those with triangle_flag::cutout where their cut-out holds, and runs the pixel program once for each
+  /// pixel of the window that they cover, if the target has color. Then it draws those with triangle_flag::blended, which
+  /// come last and only if the target has color, one after the other: where one covers a pixel and passes the depth test,
+  /// its program of Stage::blend makes the new color of the old one, and without triangle_flag::keeps_depth the pixel gets
+  /// its depth.
   /// `image` gets the size of the window. Its bits do not depend on how a view is divided into windows.
   virtual bool draw(const Window& window, std::span<const int32_t> triangles, Image& image,
                     support::Diagnostics& diagnostics) = 0;

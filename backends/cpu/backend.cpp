@@ -208,7 +208,8 @@ bool CpuViewRenderer::draw(const backends::Window& window, std::span<const int32
   const size_t count = triangles.size() / lower::triangle_word::stride;
   const raster::TileGrid grid(raster::box_at(window.x, window.y, window.width, window.height));
 
-  DrawJob job{pass_.frame, pass_.view, grid, triangles, buffers_.views(), kernels_, {}, image};
+  const int opaque = raster::opaque_count(triangles.data(), static_cast<int>(count));
+  DrawJob job{pass_.frame, pass_.view, grid, triangles, opaque, buffers_.views(), kernels_, {}, image};
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
   job.bins.resize(parts);
   backend_.workers_.for_each(parts, [&](size_t part) {

@@ -70,6 +70,10 @@ std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stag
       function = dlsym(library, "isoshade_pixel");
       kernel->pixel = reinterpret_cast<PixelFunction*>(function);
       break;
+    case driver::Stage::blend:
+      function = dlsym(library, "isoshade_blend");
+      kernel->blend = reinterpret_cast<BlendFunction*>(function);
+      break;
     case driver::Stage::eval:
       function = dlsym(library, "isoshade_eval");
       kernel->eval = reinterpret_cast<EvalFunction*>(function);

@@ -27,6 +27,8 @@ using VertexFunction = void(const BufferView* buffers, int object, int projected
                             float* clip);
 using PixelFunction = void(const BufferView* buffers, int object, int light_count, int count, const int* x,
                            const int* y, const int* triangle, float* rgba);
+using BlendFunction = void(const BufferView* buffers, int object, int light_count, int count, const int* x,
+                           const int* y, const int* triangle, float* rgba);
 using CutoutFunction = void(const BufferView* buffers, int object, int count, const int* x, const int* y,
                             const int* triangle, int* drawn);
 using PostFunction = void(const BufferView* buffers, int first, int y, int count, float* rgba);
@@ -46,6 +48,7 @@ class Kernel {
   VertexFunction* vertex = nullptr;
   CutoutFunction* cutout = nullptr;
   PixelFunction* pixel = nullptr;
+  BlendFunction* blend = nullptr;
   EvalFunction* eval = nullptr;
   PostFunction* post = nullptr;
 

@@ -24,6 +24,12 @@ size_t place_in_image(const DrawJob& job, int x, int y) {
          static_cast<size_t>(x - area.x0);
 }
 
+/// The triangles of a tile's list that are opaque.
+std::span<const int32_t> opaque_of(const DrawJob& job, std::span<const int32_t> listed) {
+  if (listed.empty() || listed.back() < job.opaque) return listed;
+  return listed.first(static_cast<size_t>(std::ranges::lower_bound(listed, job.opaque) - listed.begin()));
+}
+
 void fill_background(DrawJob& job, int x, int y, int width, int height) {
   for (int row = 0; row < height; ++row) {
     const size_t first = place_in_image(job, x, y + row);
@@ -43,7 +49,15 @@ void TilePainter::paint(DrawJob& job, int tile) {
   const int width = std::min(tile_size, job.grid.area.x1 + 1 - x_);
   const int height = std::min(tile_size, job.grid.area.y1 + 1 - y_);
   collect(job, tile);
-  if (runs_.empty()) return fill_background(job, x_, y_, width, height);
+  if (runs_.empty())
+    fill_background(job, x_, y_, width, height);
+  else
+    paint_opaque(job, width, height);
+  if (static_cast<size_t>(job.opaque) * lower::triangle_word::stride < job.triangles.size())
+    blend(job, tile, width, height);
+}
+
+void TilePainter::paint_opaque(DrawJob& job, int width, int height) {
   write_depth(job, width, height);
   if (!job.view.target.has_color) return;
   if (width < tile_size || height < tile_size)
@@ -58,7 +72,7 @@ void TilePainter::paint(DrawJob& job, int tile) {
 void TilePainter::collect(const DrawJob& job, int tile) {
   runs_.clear();
   for (const raster::Bins& bins : job.bins) {
-    const std::span<const int32_t> listed = bins.of(tile);
+    const std::span<const int32_t> listed = opaque_of(job, bins.of(tile));
     if (listed.empty()) continue;
     if (runs_.empty()) tile_.clear();
     rasterize(job, listed);
@@ -98,6 +112,75 @@ void TilePainter::cut_out(const DrawJob& job, std::span<const int32_t> listed, c
     if (found.count > 0) kernel.cutout(job.buffers, object, found.count, found.x, found.y, found.triangle, found.drawn);
     raster::draw_candidates(found, first.over(), tile_);
     listed = listed.subspan(static_cast<size_t>(taken));
+  }
+}
+
+void TilePainter::blend(DrawJob& job, int tile, int width, int height) {
+  const int32_t* const triangles = job.triangles.data();
+  bool is_clear = !runs_.empty(), changes_depth = false;
+  for (const raster::Bins& bins : job.bins) {
+    std::span<const int32_t> listed = bins.of(tile).subspan(opaque_of(job, bins.of(tile)).size());
+    if (!listed.empty() && !std::exchange(is_clear, true)) tile_.clear();
+    while (!listed.empty()) {
+      const raster::Triangle first = raster::triangle_at(triangles, listed.front());
+      size_t count = 1;
+      while (count < listed.size() && raster::triangle_at(triangles, listed[count]).object() == first.object()) ++count;
+      blend_object(job, listed.first(count), first);
+      changes_depth = changes_depth || !first.keeps_depth();
+      listed = listed.subspan(count);
+    }
+  }
+  if (changes_depth) write_depth(job, width, height);
+}
+
+void TilePainter::blend_object(DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first) {
+  if (!candidates_) candidates_ = std::make_unique<raster::Candidates>();
+  raster::Candidates& found = *candidates_;
+  const int object = first.object();
+  while (!listed.empty()) {
+    const int taken =
+        raster::list_candidates(job.triangles.data(), listed, x_, y_, job.grid.area, tile_, found);
+    if (!first.cutout())
+      std::fill_n(found.drawn, found.count, 1);
+    else if (found.count > 0)
+      job.kernels[backends::cutout_program_of(job.frame, object)]->cutout(job.buffers, object, found.count, found.x,
+                                                                          found.y, found.triangle, found.drawn);
+    blend_candidates(job, found, first);
+    listed = listed.subspan(static_cast<size_t>(taken));
+  }
+}
+
+// The candidates of a pixel are blended in their order: the first of each pixel, then the second of each, and so on.
+void TilePainter::blend_candidates(DrawJob& job, const raster::Candidates& found, const raster::Triangle& first) {
+  size_t count = 0;
+  for (int i = 0; i < found.count; ++i) {
+    if (found.drawn[i] == 0) continue;
+    const auto layer = static_cast<size_t>(layers_at_[found.place[i]]++);
+    if (layer == count && ++count > layers_.size()) layers_.emplace_back();
+    layers_[layer].push_back(i);
+  }
+  for (int i = 0; i < found.count; ++i) layers_at_[found.place[i]] = 0;
+  const Kernel& kernel = *job.kernels[backends::pixel_program_of(job.frame, first.object())];
+  for (std::vector<int>& layer : std::span(layers_).first(count)) {
+    int next = 0;
+    for (const int i : layer) {
+      const int place = found.place[i];
+      if (!first.keeps_depth()) {
+        // A candidate before this one may have been drawn there.
+        if (!first.over() && !(found.depth[i] > tile_.depth[place])) continue;
+        tile_.depth[place] = found.depth[i];
+      }
+      pixel_x_[next] = found.x[i];
+      pixel_y_[next] = found.y[i];
+      pixel_triangle_[next] = found.triangle[i];
+      std::copy_n(job.image.rgba.data() + 4 * place_in_image(job, found.x[i], found.y[i]), 4, color_ + 4 * next);
+      ++next;
+    }
+    layer.clear();
+    if (next == 0) continue;
+    kernel.blend(job.buffers, first.object(), job.frame.light_count, next, pixel_x_, pixel_y_, pixel_triangle_, color_);
+    for (int i = 0; i < next; ++i)
+      std::copy_n(color_ + 4 * i, 4, job.image.rgba.data() + 4 * place_in_image(job, pixel_x_[i], pixel_y_[i]));
   }
 }
 

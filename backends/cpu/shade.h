@@ -19,6 +19,7 @@ struct DrawJob {
   const backends::View& view;
   raster::TileGrid grid;  ///< over the window
   std::span<const int32_t> triangles;
+  int opaque;  ///< how many of them; those that are blended follow
   const BufferView* buffers;
   /// One for each program of the frame; null for those that no triangle needs.
   std::span<const Kernel* const> kernels;
@@ -45,6 +46,12 @@ class TilePainter {
   };
 
   void collect(const DrawJob& job, int tile);
+  void paint_opaque(DrawJob& job, int width, int height);
+  void blend(DrawJob& job, int tile, int width, int height);
+  /// Draws blended triangles of one object.
+  void blend_object(DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first);
+  /// Blends the candidates that are drawn.
+  void blend_candidates(DrawJob& job, const raster::Candidates& found, const raster::Triangle& first);
   void rasterize(const DrawJob& job, std::span<const int32_t> listed);
   /// Draws triangles of one object that has a cut-out.
   void cut_out(const DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first);
@@ -60,12 +67,14 @@ class TilePainter {
   std::unique_ptr<raster::Candidates> candidates_;  ///< made when a tile first has a cut-out
   std::vector<Run> runs_;
   std::vector<Segment> segments_;
+  std::vector<std::vector<int>> layers_;  ///< candidates, a pixel at most once in each
 
   // The visible pixels, ordered by run.
   int pixel_x_[raster::tile_pixels], pixel_y_[raster::tile_pixels], pixel_triangle_[raster::tile_pixels];
   alignas(64) float color_[4 * raster::tile_pixels];
   /// The index in color_ of each visible pixel of the tile.
   int place_[raster::tile_pixels];
+  int layers_at_[raster::tile_pixels] = {};  ///< of each pixel in storage: used and left at 0 by blend_candidates()
 };
 
 }  // namespace isoshade::cpu

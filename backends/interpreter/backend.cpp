@@ -81,10 +81,12 @@ class StageRunner {
       : machine_(make(program)), entry_(program.entry) {
     for (uint32_t i = 0; i < program.module.buffers.size(); ++i) machine_->bind(i, buffers[i]);
   }
-  void run(std::initializer_list<int> arguments, std::span<uint32_t> results) {
-    std::array<uint32_t, 5> words;
-    std::ranges::transform(arguments, words.begin(), [](int a) { return static_cast<uint32_t>(a); });
-    machine_->run(entry_, std::span(words).first(arguments.size()), results);
+  /// `color`: the words of a further argument.
+  void run(std::initializer_list<int> arguments, std::span<uint32_t> results, std::span<const uint32_t> color = {}) {
+    std::array<uint32_t, 9> words;
+    const auto end = std::ranges::transform(arguments, words.begin(), [](int a) { return static_cast<uint32_t>(a); });
+    std::ranges::copy(color, end.out);
+    machine_->run(entry_, std::span(words).first(arguments.size() + color.size()), results);
   }
 
  private:
@@ -119,8 +121,11 @@ class InterpreterViewRenderer final : public backends::ViewRenderer {
       cutouts.at(backends::cutout_program_of(frame, object)).run({x, y, triangle, object}, result);
       return result[0] != 0;
     };
+    const auto count = static_cast<int>(triangles.size()) / lower::triangle_word::stride;
+    const int opaque = raster::opaque_count(triangles.data(), count);
     std::vector<int32_t> visible(image.depth.size());
-    raster::rasterize_reference(triangles, raster::box_at(window.x, window.y, window.width, window.height),
+    raster::rasterize_reference(triangles.first(static_cast<size_t>(opaque) * lower::triangle_word::stride),
+                                raster::box_at(window.x, window.y, window.width, window.height),
                                 visible, image.depth, is_drawn);
     if (!pass_.view.target.has_color) return true;
 
@@ -141,10 +146,37 @@ class InterpreterViewRenderer final : public backends::ViewRenderer {
       pixel.run({x, y, visible[i], object, frame.light_count}, result);
       std::ranges::transform(result, color, [](uint32_t bits) { return std::bit_cast<float>(bits); });
     }
+    for (int i = opaque; i < count; ++i) {
+      const raster::Triangle triangle = raster::triangle_at(triangles.data(), i);
+      const size_t program = backends::pixel_program_of(frame, triangle.object());
+      if (!pixels.contains(program) && !is_within_limits(*frame.programs[program], diagnostics)) return false;
+      StageRunner& runner =
+          pixels.try_emplace(program, make_, *frame.programs[program], buffers_).first->second;
+      blend(window, triangle, i, runner, is_drawn, image);
+    }
     return true;
   }
 
  private:
+  /// Draws a triangle that is blended.
+  void blend(const backends::Window& window, const raster::Triangle& triangle, int number, StageRunner& runner,
+             const raster::IsDrawn& is_drawn, Image& image) const {
+    const raster::Box area = raster::box_at(window.x, window.y, window.width, window.height);
+    raster::for_each_covered(triangle.words, area, [&](int x, int y, float nearness) {
+      const size_t place = static_cast<size_t>(y - window.y) * static_cast<size_t>(window.width) +
+                           static_cast<size_t>(x - window.x);
+      if (!triangle.over() && !(nearness > image.depth[place])) return;
+      if (triangle.cutout() && !is_drawn(number, x, y)) return;
+      float* color = image.rgba.data() + 4 * place;
+      std::array<uint32_t, 4> backdrop;
+      std::array<uint32_t, 5> result;  // color, depth
+      for (size_t c = 0; c < 4; ++c) backdrop[c] = std::bit_cast<uint32_t>(color[c]);
+      runner.run({x, y, number, triangle.object(), pass_.frame.light_count}, result, backdrop);
+      for (size_t c = 0; c < 4; ++c) color[c] = std::bit_cast<float>(result[c]);
+      if (!triangle.keeps_depth()) image.depth[place] = nearness;
+    });
+  }
+
   const MakeMachine& make_;
   const ViewPass pass_;
   Buffers buffers_;

@@ -20,7 +20,12 @@ class EvaluatingMachine final : public interpreter::Machine {
   void bind(uint32_t buffer, std::span<const uint32_t> words) override { evaluator_.bind(buffer, words); }
   void run(uint32_t function, std::span<const uint32_t> arguments, std::span<uint32_t> results) override {
     arguments_.resize(arguments.size());
-    for (size_t i = 0; i < arguments.size(); ++i) arguments_[i].word = arguments[i];  // of kernels: ints
+    size_t word = 0;
+    for (const ir::Parameter& parameter : module_.functions[function].parameters)
+      for (uint32_t i = 0; i < parameter.type.width; ++i, ++word) {
+        arguments_[word].word = arguments[word];
+        if (parameter.type.is_float()) arguments_[word].number = Real(std::bit_cast<float>(arguments[word]));
+      }
     results_.resize(results.size());
     evaluator_.run(function, arguments_, results_);
     size_t next = 0;

@@ -37,7 +37,7 @@ vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device) {
     bindings[i] = vk::DescriptorSetLayoutBinding{
         .binding = i,
         .descriptorType =
-            i == ids_binding ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageBuffer,
+            is_image_binding(i) ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageBuffer,
         .descriptorCount = 1,
         .stageFlags = Stage::eVertex | Stage::eFragment};
   return {device, vk::DescriptorSetLayoutCreateInfo{.bindingCount = static_cast<uint32_t>(bindings.size()),
@@ -55,8 +55,8 @@ vk::raii::PipelineLayout make_layout(const vk::raii::Device& device,
 }
 
 vk::raii::DescriptorPool make_descriptor_pool(const vk::raii::Device& device) {
-  const std::array sizes = {vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, binding_count - 1},
-                            vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, 1}};
+  const std::array sizes = {vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, binding_count - image_bindings},
+                            vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, image_bindings}};
   return {device, vk::DescriptorPoolCreateInfo{.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                                .maxSets = 1,
                                                .poolSizeCount = static_cast<uint32_t>(sizes.size()),
@@ -89,6 +89,8 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index)
                       .front());
   sampler = vk::raii::Sampler(
       device, vk::SamplerCreateInfo{.magFilter = vk::Filter::eNearest, .minFilter = vk::Filter::eNearest});
+  samples_passed =
+      vk::raii::QueryPool(device, {.queryType = vk::QueryType::eOcclusion, .queryCount = 1});
   for (Buffer& buffer : buffers) reserve(buffer, smallest_buffer, {});
   reserve(zero, smallest_buffer, {});
   std::memset(zero.data, 0, smallest_buffer);
@@ -159,8 +161,9 @@ void Device::Impl::reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags
   buffer = make_buffer(bytes, preferred);
 }
 
-void Device::Impl::write_descriptors() {
+void Device::Impl::write_descriptors(const ImagesRead& images) {
   std::array<vk::DescriptorBufferInfo, binding_count> buffer_infos;
+  std::array<vk::DescriptorImageInfo, binding_count> image_infos;
   std::array<vk::WriteDescriptorSet, binding_count> writes;
   const auto write_buffer = [&](uint32_t i, const Buffer& buffer) {
     buffer_infos[i] = vk::DescriptorBufferInfo{.buffer = *buffer.buffer, .range = VK_WHOLE_SIZE};
@@ -170,16 +173,21 @@ void Device::Impl::write_descriptors() {
                                        .descriptorType = vk::DescriptorType::eStorageBuffer,
                                        .pBufferInfo = &buffer_infos[i]};
   };
+  const auto write_image = [&](uint32_t i, vk::ImageView view) {
+    image_infos[i] = vk::DescriptorImageInfo{
+        .sampler = *sampler, .imageView = view, .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
+    writes[i] = vk::WriteDescriptorSet{.dstSet = *set,
+                                       .dstBinding = i,
+                                       .descriptorCount = 1,
+                                       .descriptorType = vk::DescriptorType::eCombinedImageSampler,
+                                       .pImageInfo = &image_infos[i]};
+  };
   for (uint32_t i = 0; i < storage_bindings; ++i) write_buffer(i, buffers[i]);
   write_buffer(zero_binding, zero);
-  const vk::DescriptorImageInfo ids{.sampler = *sampler,
-                                    .imageView = *attachments.ids.view,
-                                    .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
-  writes[ids_binding] = vk::WriteDescriptorSet{.dstSet = *set,
-                                               .dstBinding = ids_binding,
-                                               .descriptorCount = 1,
-                                               .descriptorType = vk::DescriptorType::eCombinedImageSampler,
-                                               .pImageInfo = &ids};
+  write_image(ids_binding, images.ids);
+  write_image(former_ids_binding, images.former_ids);
+  write_image(former_depth_binding, images.former_depth);
+  write_image(former_color_binding, images.former_color);
   device.updateDescriptorSets(writes, {});
 }
 

@@ -39,6 +39,7 @@ enum class Output : uint8_t {
   buffer,      ///< words at the output binding, by a vertex shader; nothing is rasterised
   visibility,  ///< R32_SINT ids, and D32_SFLOAT depth under the test `>`
   color,       ///< R32G32B32A32_SFLOAT
+  layer,       ///< R32G32B32A32_SFLOAT, and R32_SFLOAT for the depth
   words,       ///< up to 8 of R32G32B32A32_SINT
 };
 
@@ -56,11 +57,16 @@ struct PipelineSource {
 /// A vertex shader that covers every pixel with one triangle.
 const std::string& full_screen_vertex();
 
+/// A fragment shader of Output::layer that copies color and depth of the layer before where a layer has no triangle.
+const std::string& keep_fragment();
+
 /// A vertex shader that draws the triangles of the buffer at their snapped positions; `flat out int triangle` at
 /// location 0. The map from 1/256 pixel to clip space is an exact power of two.
 const std::string& triangle_vertex();
 
 using PipelineIndex = uint32_t;
+
+struct Layers;
 
 /// One draw call of triangles (of points for Output::buffer) inside a rectangle of the view.
 struct Call {
@@ -69,6 +75,17 @@ struct Call {
   uint32_t first_vertex = 0;
   uint32_t vertex_count = 3;
   Window scissor{};
+};
+
+/// What draws triangles that are blended, a layer at a time: each pixel's next triangle, by number, that is not behind
+/// what is there.
+struct Layers {
+  /// Of Output::visibility, glsl::Variant::layer; over all triangles that are blended.
+  std::vector<Call> visibility;
+  /// Of Output::layer: first the one of keep_fragment(), then one for each program of Stage::blend.
+  std::vector<Call> blending;
+  uint32_t first = 0;  ///< the number of the first triangle
+  uint32_t count = 0;  ///< of triangles; at most so many layers are drawn
 };
 
 class Device {
@@ -100,9 +117,9 @@ class Device {
 
   /// Runs `visibility` on ids and depth cleared to 0, then `color` over the background with the ids bound. Fills the
   /// image, which has the size of the window; scissors lie inside the window. An image without color gets depth alone:
-  /// `color` is not run, and no memory is taken for it.
-  void render(std::span<const Call> visibility, std::span<const Call> color, const float (&background)[4],
-              const Window& window, backends::Image& image);
+  /// `color` is not run, and no memory is taken for it. Then draws `layers`, if there are any: needs color.
+  void render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
+              const float (&background)[4], const Window& window, backends::Image& image);
 
   /// Runs a full-screen pipeline of Output::color over rows of an image: `rgba` has 4 floats a pixel, rows top down. The
   /// last row is below max_frame_side().

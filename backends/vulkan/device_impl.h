@@ -16,6 +16,7 @@ namespace isoshade::vulkan {
 inline constexpr vk::Format ids_format = vk::Format::eR32Sint;
 inline constexpr vk::Format depth_format = vk::Format::eD32Sfloat;
 inline constexpr vk::Format color_format = vk::Format::eR32G32B32A32Sfloat;
+inline constexpr vk::Format layer_depth_format = vk::Format::eR32Sfloat;
 inline constexpr vk::Format words_format = vk::Format::eR32G32B32A32Sint;
 
 /// All of an image that has one level and one layer.
@@ -41,14 +42,31 @@ struct Attachment {
   vk::raii::ImageView view{nullptr};
 };
 
+/// Where one layer of triangles that are blended goes. Layers take two of them in turn.
+struct LayerTarget {
+  Attachment own_color, depth;
+  const Attachment* ids = nullptr;
+  const Attachment* color = nullptr;  ///< of the one before: its own, or that of the window
+  vk::raii::Framebuffer visibility{nullptr};
+  vk::raii::Framebuffer blending{nullptr};
+};
+
 /// The attachments of a window; made again when its size changes.
 struct WindowAttachments {
   int width = 0;
   int height = 0;
-  bool has_color = false;  ///< otherwise `color` and `shading` are empty
+  bool has_color = false;   ///< otherwise `color` and `shading` are empty
+  bool has_layers = false;  ///< otherwise all that follows `shading` is empty
   Attachment ids, depth, color;
   vk::raii::Framebuffer visibility{nullptr};
   vk::raii::Framebuffer shading{nullptr};
+  Attachment second_ids, order;  ///< order: the depth by which each pixel keeps the first triangle of a layer
+  std::array<LayerTarget, 2> layers;
+};
+
+/// The images that shaders read. Those that a call does not read may be any.
+struct ImagesRead {
+  vk::ImageView ids, former_ids, former_depth, former_color;
 };
 
 /// The attachments of tables of one record size; grows with the rows.
@@ -74,17 +92,27 @@ struct Device::Impl {
   vk::raii::Pipeline make_pipeline(const PipelineSource& source, std::span<const uint32_t> vertex,
                                    std::span<const uint32_t> fragment);
 
-  void prepare_attachments(int width, int height, bool has_color);
+  void prepare_attachments(int width, int height, bool has_color, bool has_layers = false);
+  void prepare_layers();
+  /// Draws layers over the opaque part of the window that the attachments hold, and returns where the last one is. Calls
+  /// record(commands, call) for each call.
+  template <class Record>
+  const LayerTarget& draw_layers(const Layers& layers, const Record& record);
   TableAttachments& prepare_table(uint32_t attachments, int height);
 
   /// Points the descriptor set at the current buffers. It always writes every descriptor: lavapipe crashes on one that
   /// is not written, even if no shader uses it.
-  void write_descriptors();
+  void write_descriptors(const ImagesRead& images);
   void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
 
-  /// Records, submits and waits. Afterwards the host sees what the device wrote.
+  /// Records, submits and waits. Afterwards the host sees what the device wrote. Shaders read the ids of the window.
   template <class Record>
-  void submit(Record record);
+  void submit(Record record) {
+    const vk::ImageView ids = *attachments.ids.view;
+    submit({ids, ids, ids, ids}, record);
+  }
+  template <class Record>
+  void submit(const ImagesRead& images, Record record);
 
   std::unique_ptr<Instance> instance;
   vk::raii::PhysicalDevice physical;
@@ -103,6 +131,7 @@ struct Device::Impl {
   vk::raii::DescriptorPool descriptor_pool{nullptr};
   vk::raii::DescriptorSet set{nullptr};
   vk::raii::Sampler sampler{nullptr};
+  vk::raii::QueryPool samples_passed{nullptr};  ///< one occlusion query
 
   std::array<Buffer, storage_bindings> buffers;
   Buffer zero;  ///< always 0
@@ -118,8 +147,8 @@ struct Device::Impl {
 };
 
 template <class Record>
-void Device::Impl::submit(Record record) {
-  write_descriptors();
+void Device::Impl::submit(const ImagesRead& images, Record record) {
+  write_descriptors(images);
   commands.reset();
   commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   record(commands);

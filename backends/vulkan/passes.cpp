@@ -2,6 +2,7 @@
 // Recording and reading back: vertex kernels, the passes of a view, full-screen passes, tables.
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "backends/vulkan/device_impl.h"
 #include "compiler/support/assert.h"
@@ -34,6 +35,30 @@ void copy(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image,
       .imageOffset = {from.x, from.y, 0},
       .imageExtent = {static_cast<uint32_t>(from.width), static_cast<uint32_t>(from.height), 1}};
   commands.copyImageToBuffer(*image, vk::ImageLayout::eTransferSrcOptimal, *to.buffer, copy);
+}
+
+/// Changes the layout of an image that nothing else uses meanwhile.
+void change_layout(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format,
+                   vk::ImageLayout from, vk::ImageLayout to) {
+  constexpr auto any = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+  const vk::ImageMemoryBarrier barrier{.srcAccessMask = any,
+                                       .dstAccessMask = any,
+                                       .oldLayout = from,
+                                       .newLayout = to,
+                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .image = *image,
+                                       .subresourceRange = whole(format)};
+  constexpr auto all = vk::PipelineStageFlagBits::eAllCommands;
+  commands.pipelineBarrier(all, all, {}, {}, {}, barrier);
+}
+
+/// From what a render pass leaves to what is copied, and back to what shaders read.
+void begin_copying(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format) {
+  change_layout(commands, image, format, vk::ImageLayout::eShaderReadOnlyOptimal, vk::ImageLayout::eTransferSrcOptimal);
+}
+void end_copying(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format) {
+  change_layout(commands, image, format, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eShaderReadOnlyOptimal);
 }
 
 class PassEncoder {
@@ -87,13 +112,16 @@ void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output
   std::memcpy(output.data(), results.data, output.size_bytes());
 }
 
-void Device::Impl::prepare_attachments(int width, int height, bool has_color) {
+void Device::Impl::prepare_attachments(int width, int height, bool has_color, bool has_layers) {
   WindowAttachments& made = attachments;
-  if (made.width == width && made.height == height && (made.has_color || !has_color)) return;
+  if (made.width == width && made.height == height && (made.has_color || !has_color) &&
+      (made.has_layers || !has_layers))
+    return;
   using Usage = vk::ImageUsageFlagBits;
   made = {};  // first, because both might not fit
   made.ids = make_attachment(ids_format, width, height, Usage::eSampled);
-  made.depth = make_attachment(depth_format, width, height, Usage::eTransferSrc);
+  const vk::ImageUsageFlags copied = has_layers ? Usage::eTransferSrc | Usage::eSampled : Usage::eTransferSrc;
+  made.depth = make_attachment(depth_format, width, height, copied);
   const auto framebuffer = [&](Output output, std::span<const vk::ImageView> views) {
     return vk::raii::Framebuffer(device, {.renderPass = *render_pass(output, 1),
                                           .attachmentCount = static_cast<uint32_t>(views.size()),
@@ -104,21 +132,90 @@ void Device::Impl::prepare_attachments(int width, int height, bool has_color) {
   };
   made.visibility = framebuffer(Output::visibility, std::array{*made.ids.view, *made.depth.view});
   if (has_color) {
-    made.color = make_attachment(color_format, width, height, Usage::eTransferSrc);
+    made.color = make_attachment(color_format, width, height, copied);
     made.shading = framebuffer(Output::color, std::array{*made.color.view});
   }
   made.has_color = has_color;
+  made.has_layers = has_layers;
   made.width = width;
   made.height = height;
+  if (has_layers) prepare_layers();
 }
 
-void Device::render(std::span<const Call> visibility, std::span<const Call> color,
+void Device::Impl::prepare_layers() {
+  using Usage = vk::ImageUsageFlagBits;
+  WindowAttachments& made = attachments;
+  const auto framebuffer = [&](Output output, uint32_t colors, std::span<const vk::ImageView> views) {
+    return vk::raii::Framebuffer(device, {.renderPass = *render_pass(output, colors),
+                                          .attachmentCount = static_cast<uint32_t>(views.size()),
+                                          .pAttachments = views.data(),
+                                          .width = static_cast<uint32_t>(made.width),
+                                          .height = static_cast<uint32_t>(made.height),
+                                          .layers = 1});
+  };
+  const auto attachment = [&](vk::Format format) {
+    return make_attachment(format, made.width, made.height, Usage::eSampled | Usage::eTransferSrc);
+  };
+  made.second_ids = attachment(ids_format);
+  made.order = make_attachment(depth_format, made.width, made.height, {});
+  made.layers[0].own_color = attachment(color_format);
+  for (size_t i = 0; i < 2; ++i) {
+    LayerTarget& layer = made.layers[i];
+    layer.depth = attachment(layer_depth_format);
+    layer.ids = i == 0 ? &made.second_ids : &made.ids;
+    layer.color = i == 0 ? &layer.own_color : &made.color;
+    layer.visibility = framebuffer(Output::visibility, 1, std::array{*layer.ids->view, *made.order.view});
+    layer.blending = framebuffer(Output::layer, 2, std::array{*layer.color->view, *layer.depth.view});
+  }
+}
+
+template <class Record>
+const LayerTarget& Device::Impl::draw_layers(const Layers& layers, const Record& record) {
+  const WindowAttachments& made = attachments;
+  const vk::Rect2D all = area(made.width, made.height);
+  const LayerTarget* former = nullptr;
+  for (uint32_t number = 0; number <= layers.count; ++number) {
+    const LayerTarget& layer = made.layers[number % 2];
+    const ImagesRead read{*layer.ids->view, *(former == nullptr ? made.ids : *former->ids).view,
+                          *(former == nullptr ? made.depth : former->depth).view,
+                          *(former == nullptr ? made.color : *former->color).view};
+    submit(read, [&](const vk::raii::CommandBuffer& commands) {
+      if (former == nullptr) {
+        end_copying(commands, made.depth.image, depth_format);
+        end_copying(commands, made.color.image, color_format);
+      }
+      commands.resetQueryPool(*samples_passed, 0, 1);
+      {
+        const std::array<vk::ClearValue, 2> nothing{};
+        const PassEncoder pass(commands, render_pass(Output::visibility, 1), layer.visibility, all, nothing);
+        commands.beginQuery(*samples_passed, 0, {});
+        for (Call call : layers.visibility) {
+          call.push.first = former == nullptr ? static_cast<int32_t>(layers.first) : -1;
+          record(commands, call);
+        }
+        commands.endQuery(*samples_passed, 0);
+      }
+      const std::array<vk::ClearValue, 2> nothing{};
+      const PassEncoder pass(commands, render_pass(Output::layer, 2), layer.blending, all, nothing);
+      for (const Call& call : layers.blending) record(commands, call);
+    });
+    former = &layer;
+    const auto [result, passed] = samples_passed.getResult<uint64_t>(
+        0, 1, sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not count the pixels of a layer");
+    if (passed == 0) break;
+  }
+  return *former;
+}
+
+void Device::render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
                     const float (&background)[4], const Window& window, backends::Image& image) {
   const int width = window.width, height = window.height;
   const bool has_color = !image.rgba.empty();
   const int margin = window.x > 0 || window.y > 0 ? margin_of_windows : 0;
   const int origin_x = window.x - margin, origin_y = window.y - margin;
-  impl_->prepare_attachments(width + margin, height + margin, has_color);
+  const bool has_layers = layers.count > 0;
+  impl_->prepare_attachments(width + margin, height + margin, has_color, has_layers);
   const WindowAttachments& attachments = impl_->attachments;
   const vk::Rect2D all = area(attachments.width, attachments.height);
   const auto record = [&](const vk::raii::CommandBuffer& commands, Call call) {
@@ -135,25 +232,39 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
   impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
                  vk::MemoryPropertyFlagBits::eHostCached);
 
+  const auto draw_opaque = [&](const vk::raii::CommandBuffer& commands) {
+    {
+      const std::array<vk::ClearValue, 2> nothing{};
+      const PassEncoder pass(commands, impl_->render_pass(Output::visibility, 1), attachments.visibility, all,
+                             nothing);
+      for (const Call& call : visibility) record(commands, call);
+    }
+    if (!has_color) return;
+    const vk::ClearValue backdrop{
+        vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
+    const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading, all, {&backdrop, 1});
+    for (const Call& call : color) record(commands, call);
+  };
+  const LayerTarget* last = nullptr;
+  if (has_layers) {
+    impl_->submit(draw_opaque);
+    last = &impl_->draw_layers(layers, record);
+  }
+  const Attachment& drawn_color = last == nullptr ? attachments.color : *last->color;
+  const Attachment& drawn_depth = last == nullptr ? attachments.depth : last->depth;
+  const vk::Format drawn_depth_format = last == nullptr ? depth_format : layer_depth_format;
+
   for (int first = 0; first < height; first += band) {
     const int rows = std::min(band, height - first);
     impl_->submit([&](const vk::raii::CommandBuffer& commands) {
-      if (first == 0) {
-        const std::array<vk::ClearValue, 2> nothing{};
-        const PassEncoder pass(commands, impl_->render_pass(Output::visibility, 1), attachments.visibility,
-                               all, nothing);
-        for (const Call& call : visibility) record(commands, call);
-      }
-      if (first == 0 && has_color) {
-        const vk::ClearValue backdrop{
-            vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
-        const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading, all,
-                               {&backdrop, 1});
-        for (const Call& call : color) record(commands, call);
+      if (first == 0 && !has_layers) draw_opaque(commands);
+      if (first == 0 && has_layers) {
+        begin_copying(commands, drawn_color.image, color_format);
+        begin_copying(commands, drawn_depth.image, drawn_depth_format);
       }
       const Window lines{margin, margin + first, width, rows};
-      if (has_color) copy(commands, attachments.color.image, color_format, lines, impl_->readback, 0);
-      copy(commands, attachments.depth.image, depth_format, lines, impl_->readback, depth_at);
+      if (has_color) copy(commands, drawn_color.image, color_format, lines, impl_->readback, 0);
+      copy(commands, drawn_depth.image, drawn_depth_format, lines, impl_->readback, depth_at);
     });
     const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
     const size_t pixels = static_cast<size_t>(rows) * static_cast<size_t>(width);

@@ -83,6 +83,26 @@ void main() {
   return text;
 }
 
+const std::string& keep_fragment() {
+  const auto image = [](uint32_t binding, std::string_view of) {
+    return "layout(set = 0, binding = " + std::to_string(binding) + ") uniform " + std::string(of) + ";\n";
+  };
+  static const std::string text =
+      glsl::head() + image(ids_binding, "isampler2D ids") + image(former_depth_binding, "sampler2D former_depth") +
+      image(former_color_binding, "sampler2D former_color") + R"(
+layout(location = 0) out vec4 color;
+layout(location = 1) out float depth;
+
+void main() {
+  ivec2 target = ivec2(gl_FragCoord.xy);
+  if (texelFetch(ids, target, 0).x != 0) discard;
+  color = texelFetch(former_color, target, 0);
+  depth = texelFetch(former_depth, target, 0).x;
+}
+)";
+  return text;
+}
+
 const std::string& triangle_vertex() {
   static_assert(guard_band * 256 == 2097152);
   using namespace lower;
@@ -117,6 +137,10 @@ const vk::raii::RenderPass& Device::Impl::render_pass(Output output, uint32_t at
       ends_as = Layout::eShaderReadOnlyOptimal;
       break;
     case Output::color: colors = {color_format}; break;
+    case Output::layer:
+      colors = {color_format, layer_depth_format};
+      ends_as = Layout::eShaderReadOnlyOptimal;
+      break;
     case Output::words: colors.assign(attachments, words_format); break;
   }
   auto made = make_render_pass(device, colors, ends_as, output == Output::visibility);

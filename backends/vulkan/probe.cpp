@@ -158,7 +158,7 @@ bool probe_coverage(Device& device, Probe& probe, support::Diagnostics& diagnost
       const Call shade{.pipeline = *color, .push = {.width = scene.width}, .scissor = part};
       backends::Image image;
       image.resize(part.width, part.height);
-      device.render(calls, {&shade, 1}, background, part, image);
+      device.render(calls, {&shade, 1}, {}, background, part, image);
       const bool whole = image.depth.size() == expected.depth.size();
       const std::string where = std::string("along ") + (along_y ? "y" : "x") + (whole ? "" : ", a part");
       compare_images(cut(expected, part), image, triangles, where, probe);

@@ -64,6 +64,7 @@ std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKi
     const std::string stem = driver::pass_stem(effect->name, pass.name, i);
     stages.add(std::move(pass.vertex), stem + ".vertex", pass.name);
     if (pass.cutout) stages.add(*std::move(pass.cutout), stem + ".cutout", pass.name);
+    if (pass.blend) stages.add(*std::move(pass.blend), stem + ".blend", pass.name);
     stages.add(std::move(pass.pixel), stem + ".pixel", pass.name);
   }
   return stages;
@@ -173,6 +174,7 @@ class Maker {
   bool add_forward(const driver::Shader& shader) {
     return for_each_target([&](const emit::Target& target, bool is_text, const emit::Binary* binary) {
       if (target.forward == nullptr) return cannot(target.name, "forward shaders");
+      if (!driver::can_be_forward(shader, diagnostics_)) return false;
       if (!driver::within_limits(shader, target, options_.division, diagnostics_)) return false;
       for (const driver::ForwardPair& pair : pairs(shader, target)) {
         const std::string stem = pair.stem + std::string(target.forward_infix);

@@ -94,7 +94,7 @@ class NodeResolver {
   bool available(nodes::Availability where) const {
     switch (work_.graph().kind) {
       case DocumentKind::post: return where != nodes::Availability::effects;
-      case DocumentKind::function:
+      case DocumentKind::function: return where != nodes::Availability::posts && where != nodes::Availability::pictures;
       case DocumentKind::effect:
       case DocumentKind::scene: break;
     }

@@ -133,6 +133,79 @@ void check_pixels(Work& work, std::span<const Operand> outputs, const std::strin
   }
 }
 
+bool reads_picture(const Node& node) { return node.row != nullptr && node.row->is<nodes::Fetch>(); }
+
+/// Reports nodes of a pass that read the picture where there is none: only a pass that is always blended is drawn over
+/// what is opaque. `part` names what depends on `outputs`.
+void check_pictures(Work& work, std::span<const Operand> outputs, std::string_view part, const graph::Pass& pass,
+                    std::vector<bool>& reported) {
+  const TypedGraph& typed = work.typed;
+  const bool is_color = part == "color", is_blended = pass.state.blend != interface::Blend::none;
+  if (is_color && is_blended && !pass.blended) return;
+  std::vector<bool> reached(typed.nodes.size());
+  const auto reach = [&](const Operand& operand) {
+    if (operand.from == From::node) reached[operand.index] = true;
+  };
+  std::ranges::for_each(outputs, reach);
+  for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
+    if (!reached[*it]) continue;
+    const Node& node = typed.nodes[*it];
+    std::ranges::for_each(typed.operands_of(node), reach);
+    if (!reads_picture(node) || reported[*it]) continue;
+    reported[*it] = true;
+    const graph::Node& source = work.graph().nodes[*it];
+    support::Diagnostic& report =
+        work.report(Id::misplaced_node, source.type_place,
+                    "the " + quote(part) + " of pass " + quote(pass.name) + " cannot depend on " + quote(source.label()));
+    if (!is_color)
+      report.note("it decides what is seen, and the picture exists only after that")
+          .suggest("compute " + quote(part) + " without it; only \"color\" may depend on it");
+    else if (is_blended)
+      report.note("where its \"blended\" is 0 the pass is a part of the picture that the node reads")
+          .suggest("remove \"blended\"");
+    else
+      report.note("it reads the picture of what is opaque, and the pass is a part of that")
+          .suggest("give the pass a \"blend\"");
+  }
+}
+
+void check_pictures(Work& work) {
+  const TypedGraph& typed = work.typed;
+  std::vector<bool> reported(typed.nodes.size());
+  for (size_t i = 0; i < work.graph().passes.size(); ++i) {
+    const graph::Pass& pass = work.graph().passes[i];
+    const Operand* position = typed.position_of(i);
+    check_pictures(work, {position, position != nullptr ? size_t{1} : 0}, "position", pass, reported);
+    check_pictures(work, typed.cutout_of(i), "cutout", pass, reported);
+    check_pictures(work, typed.values().subspan(i, 1), "color", pass, reported);
+  }
+}
+
+/// Reports derivatives of what depends on the picture: its pixels are no function of the surface.
+void check_derivatives_of_pictures(Work& work) {
+  const TypedGraph& typed = work.typed;
+  std::vector<bool> depends(typed.nodes.size());
+  for (const uint32_t i : typed.order) {
+    const Node& node = typed.nodes[i];
+    const std::span<const Operand> operands = typed.operands_of(node);
+    depends[i] = reads_picture(node);
+    for (size_t k = 0; k < operands.size(); ++k) {
+      if (operands[k].from != From::node || !depends[operands[k].index]) continue;
+      depends[i] = true;
+      const bool differentiates = node.row == nullptr ? node.callee->differentiated_inputs[k]
+                                                      : node.row->is<nodes::Derivative>() ||
+                                                            (may_be_trilinear(typed, node) &&
+                                                             k == nodes::image_port::texcoord);
+      if (!differentiates) continue;
+      const graph::Node& source = work.graph().nodes[i];
+      work.report(Id::misplaced_node, source.type_place,
+                  quote(source.label()) + " takes the derivative of a value that depends on " +
+                      quote(work.graph().nodes[operands[k].index].id) + ", which reads the picture")
+          .note("what is read of the picture has no derivative");
+    }
+  }
+}
+
 /// Reports calls of functions that need what a post does not have.
 void check_calls_of_post(Work& work) {
   const TypedGraph& typed = work.typed;
@@ -326,6 +399,8 @@ void check_usage(Work& work) {
     check_positions(work);
     check_pixels(work, work.typed.values(), "color", true);
     check_pixels(work, work.typed.cutouts(), "cutout", false);
+    check_pictures(work);
+    check_derivatives_of_pictures(work);
   }
   if (work.graph().kind == graph::DocumentKind::post) check_calls_of_post(work);
   check_derivatives(work);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/driver.h"
 
+#include <algorithm>
+
 #include "compiler/check/check.h"
 #include "compiler/check/stage_needs.h"
 #include "compiler/driver/dumps.h"
@@ -178,14 +180,18 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
   return program;
 }
 
+/// The pixel program, or if it is `blended` the one of Stage::blend.
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
-                      const CompileOptions& options) {
+                      const CompileOptions& options, bool blended = false) {
   lower::Lowered lowered = lower_with_buffers(typed, {pass});
   name_words(lowered.module, effect.parameters, lower::object_word::parameters);
   lower::LightKinds lights = options.lights;
   lights.shadows &= typed.graph.passes[pass].receives_shadow;
-  const uint32_t kernel = lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), lights);
-  Program program{lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
+  const interface::Blend blend = typed.graph.passes[pass].state.blend;
+  const uint32_t kernel =
+      blended ? lower::add_blend_kernel(lowered.module, lowered.interface, layout_of(effect), lights, blend)
+              : lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), lights);
+  Program program{blended ? lower::Stage::blend : lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
                   options.tier};
   program.bindings = std::move(lowered.interface.bindings);
   finish(program, kernel, options, typed.graph.source);
@@ -231,9 +237,17 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), pass.enabled, pass.double_sided,
-                             cutoff_parameter(*typed, i), pass.casts_shadow, vertex_program(*typed, i, effect, options),
-                             pixel_program(*typed, i, effect, options), cutout_program(*typed, i, effect, options)});
+    effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
+                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow,
+                             vertex_program(*typed, i, effect, options),
+                             pixel_program(*typed, i, effect, options), {},
+                             cutout_program(*typed, i, effect, options)});
+    if (pass.state.blend == interface::Blend::none) continue;
+    EffectPass& made = effect.passes.back();
+    made.blend = pixel_program(*typed, i, effect, options, true);
+    made.reads_scene = std::ranges::any_of(made.blend->bindings, [](const interface::Binding& binding) {
+      return std::holds_alternative<interface::source::PixelOfImage>(binding.source);
+    });
   }
   return effect;
 }
@@ -360,7 +374,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
             kind = emit::PureKind::shade;
             shader.passes.push_back(
                 {pass.name, pass.state, i, {}, {}, pass.position_space, pass.enabled, pass.double_sided,
-                 pass.casts_shadow, pass.receives_shadow});
+                 pass.blended, pass.casts_shadow, pass.receives_shadow});
             break;
           case lower::PassPart::position:
             kind = emit::PureKind::move_vertex;

@@ -37,12 +37,15 @@ struct EffectPass {
   std::string name;
   interface::PassState state;
   bool moves_vertices = false;
+  bool reads_scene = false;            ///< its `blend` reads the color or the depth of what is opaque
   std::optional<size_t> enabled;       ///< index of a parameter field; the pass is drawn if it is not 0
   std::optional<size_t> double_sided;  ///< index of a parameter field; no face is culled if it is not 0
+  std::optional<size_t> blended;       ///< index of a parameter field; the pass is opaque if it is 0
   std::optional<size_t> cutoff;        ///< index of a parameter field; there is no cut-out if it is 0 or less
   bool casts_shadow = true;
   Program vertex;
-  Program pixel;
+  Program pixel;                  ///< of Stage::pixel, where the pass is opaque
+  std::optional<Program> blend;   ///< of Stage::blend, where it is blended; there is none if `state` does not blend
   std::optional<Program> cutout;  ///< whether a pixel is drawn; every pixel is if there is none
 };
 

@@ -5,6 +5,7 @@
 
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/support/visible.h"
 
 namespace isoshade::driver {
 namespace {
@@ -84,6 +85,21 @@ emit::ForwardProgram program_of(const Shader& shader, const emit::PureShader& pu
 
 }  // namespace
 
+bool can_be_forward(const Shader& shader, support::Diagnostics& diagnostics) {
+  if (shader.kind != graph::DocumentKind::effect) return true;
+  const auto reads_picture = [](const check::Node& node) { return node.row != nullptr && node.row->is<nodes::Fetch>(); };
+  const auto found = std::ranges::find_if(shader.typed->nodes, reads_picture);
+  if (found == shader.typed->nodes.end()) return true;
+  const graph::Graph& graph = shader.typed->graph;
+  const graph::Node& source = graph.nodes[static_cast<size_t>(found - shader.typed->nodes.begin())];
+  diagnostics
+      .report(support::Id::unsupported, graph.span(source.type_place),
+              support::quote(graph.name) + " cannot be a forward pair: " + support::quote(source.label()) +
+                  " reads the picture of what is opaque")
+      .suggest("draw it with isoshade, or call its functions (--wrapper none) from a shader of your own");
+  return false;
+}
+
 std::vector<ForwardPair> forward_pairs(const Shader& shader, const emit::Target& target,
                                        emit::ForwardSampling sampling) {
   std::vector<ForwardPair> pairs;
@@ -97,6 +113,7 @@ std::vector<ForwardPair> forward_pairs(const Shader& shader, const emit::Target&
   for (const ShaderPass& pass : shader.passes) {
     emit::ForwardProgram program = program_of(shader, pure, target, pass.shade, pass.move_vertex, pass.coverage);
     program.position_space = pass.position_space;
+    program.blend = pass.state.blend;
     const bool has_several = shader.passes.size() > 1;
     if (has_several) program.name += ", pass " + pass.name;
     add(has_several ? pass_stem(pure.name, pass.name, pairs.size()) : pure.name, std::move(program));

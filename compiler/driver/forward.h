@@ -17,6 +17,9 @@ struct ForwardPair {
   emit::ForwardLayout layout;
 };
 
+/// Reports an effect that reads the picture, of which a pair has none.
+bool can_be_forward(const Shader& shader, support::Diagnostics& diagnostics);
+
 /// The pairs of an effect or a post in a language that has them (emit::Target::forward); none of a function.
 std::vector<ForwardPair> forward_pairs(const Shader& shader, const emit::Target& target,
                                        emit::ForwardSampling sampling = emit::ForwardSampling::fetch);

@@ -51,7 +51,12 @@ std::string glsl(const Program& program, Division division) { return text(progra
 
 std::string glsl_with_vertex_eval(const Program& program, Division division) {
   const Prepared made = prepared(program, glsl::target(), division);
-  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), glsl::EvalIn::vertex_shader);
+  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), glsl::Variant::vertex_eval);
+}
+
+std::string glsl_of_layer(const Program& program, Division division) {
+  const Prepared made = prepared(program, glsl::target(), division);
+  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), glsl::Variant::layer);
 }
 
 std::string cpp(const Program& program) { return text(program, cpp::target(), Division::native); }

@@ -20,6 +20,7 @@ struct ShaderPass {
   graph::PositionSpace position_space{};  ///< of what move_vertex returns
   std::optional<size_t> enabled;          ///< index of a parameter field; the pass is drawn if it is not 0
   std::optional<size_t> double_sided;     ///< index of a parameter field; no face is culled if it is not 0
+  std::optional<size_t> blended;          ///< index of a parameter field; the pass is opaque if it is 0
   bool casts_shadow = true, receives_shadow = true;
 };
 

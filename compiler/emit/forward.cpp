@@ -178,4 +178,15 @@ bool is_sampler(const PureShader& shader, const ir::Function& function) {
 
 ForwardLayout forward_layout(const ForwardProgram& program) { return Layout(program).make(); }
 
+std::string_view blend_factors(interface::Blend blend) {
+  switch (blend) {
+    case interface::Blend::none: return "";
+    case interface::Blend::over: return "SRC_ALPHA, ONE_MINUS_SRC_ALPHA for rgb and ONE, ONE_MINUS_SRC_ALPHA for alpha";
+    case interface::Blend::add: return "SRC_ALPHA, ONE for rgb and ZERO, ONE for alpha";
+    case interface::Blend::multiply: return "DST_COLOR, ONE_MINUS_SRC_ALPHA for rgb and ZERO, ONE for alpha";
+    case interface::Blend::premultiplied: return "ONE, ONE_MINUS_SRC_ALPHA";
+  }
+  return "";
+}
+
 }  // namespace isoshade::emit

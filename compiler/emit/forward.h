@@ -39,6 +39,7 @@ struct ForwardProgram {
   size_t main = 0;                    ///< in pure->functions: `shade` of a pass, or a post
   std::optional<size_t> move_vertex, coverage;  ///< in pure->functions
   graph::PositionSpace position_space{};
+  interface::Blend blend = interface::Blend::none;  ///< of the pass
   std::vector<ForwardImage> images;
   ForwardSampling sampling = ForwardSampling::fetch;  ///< samplers: the functions of `pure` that sample have no body
   size_t pictures = 0;  ///< of a post: how many images it may read beside depth, with the one that it goes over
@@ -86,6 +87,10 @@ struct ForwardLayout {
 
 /// Whether a function of the shader's module samples an image as a whole.
 bool is_sampler(const PureShader& shader, const ir::Function& function);
+
+/// The device's blending that is closest to isoshade's, in words; empty for none. For Blend::multiply the pair multiplies
+/// the color by its alpha.
+std::string_view blend_factors(interface::Blend blend);
 
 ForwardLayout forward_layout(const ForwardProgram& program);
 

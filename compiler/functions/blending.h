@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpolation and averages.
+// Interpolation and averages, and what a transparent colour makes of the colour behind it.
 #pragma once
 
 #include "compiler/functions/comparison.h"
@@ -53,6 +53,41 @@ template <class F>
 F mean_of_four(F a, F b, F c, F d) {
   const F quarter(0.25f);
   return (a * quarter + b * quarter) + (c * quarter + d * quarter);
+}
+
+// What a source with the color c and the alpha a makes of a backdrop with the color d and the alpha b: the ways to blend
+// of interface::Blend. The rgb of a picture counts as multiplied by its alpha.
+
+/// (c + d (1 - a), a + b (1 - a)), of a source whose color is multiplied by its alpha already.
+/// Domain: all floats. At a = 1 exactly the source, at c = 0 and a = 0 exactly the backdrop, if both are finite.
+template <class F>
+vec<F, 4> blend_premultiplied(vec<F, 4> source, vec<F, 4> backdrop) {
+  return source + backdrop * splat<4>(1.0f - source[3]);
+}
+
+/// (c a + d (1 - a), a + b (1 - a)).
+/// Domain: all floats. At a = 1 exactly the source, at a = 0 exactly the backdrop, if both are finite.
+template <class F>
+vec<F, 4> blend_over(vec<F, 4> source, vec<F, 4> backdrop) {
+  const F a = source[3];
+  return blend_premultiplied(vec<F, 4>(source[0] * a, source[1] * a, source[2] * a, a), backdrop);
+}
+
+/// (d + c a, b): light is added, and what was covered stays covered.
+/// Domain: all floats.
+template <class F>
+vec<F, 4> blend_add(vec<F, 4> source, vec<F, 4> backdrop) {
+  const auto added = [&](int i) { return backdrop[i] + source[i] * source[3]; };
+  return {added(0), added(1), added(2), backdrop[3]};
+}
+
+/// (d (c a + (1 - a)), b): light is filtered, and what was covered stays covered.
+/// Domain: all floats.
+template <class F>
+vec<F, 4> blend_multiply(vec<F, 4> source, vec<F, 4> backdrop) {
+  const F through = 1.0f - source[3];
+  const auto filtered = [&](int i) { return backdrop[i] * (source[i] * source[3] + through); };
+  return {filtered(0), filtered(1), filtered(2), backdrop[3]};
 }
 
 }  // namespace isoshade::functions

@@ -74,11 +74,21 @@ void GraphBuilder::read_pass(const Json& json) {
                 "\"position_space\" has no effect without \"position\"")
         .suggest("add \"position\", or remove this key");
   }
-  for (const auto& [key, parameter] : {std::pair("enabled", &pass.enabled), std::pair("double_sided", &pass.double_sided)})
+  for (const auto& [key, parameter] : {std::pair("enabled", &pass.enabled), std::pair("double_sided", &pass.double_sided),
+                                      std::pair("blended", &pass.blended)})
     if (const Json* named = reader.value(key, Need::optional)) *parameter = read_switch(*named, key);
+  for (const std::string_view key : {"blended", "depth_write"}) {
+    const Json* useless = json.find(key);
+    if (useless == nullptr || json.find("blend") != nullptr) continue;
+    diagnostics_
+        .report(Id::missing_key, document_.span(*useless), quote(key) + " has no effect without \"blend\"")
+        .suggest("add \"blend\", or remove this key");
+  }
   read_cutout(reader, pass);
-  // A hull around an object, which shows its back faces as an outline, has no shadow of its own.
-  pass.casts_shadow = reader.boolean("casts_shadow", pass.state.cull != interface::Cull::front);
+  // A hull around an object, which shows its back faces as an outline, has no shadow of its own, and light shines through
+  // what is blended.
+  const bool is_solid = pass.state.cull != interface::Cull::front && pass.state.blend == interface::Blend::none;
+  pass.casts_shadow = reader.boolean("casts_shadow", is_solid);
   pass.receives_shadow = reader.boolean("receives_shadow", true);
   if (const Json* color = reader.value("color")) {
     if (std::optional<Link> found = this->color(*color)) pass.color = std::move(*found);

@@ -20,10 +20,24 @@ namespace isoshade::interface {
   VALUE(nearer, "a pixel keeps the nearest face; of equally near ones, the one that is drawn first")      \
   VALUE(always, "the pass is drawn over everything, nearer faces too; objects are drawn in the order of the scene")
 
+#define ISOSHADE_BLEND(VALUE)                                                                                     \
+  VALUE(none, "the pass is opaque: the nearest face hides what is behind it")                                     \
+  VALUE(over, "alpha covers: rgb = c a + d (1 - a), alpha = a + b (1 - a)")                                       \
+  VALUE(add, "light is added: rgb = d + c a, alpha = b")                                                          \
+  VALUE(multiply, "light is filtered: rgb = d (c a + (1 - a)), alpha = b")                                        \
+  VALUE(premultiplied, "as `over`, of colours that are multiplied by alpha: rgb = c + d (1 - a), alpha = a + b (1 - a)")
+#define ISOSHADE_DEPTH_WRITE(VALUE)                                                            \
+  VALUE(off, "what is drawn later is not hidden by the pass, and neither is it in the depth of the picture") \
+  VALUE(on, "a pixel of the pass hides what is drawn later behind it")
+
 // STATE(type, member and key, default, values, what it is for the manual)
 #define ISOSHADE_PASS_STATES(STATE)                                                                              \
   STATE(Cull, cull, back, ISOSHADE_CULL, "Which faces of the mesh are left out; a mirroring transform changes nothing") \
-  STATE(DepthTest, depth, nearer, ISOSHADE_DEPTH_TEST, "Which faces of a pixel are seen")
+  STATE(DepthTest, depth, nearer, ISOSHADE_DEPTH_TEST, "Which faces of a pixel are seen")                         \
+  STATE(Blend, blend, none, ISOSHADE_BLEND,                                                                      \
+        "What the color (c, a) of the pass makes of the picture (d, b) behind it")                               \
+  STATE(DepthWrite, depth_write, off, ISOSHADE_DEPTH_WRITE,                                                      \
+        "Whether a pass that is blended changes the depth; an opaque pass always does")
 
 #define ISOSHADE_VALUE(name, doc) name,
 #define ISOSHADE_ENUM(Type, member, fallback, VALUES, doc) enum class Type : uint8_t { VALUES(ISOSHADE_VALUE) };

@@ -44,7 +44,7 @@ class Body {
   /// How often a sum over lights or taps turns.
   ir::ValueId turns_of(uint32_t sum);
   void make_fetch(const Node& node);
-  ir::ValueId offset(const Operand& operand);
+  FetchOffset offset(nodes::Fetch what, std::span<const Operand> ports);
   Value transform(nodes::Transform what, const Node& node);
   Value image(uint32_t node);
   Value environment(nodes::Environment what, const Node& node);
@@ -302,23 +302,33 @@ void Body::make_call(uint32_t index) {
   }
 }
 
-/// An offset of an image; none where it is written as 0.
-ir::ValueId Body::offset(const Operand& operand) {
-  if (operand.from == From::words && graph_.words[operand.index] == 0) return ir::none;
-  return read(operand).id();
+/// How far from the pixel a node reads; none where it is written as 0.
+FetchOffset Body::offset(nodes::Fetch what, std::span<const Operand> ports) {
+  namespace port = nodes::fetch_port;
+  const auto value = [&](const Operand& operand, size_t words) {
+    const bool is_written = operand.from == From::words;
+    const auto is_zero = [](uint32_t word) { return word == 0; };
+    if (is_written && std::ranges::all_of(std::span(graph_.words).subspan(operand.index, words), is_zero))
+      return ir::none;
+    return read(operand).id();
+  };
+  return {value(ports[port::offset_x(what)], 1), value(ports[port::offset_y(what)], 1),
+          value(ports[port::shift(what)], 2)};
 }
 
 void Body::make_fetch(const Node& node) {
+  namespace port = nodes::fetch_port;
+  const auto what = std::get<nodes::Fetch>(node.row->lowering);
   const std::span<const Operand> ports = graph_.operands_of(node);
   const std::span<Value> out = results_of(node);
-  const auto edge = [](const Operand& port) { return static_cast<nodes::Edge>(port.index); };
-  if (std::get<nodes::Fetch>(node.row->lowering) == nodes::Fetch::color) {
-    const ReadImage& image = environment_.screen.images[post_image(ports[0].index)];
-    const ColorFilter filter{edge(ports[3]), ports[4].index == 1, ports[5].index == 1};
-    out[0] = fetch_color(b_, image, offset(ports[1]), offset(ports[2]), filter);
+  const auto edge = static_cast<nodes::Edge>(ports[port::edge(what)].index);
+  if (what == nodes::Fetch::color) {
+    const ReadImage& image = environment_.screen.images[post_image(ports[port::image].index)];
+    const ColorFilter filter{edge, ports[port::filter].index == 1, ports[port::nonfinite].index == 1};
+    out[0] = fetch_color(b_, image, offset(what, ports), filter);
     return;
   }
-  out[0] = fetch_depth(b_, environment_.screen.images[depth_image], offset(ports[0]), offset(ports[1]), edge(ports[2]));
+  out[0] = fetch_depth(b_, environment_.screen.images[depth_image], offset(what, ports), edge);
   if (environment_.screen[interface::Screen::depth_numerator] != ir::none) out[1] = distance_of(b_, environment_.screen, out[0].id());
   out[2] = b_.op(ir::Opcode::feq, {out[0].id(), b_.constant(0.0f)});
 }

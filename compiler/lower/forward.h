@@ -49,6 +49,11 @@ std::vector<ir::RecordField> fields_of(FrameBuffer buffer);
 
 /// The unit direction towards the light whose record begins at `record`, and the radiance that arrives from it.
 std::array<ir::ValueId, 2> light_values(Kernel& kernel, Int record, Vec3 position, LightKinds kinds);
+/// Gives the arguments of bindings of the screen, in a kernel whose first parameters are x and y. `kernel` must outlive
+/// it.
+std::function<ir::ValueId(const interface::Binding&)> screen_arguments(Kernel& kernel);
+/// Gives the functions that read images their bodies.
+void define_reads(ir::Module& module, const interface::Interface& interface);
 /// The value of each binding, in a kernel whose first parameters are x and y.
 std::vector<ir::ValueId> screen_values(Kernel& kernel, std::span<const interface::Binding> bindings);
 

@@ -76,7 +76,9 @@ inline constexpr int wide = 1;    ///< an edge spans 2^15 or more
 inline constexpr int over = 2;    ///< the depth test always passes
 inline constexpr int back = 4;    ///< its back is seen
 inline constexpr int cutout = 8;  ///< a pixel shows it only where the effect's cut-out holds
-inline constexpr int bits = 4;
+inline constexpr int blended = 16;      ///< drawn after all that is opaque, and blended with what is there
+inline constexpr int keeps_depth = 32;  ///< it is blended and leaves the depth as it was
+inline constexpr int bits = 6;
 }  // namespace triangle_flag
 
 namespace object_word {

@@ -36,6 +36,7 @@ class Kernel {
   Int constant(int value) { return Int(b, b.constant(value)); }
   Int integer(size_t parameter) { return Int(b, b.parameter(parameter)); }
   Vec3 vector3(size_t parameter) { return Vec3(b, b.parameter(parameter)); }
+  Vec4 vector4(size_t parameter) { return Vec4(b, b.parameter(parameter)); }
 
   /// Where words of records come from that are in no buffer: gives so many, from `word` of a record on.
   using Words = std::function<ir::ValueId(FrameBuffer buffer, int word, int width)>;

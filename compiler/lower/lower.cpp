@@ -177,6 +177,8 @@ class ModuleLowering {
   std::string unique_name(const std::string& wanted);
   void declare_hosts(const Needs& needs);
   void declare_light_at();
+  /// Declares the functions that read images of the screen.
+  void declare_picture(const TypedGraph& graph, const Needs& needs);
   void add_parameters(const TypedGraph& graph, const Needs& needs, Bindings& bindings) const;
   /// What stands before and after the parameters of an effect, and after the inputs of a function.
   static void add_surface(const Needs& needs, Bindings& bindings);
@@ -312,6 +314,13 @@ void ModuleLowering::declare_light_at() {
   function.results = {{"direction", ir::vector_type(3)}, {"color", ir::vector_type(3)}};
 }
 
+void ModuleLowering::declare_picture(const TypedGraph& graph, const Needs& needs) {
+  const size_t first = host_.host.size();
+  declare_reads(module_, host_, graph, needs.screen);
+  for (const interface::HostFunction& read : std::span(host_.host).subspan(first))
+    names_.insert(module_.functions[read.function].name);
+}
+
 void ModuleLowering::add_surface(const Needs& needs, Bindings& bindings) {
   for (const interface::SurfaceValue value : interface::surface_values())
     if (needs.surface[value.index()]) bindings.push_back(interface::bind(value));
@@ -349,12 +358,14 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
   Needs needs(graph, roots);
   const bool moves = has_part(graph, pass, PassPart::position);
   const std::string name = unique_name(prefix + std::string(function_of(part)));
+  declare_picture(graph, needs);
   add_callees(graph, needs);
   declare_hosts(needs);
   if (!moves) needs.show_mesh();
 
   Bindings bindings;
   add_surface(needs, bindings);
+  for (Binding& binding : screen_bindings(graph, needs.screen)) bindings.push_back(std::move(binding));
   add_parameters(graph, needs, bindings);
   add_images_and_lights(graph, needs, bindings);
   const uint32_t entry = build(graph, name, bindings, needs, roots, {result_of(part)});
@@ -364,8 +375,7 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
 interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
   Needs needs(graph, graph.outputs);
   names_.insert(names::post_process);
-  declare_reads(module_, host_, graph, needs.screen);
-  for (const interface::HostFunction& read : host_.host) names_.insert(module_.functions[read.function].name);
+  declare_picture(graph, needs);
   add_callees(graph, needs);
   declare_hosts(needs);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel around `post_process`: what it reads, by frame_layout.h.
 #include <algorithm>
+#include <memory>
 
 #include "compiler/lower/environment.h"
 #include "compiler/lower/forward.h"
@@ -178,10 +179,22 @@ std::vector<ir::ValueId> screen_values(Kernel& k, std::span<const interface::Bin
   return values;
 }
 
+std::function<ir::ValueId(const interface::Binding&)> screen_arguments(Kernel& kernel) {
+  static const interface::RecordLayout none;  // it is the tap counts of posts that need one
+  return [screen = std::make_shared<ScreenPoint>(kernel, none, false)](const interface::Binding& binding) {
+    return screen->argument(binding);
+  };
+}
+
+void define_reads(ir::Module& module, const interface::Interface& interface) {
+  for (const interface::HostFunction& read : interface.host)
+    if (read.host == interface::Host::depth || read.host == interface::Host::image)
+      define_read(module, read.function, static_cast<int>(read.image));
+}
+
 uint32_t add_post_kernel(ir::Module& module, const interface::Interface& interface,
                          const interface::RecordLayout& record, LightKinds lights) {
-  for (const interface::HostFunction& read : interface.host)
-    if (read.image != ir::none) define_read(module, read.function, static_cast<int>(read.image));
+  define_reads(module, interface);
   define_environment(module, interface);
   Kernel k(module, "post", {int_parameter("x"), uniform_int("y")}, {{"color", ir::vector_type(4)}});
   ScreenPoint screen(k, record, lights.environment);

@@ -29,6 +29,11 @@ bool is_offset(const check::TypedGraph& graph, const check::Operand& operand) {
   return operand.from != check::Operand::From::words || graph.words[operand.index] != 0;
 }
 
+bool is_shift(const check::TypedGraph& graph, const check::Operand& operand) {
+  return operand.from != check::Operand::From::words || graph.words[operand.index] != 0 ||
+         graph.words[operand.index + 1] != 0;
+}
+
 /// edge_clamp(at, size): a pixel of the image, for any coordinate.
 uint32_t edge_clamp(ir::Module& module) {
   if (const uint32_t found = module.find("edge_clamp"); found != ir::none) return found;
@@ -89,16 +94,19 @@ void ScreenNeeds::add(const check::TypedGraph& graph, uint32_t index) {
   const std::span<const check::Operand> ports = graph.operands_of(node);
   images.resize(post_image(graph.graph.images.size()) + 1);
   const auto need = [&](Screen value) { values[static_cast<size_t>(value)] = true; };
-  const auto fetch = [&](ImageNeeds& image, size_t first_offset, bool linear) {
+  const auto fetch = [&](nodes::Fetch what, ImageNeeds& image, bool linear) {
+    namespace port = nodes::fetch_port;
+    const bool shifted = is_shift(graph, ports[port::shift(what)]);
     image.read = true;
-    image.inside |= linear;
-    image.size |=
-        linear || is_offset(graph, ports[first_offset]) || is_offset(graph, ports[first_offset + 1]);
+    image.inside |= linear || shifted;
+    image.size |= linear || shifted || is_offset(graph, ports[port::offset_x(what)]) ||
+                  is_offset(graph, ports[port::offset_y(what)]);
   };
   if (const auto* value = std::get_if<nodes::Screen>(&node.row->lowering)) need(*value);
   if (const auto* what = std::get_if<nodes::Fetch>(&node.row->lowering)) {
-    if (*what == nodes::Fetch::color) fetch(images[post_image(ports[0].index)], 1, ports[4].index == 1);
-    if (*what == nodes::Fetch::depth) fetch(images[depth_image], 0, false);
+    if (*what == nodes::Fetch::color)
+      fetch(*what, images[post_image(ports[nodes::fetch_port::image].index)], ports[nodes::fetch_port::filter].index == 1);
+    if (*what == nodes::Fetch::depth) fetch(*what, images[depth_image], false);
   }
   if (node.row->is<nodes::WorldPosition>()) {
     images[depth_image].read = true;
@@ -140,6 +148,7 @@ void declare_reads(ir::Module& module, interface::Interface& host, const check::
   for (interface::ImageNumber image = 0; image < needs.images.size(); ++image) {
     if (!needs.images[image].read) continue;
     const bool is_depth = image == depth_image;
+    if (host.find(is_depth ? interface::Host::depth : interface::Host::image, image) != ir::none) continue;
     host.host.push_back({is_depth ? interface::Host::depth : interface::Host::image,
                          static_cast<uint32_t>(module.functions.size()), image});
     ir::Function& function = module.functions.emplace_back();
@@ -184,20 +193,52 @@ std::vector<Binding> tap_bindings(const check::TypedGraph& graph, const ScreenNe
   return bindings;
 }
 
-nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId offset_x, ir::ValueId offset_y,
+namespace {
+
+/// The pixel of an image that lies at an offset, and where in it: a vec2, or none.
+struct Spot {
+  ir::ValueId x, y, inside;
+  bool may_be_outside;
+};
+
+Spot spot_at(ir::Builder& b, const ReadImage& image, const FetchOffset& offset) {
+  Spot spot{moved(b, image.x, offset.x), moved(b, image.y, offset.y), image.inside,
+            offset.x != ir::none || offset.y != ir::none || offset.shift != ir::none};
+  if (offset.shift == ir::none) return spot;
+  const Vec2 shift(b, offset.shift), inside(b, image.inside);
+  // Farther than any image is wide, and still an int.
+  constexpr float most = 2.0f * static_cast<float>(interface::max_size);
+  const Float farthest(most), least(-most);
+  std::vector<ir::ValueId> rest;
+  const auto move = [&](int axis, ir::ValueId& pixel, ir::ValueId size) {
+    const Float wanted = inside[axis] + shift[axis] * to_float(Int(b, size));
+    const Float not_before = select(wanted > least, wanted, least);  // of NaN, too
+    const Float place = select(not_before < farthest, not_before, farthest);
+    const Float whole = floor(place);
+    pixel = b.op(ir::Opcode::iadd, {pixel, to_int(whole).id(b)});
+    rest.push_back((place - whole).id(b));
+  };
+  move(0, spot.x, image.width);
+  move(1, spot.y, image.height);
+  spot.inside = b.construct(rest);
+  return spot;
+}
+
+}  // namespace
+
+nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, const FetchOffset& offset,
                          const ColorFilter& filter) {
-  const ir::ValueId x = moved(b, image.x, offset_x), y = moved(b, image.y, offset_y);
+  const Spot spot = spot_at(b, image, offset);
   const auto guarded = [&](ir::ValueId color) {
     const Vec4 read(b, color);
     return filter.finite_only ? finite_or_zero(read) : read;
   };
   if (!filter.linear) {
-    if (offset_x == ir::none && offset_y == ir::none)
-      return guarded(b.call(image.at, std::array{x, y})[0]).value;
-    return guarded(read(b, image, x, y, filter.edge)).value;
+    if (!spot.may_be_outside) return guarded(b.call(image.at, std::array{spot.x, spot.y})[0]).value;
+    return guarded(read(b, image, spot.x, spot.y, filter.edge)).value;
   }
-  const Vec2 inside(b, image.inside);
-  const Between across = between(Int(b, x), inside[0]), down = between(Int(b, y), inside[1]);
+  const Vec2 inside(b, spot.inside);
+  const Between across = between(Int(b, spot.x), inside[0]), down = between(Int(b, spot.y), inside[1]);
   const auto row = [&](Int at) {
     const Vec4 left = guarded(read(b, image, across.lower.value, at.value, filter.edge));
     const Vec4 right = guarded(read(b, image, across.upper.value, at.value, filter.edge));
@@ -207,11 +248,10 @@ nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId off
   return mix(upper, lower, down.part).value;
 }
 
-ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, ir::ValueId offset_x, ir::ValueId offset_y,
-                        Edge edge) {
-  const ir::ValueId x = moved(b, depth.x, offset_x), y = moved(b, depth.y, offset_y);
-  if (offset_x == ir::none && offset_y == ir::none) return b.call(depth.at, std::array{x, y})[0];
-  return read(b, depth, x, y, edge);
+ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, const FetchOffset& offset, Edge edge) {
+  const Spot spot = spot_at(b, depth, offset);
+  if (!spot.may_be_outside) return b.call(depth.at, std::array{spot.x, spot.y})[0];
+  return read(b, depth, spot.x, spot.y, edge);
 }
 
 ir::ValueId distance_of(ir::Builder& b, const ScreenInputs& screen, ir::ValueId depth) {
@@ -221,7 +261,7 @@ ir::ValueId distance_of(ir::Builder& b, const ScreenInputs& screen, ir::ValueId 
 }
 
 ir::ValueId relative_position(ir::Builder& b, const ScreenInputs& screen) {
-  const ir::ValueId depth = fetch_depth(b, screen.images[depth_image], ir::none, ir::none, Edge::clamp);
+  const ir::ValueId depth = fetch_depth(b, screen.images[depth_image], {}, Edge::clamp);
   const Float distance(b, distance_of(b, screen, depth));
   const Vec3 origin(b, screen[Screen::relative_origin]), ray(b, screen[Screen::view_ray]);
   return (origin + ray * functions::splat<3>(distance)).value;

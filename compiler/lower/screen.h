@@ -78,12 +78,16 @@ struct ColorFilter {
   bool finite_only;  ///< channels that are infinite or NaN count as 0
 };
 
-/// What nodes::Fetch::color and ::depth and nodes::WorldPosition give. Offsets that are none are 0.
-nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, ir::ValueId offset_x, ir::ValueId offset_y,
-                         const ColorFilter& filter);
+/// How far from the pixel an image is read. What is none is 0.
+struct FetchOffset {
+  ir::ValueId x = ir::none, y = ir::none;  ///< in pixels of the image
+  ir::ValueId shift = ir::none;            ///< vec2, further, in widths and heights of the image
+};
+
+/// What nodes::Fetch::color and ::depth and nodes::WorldPosition give.
+nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, const FetchOffset& offset, const ColorFilter& filter);
 /// The depth as it is stored.
-ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, ir::ValueId offset_x, ir::ValueId offset_y,
-                        nodes::Edge edge);
+ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, const FetchOffset& offset, nodes::Edge edge);
 /// The distance along the view of a depth.
 ir::ValueId distance_of(ir::Builder& b, const ScreenInputs& screen, ir::ValueId depth);
 /// The point that the pixel shows, from the camera's position.

@@ -96,7 +96,10 @@ class SurfaceArguments {
     namespace source = interface::source;
     const ir::Parameter& parameter = binding.parameter;
     const auto field = [&](int word) { return load_field(k_, parameter.type, object_, word); };
-    const auto only_posts = [&]() -> ir::ValueId { support::bug("only posts have " + parameter.name); };
+    const auto screen = [&] {
+      if (!screen_) screen_ = screen_arguments(k_);
+      return screen_(binding);
+    };
     const ir::ValueId value = std::visit(
         interface::Cases{
             [&](const source::Attribute& s) { return surface_.value(s.value); },
@@ -106,11 +109,11 @@ class SurfaceArguments {
             [&](const source::Image& s) { return field(record_.images[s.slot]); },
             [&](const source::LightCount&) { return light_count_; },
             [&](const source::HasEnvironment&) { return has_environment(k_, has_environment_); },
-            [&](const source::ScreenValue&) { return only_posts(); },
-            [&](const source::PixelOfImage&) { return only_posts(); },
-            [&](const source::OffsetInPixel&) { return only_posts(); },
-            [&](const source::SizeOfImage&) { return only_posts(); },
-            [&](const source::TapCount&) { return only_posts(); },
+            [&](const source::ScreenValue&) { return screen(); },
+            [&](const source::PixelOfImage&) { return screen(); },
+            [&](const source::OffsetInPixel&) { return screen(); },
+            [&](const source::SizeOfImage&) { return screen(); },
+            [&](const source::TapCount&) -> ir::ValueId { support::bug("only posts have " + parameter.name); },
         },
         binding.source);
     if (value == light_count_ || std::holds_alternative<source::HasEnvironment>(binding.source)) return value;
@@ -123,6 +126,7 @@ class SurfaceArguments {
   const interface::RecordLayout& record_;
   ir::ValueId light_count_;
   std::optional<bool> has_environment_;
+  std::function<ir::ValueId(const interface::Binding&)> screen_;  ///< made when it is first asked for
 };
 
 /// glTF KHR_lights_punctual: inverse square, windowed by the range if there is one.
@@ -183,7 +187,7 @@ ir::ValueId load_field(Kernel& k, ir::Type type, Int object, int offset) {
 }
 
 std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"vertex", "depth", "cutout", "pixel", "eval", "post"};
+  constexpr std::string_view names[] = {"vertex", "depth", "cutout", "pixel", "blend", "eval", "post"};
   return names[static_cast<size_t>(stage)];
 }
 
@@ -308,23 +312,64 @@ uint32_t add_cutout_kernel(ir::Module& module, const interface::Interface& inter
   return k.index;
 }
 
-uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interface,
-                          const interface::RecordLayout& record, LightKinds lights) {
+namespace {
+
+/// What a pixel shows, in a kernel whose first parameters are x, y, the triangle, the object and the number of lights.
+ir::ValueId color_of_pixel(Kernel& k, const interface::Interface& interface, const interface::RecordLayout& record,
+                           std::optional<bool> has_environment) {
+  const Int object = k.integer(3);
+  SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
+                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
+  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4), has_environment);
+  return k.b.call(interface.entry, arguments.of(interface))[0];
+}
+
+std::vector<ir::Parameter> pixel_parameters() {
+  return {int_parameter("x"), int_parameter("y"), int_parameter("triangle"), uniform_int("object"),
+          uniform_int("light_count")};
+}
+
+/// What kernels of pixels call, and the bodies of what their document asks its host for.
+void define_for_pixels(ir::Module& module, const interface::Interface& interface, LightKinds lights) {
   add_edges(module);
   if (ir::asks_for_derivatives(module)) add_edge_gradients(module);
   if (const uint32_t light_at = interface.find(interface::Host::light); light_at != ir::none)
     define_light_at(module, light_at, lights);
   define_environment(module, interface);
   define_texture_reads(module, interface);
-  Kernel k(module, "pixel",
-           {int_parameter("x"), int_parameter("y"), int_parameter("triangle"), uniform_int("object"),
-            uniform_int("light_count")},
-           {{"color", ir::vector_type(4)}});
-  const Int object = k.integer(3);
-  SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
-                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
-  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4), lights.environment);
-  k.b.finish(k.b.call(interface.entry, arguments.of(interface)));
+  define_reads(module, interface);
+}
+
+Vec4 blended(interface::Blend blend, Vec4 source, Vec4 backdrop) {
+  switch (blend) {
+    case interface::Blend::none: return source;
+    case interface::Blend::over: return functions::blend_over(source, backdrop);
+    case interface::Blend::add: return functions::blend_add(source, backdrop);
+    case interface::Blend::multiply: return functions::blend_multiply(source, backdrop);
+    case interface::Blend::premultiplied: return functions::blend_premultiplied(source, backdrop);
+  }
+  support::bug("no such way to blend");
+}
+
+}  // namespace
+
+uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interface,
+                          const interface::RecordLayout& record, LightKinds lights) {
+  define_for_pixels(module, interface, lights);
+  Kernel k(module, "pixel", pixel_parameters(), {{"color", ir::vector_type(4)}});
+  k.b.finish(std::array{color_of_pixel(k, interface, record, lights.environment)});
+  return k.index;
+}
+
+uint32_t add_blend_kernel(ir::Module& module, const interface::Interface& interface,
+                          const interface::RecordLayout& record, LightKinds lights, interface::Blend blend) {
+  define_for_pixels(module, interface, lights);
+  std::vector<ir::Parameter> parameters = pixel_parameters();
+  parameters.push_back({"backdrop", ir::vector_type(4), "", false});
+  Kernel k(module, "blend", std::move(parameters), {{"color", ir::vector_type(4)}, {"depth", ir::float_type}});
+  const Vec4 source = k.named("source", Vec4(k.b, color_of_pixel(k, interface, record, lights.environment)));
+  const Vec4 color = k.named("color", blended(blend, source, k.vector4(5)));
+  k.b.finish(std::array{color.value, depth_of_pixel(k).value});
   return k.index;
 }
 

@@ -9,6 +9,7 @@
 
 #include "compiler/graph/graph.h"
 #include "compiler/interface/binding.h"
+#include "compiler/interface/pass_state.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::lower {
@@ -18,11 +19,13 @@ namespace isoshade::lower {
 ///   depth  (x: int, y: int, triangle: int) -> (depth: float)                      the same for every scene
 ///   cutout (x: int, y: int, triangle: int, object: int uniform) -> (drawn: bool, depth: float)
 ///   pixel  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform) -> (color: vec4)
+///   blend  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform, backdrop: vec4)
+///            -> (color: vec4, depth: float)           of a pixel that shows `backdrop` behind the triangle
 ///   eval   (row: int) -> (the function's results)
 ///   post   (x: int, y: int uniform) -> (color: vec4)
 /// `object` is the first word of the object's record, and `projected` that of its matrix in `view`; x and y are whole
 /// pixels.
-enum class Stage : uint8_t { vertex, depth, cutout, pixel, eval, post };
+enum class Stage : uint8_t { vertex, depth, cutout, pixel, blend, eval, post };
 std::string_view name(Stage stage);
 /// Whether it decides which triangle a pixel shows. The result must not depend on the precision or the number type.
 constexpr bool decides_visibility(Stage stage) {
@@ -31,6 +34,7 @@ constexpr bool decides_visibility(Stage stage) {
     case Stage::depth:
     case Stage::cutout: return true;
     case Stage::pixel:
+    case Stage::blend:
     case Stage::eval:
     case Stage::post: break;
   }
@@ -67,6 +71,10 @@ uint32_t add_cutout_kernel(ir::Module& module, const interface::Interface& inter
 /// Adds `pixel` around the document's `shade`, and the bodies of the functions that it asks its host for.
 uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interface,
                           const interface::RecordLayout& record, LightKinds lights);
+
+/// Adds `blend`: as `pixel`, but the color is blended with what is behind it. The depth is that of the triangle.
+uint32_t add_blend_kernel(ir::Module& module, const interface::Interface& interface,
+                          const interface::RecordLayout& record, LightKinds lights, interface::Blend blend);
 
 /// Adds `eval` around `function`: its arguments are the words of record `row` of `inputs`, in order.
 uint32_t add_eval_kernel(ir::Module& module, uint32_t function);

@@ -170,7 +170,8 @@ std::string row_text(const Row& row) {
   std::string text =
       std::string(row.name) + " (" + std::string(row.group) + ")\n  " + std::string(row.doc) + "\n";
   constexpr std::string_view homes[] = {"", "  Only in effects and posts.\n", "  Only in effects.\n",
-                                        "  Only in posts.\n"};
+                                        "  Only in posts.\n",
+                                        "  Only in posts, and in effects for the color of passes that are blended.\n"};
   text += homes[static_cast<size_t>(row.availability())];
   text += domain_text(row);
   size_t width = 0;

@@ -101,8 +101,18 @@ enum class Environment : uint8_t { radiance, irradiance };
 /// Sums its input over the lights.
 struct SumLights {};
 
-/// Reads an image of the post chain, or the scene's depth, at an offset from the pixel.
+/// Reads an image of the post chain, or the scene's depth, at an offset from the pixel. In an effect: the color or the
+/// depth of what is opaque.
 enum class Fetch : uint8_t { color, depth };
+
+/// The ports of the rows `scenecolor` and `scenedepth`.
+namespace fetch_port {
+inline constexpr size_t image = 0, filter = 4, nonfinite = 5;  ///< of scenecolor alone
+constexpr size_t offset_x(Fetch what) { return what == Fetch::color ? 1 : 0; }
+constexpr size_t offset_y(Fetch what) { return offset_x(what) + 1; }
+constexpr size_t edge(Fetch what) { return offset_x(what) + 2; }
+constexpr size_t shift(Fetch what) { return what == Fetch::color ? 6 : 3; }
+}  // namespace fetch_port
 
 /// The value outside of an image.
 enum class Edge : uint8_t { clamp, mirror, constant };
@@ -134,7 +144,13 @@ using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Li
 
 /// The kinds of documents in which a node is available. A function may use what is available in effects; then only
 /// effects can call it, or for `drawn` nodes also posts (check/stage_needs.h).
-enum class Availability : uint8_t { anywhere, drawn /**< effects and posts */, effects, posts };
+enum class Availability : uint8_t {
+  anywhere,
+  drawn,  ///< effects and posts
+  effects,
+  posts,
+  pictures  ///< where there is a picture to read: posts, and in effects the colour of passes that are blended
+};
 
 /// The error of a port that violates a row's Condition.
 struct Refusal {
@@ -168,7 +184,8 @@ struct Row {
     if (is<Time>() || is<Environment>()) return Availability::drawn;
     if (is<Surface>() || is<Transform>() || is<Light>() || is<SumLights>() || is<Derivative>() || is<Image>())
       return Availability::effects;
-    const bool screen = is<Screen>() || is<Fetch>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();
+    if (is<Fetch>()) return Availability::pictures;
+    const bool screen = is<Screen>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();
     return screen ? Availability::posts : Availability::anywhere;
   }
 };

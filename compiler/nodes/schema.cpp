@@ -185,6 +185,8 @@ SchemaJson pass_schema() {
                            {"enabled", described(string_schema(), "a parameter: drawn where it is not 0 or false")},
                            {"double_sided",
                             described(string_schema(), "a parameter: nothing is culled where it is not 0 or false")},
+                           {"blended",
+                            described(string_schema(), "a parameter: the pass is opaque where it is 0 or false")},
                            {"cutout", described(reference("link"),
                                                 "drawn where it holds: a boolean, or a float of at least \"cutoff\"")},
                            {"cutoff", described(any_of({reference("link"), number_schema()}),

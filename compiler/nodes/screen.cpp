@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inputs of full-screen effects. Only in post documents.
+// The inputs of full-screen effects. Only in post documents; the picture also in effects that are blended with it.
 #include "compiler/nodes/table.h"
 
 namespace isoshade::nodes {
@@ -23,10 +23,14 @@ std::vector<Row> screen_rows() {
   const Port offset_y{"offsety", Integer, "the offset downwards, in pixels of the image", 0.0f};
   const Port edge{"edge", Choice, "the value outside of the image: its border pixel, the mirrored image, or 0",
                   "clamp", edge_names};
+  const Port shift{"shift", Vector2,
+                   "a further offset: to the right as a share of the width of the image, and downwards of its height",
+                   0.0f};
   return {
       {"scenecolor",
        "The linear colour of an image at the pixel, plus an offset. An image of another size is sampled at the position "
-       "of the pixel's centre.",
+       "of the pixel's centre. In an effect, where only the `color` of a pass that is blended may use it: the colour of "
+       "what is opaque, drawn with one sample a pixel.",
        {{"image", ImageName, "one of the document's \"images\"; default: the image that the post processes", ""},
         offset_x,
         offset_y,
@@ -40,14 +44,16 @@ std::vector<Row> screen_rows() {
          Choice,
          "keep infinite and NaN channels, or replace them by 0 before filtering",
          "keep",
-         {"keep", "zero"}}},
+         {"keep", "zero"}},
+        shift},
        Color4,
        Fetch::color},
       {"scenedepth",
        "The depth of the scene. `out` is the stored depth: 1 at the near plane, 0 in the background. `linear` is the "
        "distance along the view direction in world units, at most 1e9; in the background it is 1e9, or the camera's "
-       "\"far\" for an orthographic camera. `issky`: whether the pixel shows the background.",
-       {offset_x, offset_y, edge},
+       "\"far\" for an orthographic camera. `issky`: whether the pixel shows the background. In an effect "
+       "it is the depth of what is opaque, and the rules of `scenecolor` hold.",
+       {offset_x, offset_y, edge, shift},
        {{"out", Float}, {"linear", Float}, {"issky", Boolean}},
        Fetch::depth},
       {"worldposition",

@@ -278,6 +278,7 @@ class Reflector {
       made.states.state = pass.state;
       if (pass.enabled) made.enabled = shader_.parameters.fields[*pass.enabled].name;
       if (pass.double_sided) made.double_sided = shader_.parameters.fields[*pass.double_sided].name;
+      if (pass.blended) made.blended = shader_.parameters.fields[*pass.blended].name;
       made.cut_out = pass.coverage.has_value();
       made.casts_shadow = pass.casts_shadow;
       made.receives_shadow = pass.receives_shadow;

@@ -70,7 +70,8 @@ std::vector<std::string_view> vertex_fields() {
 
 std::vector<std::string_view> stages() {
   using enum lower::Stage;
-  return {lower::name(vertex), lower::name(cutout), lower::name(pixel), lower::name(eval), lower::name(post)};
+  return {lower::name(vertex), lower::name(cutout), lower::name(pixel), lower::name(blend),
+          lower::name(eval), lower::name(post)};
 }
 
 }  // namespace isoshade::reflect::words

@@ -193,6 +193,7 @@ class Data {
                        {"count", draw.indices.size()},
                        {"enabled", word_of(effect.parameters, origin.pass->enabled)},
                        {"double_sided", word_of(effect.parameters, origin.pass->double_sided)},
+                       {"blended", word_of(effect.parameters, origin.pass->blended)},
                        {"mirrored", draw.mirrored}};
       for (const interface::PassStateRow& state : interface::pass_states())
         row[std::string(state.key)] = state.values[state.get(origin.pass->state)];

@@ -27,7 +27,7 @@ class Compiler {
     driver::ShaderOptions naming;
     naming.prefix = "page";  // each program has one document, so that names need not tell documents apart
     const auto shader = driver::compile_shader(source, compiler_, naming, diagnostics_);
-    if (!shader) return std::nullopt;
+    if (!shader || !driver::can_be_forward(*shader, diagnostics_)) return std::nullopt;
     const auto calls = emit::host_calls(shader->pure);
     shaders_.reads_time |= std::ranges::find(calls, interface::HostCall::time) != calls.end();
     documents.push_back(document_of(*shader));

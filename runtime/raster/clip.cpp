@@ -251,6 +251,15 @@ class Assembler {
     return 0;
   }
 
+  static int32_t blend_flags(const Surface& surface) {
+    if (!surface.blended) return 0;
+    switch (surface.state.depth_write) {
+      case interface::DepthWrite::off: return lower::triangle_flag::blended | lower::triangle_flag::keeps_depth;
+      case interface::DepthWrite::on: return lower::triangle_flag::blended;
+    }
+    return 0;
+  }
+
   /// `area`: of the triangle, doubled, in square units; positive.
   void move_away(std::array<Corner, 3>& corners, int64_t area) const {
     const DepthBias& bias = surface_.bias;
@@ -299,7 +308,7 @@ class Assembler {
     }
     record[word::object] =
         (surface_.object << flag::bits) | depth_flag(surface_.state.depth) | (wide ? flag::wide : 0) |
-        (front ? 0 : flag::back) | (surface_.cutout ? flag::cutout : 0);
+        (front ? 0 : flag::back) | (surface_.cutout ? flag::cutout : 0) | blend_flags(surface_);
     triangles_.insert(triangles_.end(), record.begin(), record.end());
   }
 

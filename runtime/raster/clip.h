@@ -35,7 +35,8 @@ struct Surface {
   /// Triangles are front-facing where their vertices turn counter-clockwise in the image; if the surface is mirrored,
   /// clockwise.
   bool mirrored = false;
-  bool cutout = false;  ///< its triangles get triangle_flag::cutout
+  bool cutout = false;   ///< its triangles get triangle_flag::cutout
+  bool blended = false;  ///< its triangles get triangle_flag::blended, by `state.depth_write` with ::keeps_depth
   DepthBias bias = {};
 };
 

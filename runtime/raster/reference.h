@@ -21,4 +21,8 @@ using IsDrawn = std::function<bool(int triangle, int x, int y)>;
 void rasterize_reference(std::span<const int32_t> triangles, const Box& area, std::span<int32_t> ids,
                          std::span<float> depth, const IsDrawn& is_drawn = {});
 
+/// Calls visit(x, y, depth) for each pixel of the area that the triangle (a record) covers, rows top down.
+void for_each_covered(const int32_t* triangle, const Box& area,
+                      const std::function<void(int x, int y, float depth)>& visit);
+
 }  // namespace isoshade::raster

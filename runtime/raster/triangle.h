@@ -27,6 +27,12 @@ struct Triangle {
   ISOSHADE_INLINE bool cutout() const {
     return words[lower::triangle_word::object] & lower::triangle_flag::cutout;
   }
+  ISOSHADE_INLINE bool blended() const {
+    return words[lower::triangle_word::object] & lower::triangle_flag::blended;
+  }
+  ISOSHADE_INLINE bool keeps_depth() const {
+    return words[lower::triangle_word::object] & lower::triangle_flag::keeps_depth;
+  }
   /// The first word of its object's record.
   ISOSHADE_INLINE int object() const {
     return words[lower::triangle_word::object] >> lower::triangle_flag::bits;
@@ -35,6 +41,19 @@ struct Triangle {
 
 ISOSHADE_INLINE Triangle triangle_at(const int32_t* triangles, int index) {
   return {triangles + static_cast<int64_t>(index) * lower::triangle_word::stride};
+}
+
+/// How many of the triangles come before the first that is blended.
+inline int opaque_count(const int32_t* triangles, int count) {
+  int begin = 0, end = count;
+  while (begin < end) {
+    const int middle = begin + (end - begin) / 2;
+    if (triangle_at(triangles, middle).blended())
+      end = middle;
+    else
+      begin = middle + 1;
+  }
+  return begin;
 }
 
 template <class T>

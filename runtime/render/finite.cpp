@@ -79,7 +79,8 @@ NonFinite find_non_finite(std::span<const float> rgba, int width) {
 int object_at(std::span<const int32_t> triangles, int x, int y, float depth) {
   const lanes::FpGuard guard;
   const raster::Box sample = raster::box_at(x, y, 1, 1);
-  const int count = static_cast<int>(triangles.size() / lower::triangle_word::stride);
+  const int count =
+      raster::opaque_count(triangles.data(), static_cast<int>(triangles.size() / lower::triangle_word::stride));
   std::vector<int32_t> reaching;
   for (int i = 0; i < count; ++i)
     if (!raster::bounds(raster::triangle_at(triangles.data(), i)).within(sample).empty()) reaching.push_back(i);

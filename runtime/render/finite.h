@@ -36,7 +36,7 @@ struct NonFiniteReport {
   bool none() const { return drawn.count == 0 && posts.empty() && result.count == 0; }
 };
 
-/// The first word of the record of the object that a sample shows; -1 if it shows none. `depth`: of the sample as it was
+/// The first word of the record of the object that a sample shows, of those that are opaque; -1 if it shows none. `depth`: of the sample as it was
 /// drawn, which tells whether a cut-out let it show what is behind.
 int object_at(std::span<const int32_t> triangles, int x, int y, float depth);
 

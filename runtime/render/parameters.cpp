@@ -171,6 +171,7 @@ class ParameterValues::Resolver {
     store("base_color", material->base_color);
     store("alpha", std::array{material->alpha});
     store("alpha_cutoff", std::array{material->alpha_cutoff});
+    store("blended", std::array{material->blended ? 1.0f : 0.0f}, true);
     store("double_sided", std::array{material->double_sided ? 1.0f : 0.0f}, true);
     store("metallic", std::array{material->metallic});
     store("roughness", std::array{material->roughness});

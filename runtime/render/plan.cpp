@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/render/plan.h"
+#include "runtime/render/planner.h"
 
 #include <algorithm>
 #include <map>
@@ -8,21 +8,13 @@
 
 #include "compiler/ir/printer.h"
 #include "compiler/lower/frame_layout.h"
-#include "compiler/lower/shadow.h"
 #include "compiler/support/visible.h"
 #include "runtime/environment/environment.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/meshes.h"
-#include "runtime/render/parameters.h"
-#include "runtime/render/records.h"
 #include "runtime/render/samples.h"
-#include "runtime/render/shadows.h"
 #include "runtime/render/skips.h"
-#include "runtime/render/textures.h"
-#include "runtime/render/visibility.h"
-#include "runtime/scene/host_math.h"
-#include "runtime/scene/placement.h"
 
 namespace isoshade::render {
 
@@ -46,74 +38,7 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
   return kinds;
 }
 
-class Planner {
- public:
-  Planner(const Scene& scene, const PlanOptions& options, Diagnostics& diagnostics)
-      : scene_(scene), options_(options), diagnostics_(diagnostics) {}
-
-  std::optional<Plan> plan();
-
- private:
-  struct PassPrograms {
-    uint32_t vertex, pixel;  // in Frame::programs
-  };
-
-  bool compile_effects();
-  bool compile_posts();
-  /// What the programs are compiled for.
-  driver::CompileOptions compile_options() const;
-  /// Adds the maps of the environment to the textures; its first record, or -1 without one. Nothing after an error.
-  std::optional<int> add_environment();
-  support::Source read_document(const std::string& path, const support::Span& where);
-  /// `cutout`: of a pixel program, the index of the one that belongs to it.
-  uint32_t add_program(const driver::Program& program, uint32_t cutout = backends::Frame::no_program);
-  bool may_read(const std::string& path, const support::Span& where);
-  bool make_objects();
-  std::optional<size_t> find_mesh(const Object& object);
-  void note_largest_mesh(const Object& object, const StoredMesh& mesh);
-  bool resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
-                     const FindTexture& find_texture);
-  void place_object(size_t o);
-  /// Adds a view. The camera and the size of a pixel are those of an image of this size.
-  void add_view(const scene::Camera& camera, const scene::View& view, int width, int height, backends::Target target);
-  /// Adds the records of the lights, and a view for each of their shadow maps.
-  void add_lights(const scene::View& picture);
-  std::vector<Hull> find_hulls(const scene::View& picture) const;
-  bool is_shadow_map(size_t view) const { return view + 1 < plan_.frame.views.size(); }
-  /// One copy of an object in one view.
-  struct Appearance {
-    glm::mat4 projected;
-    bool outside;     ///< of the view: passes that do not move vertices draw nothing
-    int matrix = -1;  ///< the first word of `projected` in View::words, once a draw needs it
-  };
-  /// One copy of an object.
-  struct Copy {
-    Instance instance;
-    ObjectTransforms place;
-    std::span<Appearance> views;  ///< one for each view
-  };
-  void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
-  /// Appends the record of a draw.
-  backends::Draw make_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
-                           const std::vector<float>& parameters);
-  /// Adds the draw to a view.
-  void place_draw(backends::Draw draw, Appearance& appearance, backends::View& view);
-
-  const Scene& scene_;
-  const PlanOptions& options_;
-  Diagnostics& diagnostics_;
-  Plan plan_;
-  std::vector<scene::View> cameras_;  ///< of each view of the frame
-  std::vector<size_t> effect_of_object_;
-  std::vector<std::vector<PassPrograms>> programs_of_effect_;
-  std::map<std::string, uint32_t> program_by_text_;
-  std::vector<std::vector<ParameterValues>> parameters_;  ///< of each object, for each part of its mesh
-  MeshStore meshes_;
-  uint32_t most_vertices_ = 0;  ///< of a mesh
-  std::vector<size_t> mesh_of_object_;
-  TextureStore textures_;
-  std::vector<const driver::Post*> posts_;  ///< of each post of the scene
-};
+}  // namespace
 
 driver::CompileOptions Planner::compile_options() const {
   driver::CompileOptions options = options_.compiler;
@@ -149,7 +74,8 @@ bool Planner::compile_effects() {
     for (const driver::EffectPass& pass : effect.passes) {
       const uint32_t vertex = add_program(pass.vertex);
       const uint32_t cutout = pass.cutout ? add_program(*pass.cutout) : backends::Frame::no_program;
-      programs.push_back({vertex, add_program(pass.pixel, cutout)});
+      const uint32_t pixel = add_program(pass.pixel, cutout);
+      programs.push_back({vertex, pixel, pass.blend ? add_program(*pass.blend, cutout) : pixel});
     }
   }
   return true;
@@ -290,150 +216,6 @@ bool Planner::make_objects() {
   return good;
 }
 
-/// Places one pass after the other, each over all parts.
-void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped) {
-  const Object& object = scene_.objects[o];
-  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
-  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
-  std::vector<std::vector<float>> parameters;
-  for (const ParameterValues& part : parameters_[o])
-    parameters.push_back(part.words(copy.instance, [&](int number) { return textures_.record(number); }));
-  const glm::vec3& scale = object.transform.scale;
-  const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
-  for (size_t p = 0; p < effect.passes.size(); ++p) {
-    const driver::EffectPass& pass = effect.passes[p];
-    const auto may_see = [&](size_t v) {
-      if (is_shadow_map(v) && !(object.casts_shadow && pass.casts_shadow)) return false;
-      return !copy.views[v].outside || pass.moves_vertices;
-    };
-    bool unseen = true;
-    for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v);
-    bool left_out = false;
-    for (size_t part = 0; part < mesh.parts.size(); ++part) {
-      if (!options_.disabled && effect.parameters.is_off(pass.enabled, parameters[part])) {
-        ++skipped[p].disabled;
-      } else if (unseen) {
-        left_out = true;
-      } else {
-        backends::Draw draw = make_draw(copy.place, programs_of_effect_[effect_of_object_[o]][p],
-                                        mesh.parts[part], parameters[part]);
-        draw.state = pass.state;
-        if (effect.parameters.is_on(pass.double_sided, parameters[part])) draw.state.cull = interface::Cull::none;
-        draw.mirrored = mirrored;
-        draw.cutout = pass.cutout && effect.parameters.cuts_out(pass.cutoff, parameters[part]);
-        if (pass.cutout && !draw.cutout) ++skipped[p].uncut;
-        plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
-        for (size_t v = 0; v < copy.views.size(); ++v) {
-          if (!may_see(v)) continue;
-          backends::Draw seen = draw;
-          if (is_shadow_map(v)) seen.state = {interface::Cull::none, interface::DepthTest::nearer};
-          place_draw(seen, copy.views[v], plan_.frame.views[v]);
-        }
-      }
-    }
-    if (left_out) ++skipped[p].unseen;
-  }
-}
-
-backends::Draw Planner::make_draw(const ObjectTransforms& place, const PassPrograms& programs,
-                                  const MeshPart& part, const std::vector<float>& parameters) {
-  const size_t first = plan_.frame.objects.size();
-  append_object(place, programs.pixel, parameters, plan_.frame.objects);
-  backends::Draw draw;
-  draw.vertex_program = programs.vertex;
-  draw.pixel_program = programs.pixel;
-  draw.object = static_cast<int>(first);
-  draw.first_vertex = part.first_vertex;
-  draw.vertex_count = part.vertex_count;
-  draw.indices = part.indices;
-  return draw;
-}
-
-void Planner::place_draw(backends::Draw draw, Appearance& appearance, backends::View& view) {
-  if (appearance.matrix < 0) appearance.matrix = append_matrix(appearance.projected, view.words);
-  draw.projected = appearance.matrix;
-  view.draws.push_back(draw);
-  ++plan_.stats.draws;
-  plan_.stats.vertices += draw.vertex_count;
-  plan_.stats.triangles += static_cast<int64_t>(draw.indices.size() / 3);
-}
-
-void Planner::place_object(size_t o) {
-  const Object& object = scene_.objects[o];
-  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
-  const int64_t count = scene::instance_count(object);
-  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
-  std::vector<PassSkips> skipped(effect.passes.size());
-  std::vector<Appearance> views(cameras_.size());
-  for (int64_t i = 0; i < count; ++i) {
-    const Instance instance = scene::instance(object, i);
-    const ObjectTransforms place = place_of(object, instance);
-    for (size_t v = 0; v < views.size(); ++v) {
-      const backends::Target& target = plan_.frame.views[v].target;
-      const glm::mat4 projected = scene::multiply(cameras_[v].projection, place.model);
-      views[v] = {projected,
-                  options_.skip && outside_view(mesh.low, mesh.high, projected, target.width, target.height)};
-    }
-    place_copy(o, {instance, place, views}, skipped);
-  }
-  plan_.stats.copies += count;
-  report_skips(object, effect, static_cast<int64_t>(mesh.parts.size()), skipped, plan_.stats.skips);
-}
-
-void Planner::add_view(const scene::Camera& camera, const scene::View& view, int width, int height,
-                       backends::Target target) {
-  cameras_.push_back(view);
-  backends::View& added = plan_.frame.views.emplace_back();
-  added.target = std::move(target);
-  added.words = view_words(camera, view, width, height);
-}
-
-std::vector<Hull> Planner::find_hulls(const scene::View& picture) const {
-  // Of a mesh whose passes move vertices; an author who moves them further leaves their shadows incomplete.
-  constexpr float moved = 0.5f;
-  std::vector<Hull> hulls;
-  for (size_t o = 0; o < scene_.objects.size(); ++o) {
-    const Object& object = scene_.objects[o];
-    const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
-    const std::vector<driver::EffectPass>& passes = plan_.effects[effect_of_object_[o]].passes;
-    const bool casts = object.casts_shadow && std::ranges::any_of(passes, &driver::EffectPass::casts_shadow);
-    const bool moves = std::ranges::any_of(passes, &driver::EffectPass::moves_vertices);
-    const int64_t count = scene::instance_count(object);
-    for (int64_t i = 0; i < count; ++i) {
-      const glm::mat4 model = scene::model_matrix(object, scene::instance(object, i));
-      const glm::mat4 projected = scene::multiply(picture.projection, model);
-      const bool is_seen = moves || !outside_view(mesh.low, mesh.high, projected, scene::max_size, scene::max_size);
-      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts,
-                       object.receives_shadow && is_seen});
-    }
-  }
-  return hulls;
-}
-
-void Planner::add_lights(const scene::View& picture) {
-  namespace word = lower::light_word;
-  const bool any = std::ranges::any_of(scene_.lights, [](const scene::Light& light) { return light.shadow.has_value(); });
-  const std::vector<Hull> hulls = any ? find_hulls(picture) : std::vector<Hull>{};
-  backends::Frame& frame = plan_.frame;
-  for (const scene::Light& light : scene_.lights) {
-    auto record = scene::light_record(light);
-    const std::vector<ShadowMap> maps = light.shadow ? shadow_maps(light, hulls, picture) : std::vector<ShadowMap>{};
-    if (light.shadow && maps.empty()) plan_.stats.skips.push_back({"shadow of " + light.name, "it darkens nothing that is seen"});
-    if (!maps.empty()) {
-      record[word::shadow] = static_cast<float>(1 + frame.views.size() * lower::shadow_map_records);
-      record[word::shadow_maps] = static_cast<float>(maps.size());
-      record[word::softness] = scene::canonical(light.shadow->softness);
-    }
-    for (const ShadowMap& map : maps) {
-      const int size = light.shadow->size;
-      add_view(map.camera, map.view, size, size, {"the shadow of light " + quote(light.name), size, size, false});
-      frame.views.back().depth_bias = map.bias;
-      widen_rays(frame.views.back().words, map.margin);
-    }
-    frame.lights.insert(frame.lights.end(), record.begin(), record.end());
-  }
-}
-
 std::optional<int> Planner::add_environment() {
   if (!scene_.environment) return -1;
   const scene::Environment& environment = *scene_.environment;
@@ -468,13 +250,9 @@ std::optional<Plan> Planner::plan() {
   {
     const lanes::FpGuard guard;
     frame.frame = frame_words(scene_, *environment);
-    const scene::View picture = scene::make_view(scene_.camera, width, height);
-    add_lights(picture);
-    const size_t shadow_maps = frame.views.size();
-    add_view(scene_.camera, picture, width, height, {"the picture", side * width, side * height});
-    for (size_t i = 0; i < shadow_maps; ++i) frame.views.back().reads.push_back(i);
-    for (size_t i = 0; i < 4; ++i) frame.views.back().background[i] = scene::canonical(scene_.background[i]);
+    add_views(width, height, side);
     for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
+    append_blended();
     auto posts = plan_posts(scene_, posts_, width, height, options_.skip, plan_.stats.skips, diagnostics_);
     if (!posts) return std::nullopt;
     plan_.posts = *std::move(posts);
@@ -495,8 +273,6 @@ std::optional<Plan> Planner::plan() {
   stats.plan_seconds = clock.lap();
   return std::move(plan_);
 }
-
-}  // namespace
 
 std::optional<Plan> plan_frame(const Scene& scene, const PlanOptions& options, Diagnostics& diagnostics) {
   return Planner(scene, options, diagnostics).plan();

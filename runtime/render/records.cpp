@@ -102,6 +102,11 @@ void Layers::add_again(size_t record) {
 
 void Layers::add_unread(int width, int height) { add_record(0, width, height, no_camera); }
 
+void Layers::add_no_target() {
+  add_unread();
+  add_unread();
+}
+
 void Layers::add_target(const backends::View& view, const backends::Image& drawn) {
   const auto camera = static_cast<int>(floats.size());
   floats.insert(floats.end(), view.words.begin(), view.words.begin() + lower::view_word::camera_words);

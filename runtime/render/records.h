@@ -57,6 +57,9 @@ struct Layers {
   /// an image that is not read.
   void add_target(const backends::View& view, const backends::Image& drawn);
 
+  /// Appends the records of a target that is not read.
+  void add_no_target();
+
   static constexpr int no_camera = -1;
 
  private:

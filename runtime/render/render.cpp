@@ -82,9 +82,13 @@ class FrameRenderer {
     for (size_t d = 0; d < draws.size(); ++d) {
       const backends::Draw& draw = draws[d];
       support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
-      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout,
-                             pass.view.depth_bias},
-                            pass.view.target.width, pass.view.target.height, vertices_, triangles_);
+      // Where only depth counts, a blended draw is one that writes it or nothing.
+      const backends::Target& target = pass.view.target;
+      const bool writes_depth = !draw.blended || draw.state.depth_write == interface::DepthWrite::on;
+      if (target.has_color || writes_depth)
+        raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored,
+                               draw.cutout, draw.blended && target.has_color, pass.view.depth_bias},
+                              target.width, target.height, vertices_, triangles_);
       support::release(clip[d]);
     }
     stats_.triangles += static_cast<int64_t>(triangles_.size()) / lower::triangle_word::stride;
@@ -98,6 +102,10 @@ class FrameRenderer {
     const backends::View& view = frame_.views[v];
     Layers layers(view.target.width, view.target.height);
     for (const size_t read : view.reads) {
+      if (read == backends::View::nothing) {
+        layers.add_no_target();
+        continue;
+      }
       support::assert_that(read < v, "a view reads a target that is not drawn yet");
       layers.add_target(frame_.views[read], targets_[read]);
     }

@@ -105,6 +105,11 @@ bool draw_rows(const backends::ViewPass& pass, int side, std::span<const float> 
   return true;
 }
 
+bool is_not_finite(const Image& image, int x, int y) {
+  const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x);
+  return find_non_finite(std::span(image.rgba).subspan(4 * pixel, 4), 1).count > 0;
+}
+
 /// Counts the pixels of the image that are not finite, and finds the object that the first of them shows by drawing its
 /// samples again.
 bool note_non_finite(int side, std::span<const int32_t> triangles, backends::ViewRenderer& renderer,
@@ -119,6 +124,26 @@ bool note_non_finite(int side, std::span<const int32_t> triangles, backends::Vie
   const NonFinite sample = find_non_finite(drawn.rgba, side);
   if (sample.count == 0) {
     report.drawn = {};  // a post that is run for each sample made them
+    return true;
+  }
+  // What is blended over a sample that is not finite is not finite either, so the first triangle that makes it so is
+  // found by halves.
+  constexpr size_t stride = lower::triangle_word::stride;
+  const auto draw_first = [&](size_t count) {
+    return renderer.draw(pixel, std::span(selected).first(count * stride), drawn, diagnostics);
+  };
+  const auto is_finite = [&] { return !is_not_finite(drawn, sample.x, sample.y); };
+  const size_t count = selected.size() / stride;
+  const auto opaque = static_cast<size_t>(raster::opaque_count(selected.data(), static_cast<int>(count)));
+  size_t good = opaque, bad = count;
+  if (opaque < count && !draw_first(opaque)) return false;
+  if (opaque < count && is_finite()) {
+    while (bad - good > 1) {
+      const size_t middle = good + (bad - good) / 2;
+      if (!draw_first(middle)) return false;
+      (is_finite() ? good : bad) = middle;
+    }
+    report.object = raster::triangle_at(selected.data(), static_cast<int>(bad - 1)).object();
     return true;
   }
   const float depth = drawn.depth[static_cast<size_t>(sample.y) * static_cast<size_t>(side) + static_cast<size_t>(sample.x)];

@@ -13,7 +13,6 @@ using support::quote;
 
 namespace {
 
-bool is_blend(const Json& value) { return value.string == "BLEND"; }
 bool is_beyond_1(const Json& value) { return value.number > 1; }
 bool is_point_or_line(const Json& value) { return value.number < 4; }
 bool is_given(const Json& value) { return value.kind != Json::Kind::array || !value.items.empty(); }
@@ -26,7 +25,6 @@ struct Feature {
 };
 constexpr std::string_view texcoords = "texture coordinates beyond the second set", skins = "skins";
 constexpr Feature features[] = {
-    {"alphaMode", "the alpha mode BLEND", is_blend},
     {"texCoord", texcoords, is_beyond_1},
     {"mode", "points and lines", is_point_or_line},
     {"skin", skins, is_given},

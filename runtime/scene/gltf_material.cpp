@@ -76,6 +76,7 @@ Material read_factors(const tinygltf::Material& from) {
   if (factors.baseColorFactor.size() > 3) material.alpha = number(factors.baseColorFactor[3]);
   if (from.alphaMode == "MASK")
     material.alpha_cutoff = canonical(static_cast<float>(std::clamp(from.alphaCutoff, 0.0, 1e6)));
+  material.blended = from.alphaMode == "BLEND";
   material.double_sided = from.doubleSided;
   material.metallic = number(factors.metallicFactor);
   const float perceptual = number(factors.roughnessFactor);

@@ -28,6 +28,7 @@ struct Material {
   std::array<float, 3> base_color{1, 1, 1};  ///< linear
   float alpha = 1;
   float alpha_cutoff = 0;     ///< surfaces are drawn where their alpha is not below it
+  bool blended = false;       ///< whether surfaces are blended by their alpha
   bool double_sided = false;  ///< whether faces are drawn that are seen from behind
   float metallic = 1;
   float roughness = 1;  ///< alpha, the square of perceptual roughness

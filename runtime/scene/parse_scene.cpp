@@ -159,6 +159,7 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   scene.background = reader.read(format::scene::background);
   if (const Json* objects = reader.read(format::scene::objects))
     parse_objects(document, *objects, names, scene, diagnostics);
+  scene.sort = static_cast<Sort>(reader.read(format::scene::sort));
   if (const Json* output = reader.read(format::scene::output))
     scene.output = parse_output(document, *output, diagnostics);
   if (const Json* posts = reader.read(format::scene::posts))

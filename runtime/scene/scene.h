@@ -168,6 +168,13 @@ struct Output {
   float exposure = 1;  ///< factor of colours before the encoding
 };
 
+/// The order in which what is blended is drawn.
+enum class Sort : uint8_t {
+  none,          ///< that of the scene
+  back_to_front  ///< by the distance along the view of the middle of each copy's bounds
+};
+inline constexpr std::string_view sort_names[] = {"none", "back_to_front"};
+
 inline constexpr std::array<int, 2> default_size{640, 360};
 inline constexpr std::array<float, 4> default_background{0, 0, 0, 1};
 
@@ -184,6 +191,7 @@ struct Scene {
   std::optional<Environment> environment;
   std::array<float, 4> background = default_background;  ///< linear RGBA
   std::vector<Object> objects;
+  Sort sort = Sort::none;   ///< of what is blended
   std::vector<Post> posts;  ///< in the order in which they run
   Output output;
 };

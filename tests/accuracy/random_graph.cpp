@@ -197,7 +197,8 @@ bool Maker::allowed(const Row& row) const {
     case nodes::Availability::anywhere: return true;
     case nodes::Availability::drawn: return kind_ != graph::DocumentKind::function;
     case nodes::Availability::effects: return kind_ == graph::DocumentKind::effect;
-    case nodes::Availability::posts: return kind_ == graph::DocumentKind::post;
+    case nodes::Availability::posts:
+    case nodes::Availability::pictures: return kind_ == graph::DocumentKind::post;
   }
   return false;
 }

@@ -90,6 +90,29 @@ constexpr std::string_view pixel_main =
     "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
     "  }\n";
 
+/// What is behind each pixel comes in `rgba`, and what it then shows goes there.
+std::string blend_main(const ir::Function& kernel, const FunctionText& called) {
+  return std::string(pixel_loop) +
+         "    float words[4][batch];\n"
+         "    for (int lane = 0; lane < batch; ++lane)\n"
+         "      for (int word = 0; word < 4; ++word)\n"
+         "        words[word][lane] = rgba[4 * (begin + (lane < wanted ? lane : wanted - 1)) + word];\n"
+         "    const vec4<Lanes> backdrop{load_lanes<Lanes>(words[0]), load_lanes<Lanes>(words[1]),\n"
+         "                               load_lanes<Lanes>(words[2]), load_lanes<Lanes>(words[3])};\n"
+         "    const auto blended = blend<Lanes>(buffers, load_lanes<Ints>(at[0]), load_lanes<Ints>(at[1]),\n"
+         "                                      load_lanes<Ints>(at[2]), object, light_count, backdrop);\n" +
+         [&] {
+           std::string stores;
+           const std::vector<ResultWord> results = result_words(kernel, called, "blended");
+           for (size_t i = 0; i < 4; ++i)
+             stores += "    store_lanes(words[" + std::to_string(i) + "], " + results[i].text + ");\n";
+           return stores;
+         }() +
+         "    for (int lane = 0; lane < wanted; ++lane)\n"
+         "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
+         "  }\n";
+}
+
 /// The depth is for languages whose stage writes it; here the rasteriser has it.
 std::string cutout_main(const ir::Function& kernel, const FunctionText& called) {
   return std::string(pixel_loop) +
@@ -169,6 +192,12 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
           "isoshade_pixel(const BufferView* views, int object, int light_count, int count, const int* x,\n"
           "                               const int* y, const int* triangle, float* rgba)";
       body.append(pixel_loop).append(pixel_main);
+      break;
+    case lower::Stage::blend:
+      signature =
+          "isoshade_blend(const BufferView* views, int object, int light_count, int count, const int* x,\n"
+          "                               const int* y, const int* triangle, float* rgba)";
+      body = blend_main(module.functions[entry], texts[entry]);
       break;
     case lower::Stage::cutout:
       signature =

@@ -63,7 +63,9 @@ class Pair {
     out += point(main.kind, program_.point, program_.point_bindings, "  ");
     out += parameters();
     if (program_.coverage) out += "  if (!" + call(pure_.functions[*program_.coverage]) + ") discard;\n";
-    return out + "  isoshade_color = " + call(main) + ";\n}\n";
+    out += "  isoshade_color = " + call(main) + ";\n";
+    if (program_.blend == interface::Blend::multiply) out += "  isoshade_color.rgb *= isoshade_color.a;\n";
+    return out + "}\n";
   }
 
  private:
@@ -81,6 +83,8 @@ class Pair {
                       (is_post() ? "" : ", takes derivatives over blocks of pixels") +
                       " and may round in its own way, so pictures are close to those of isoshade, but not the same bits.",
                   0);
+    if (const std::string_view factors = blend_factors(program_.blend); !factors.empty())
+      comment_lines(out, "Draw it after what is opaque, with the blend factors " + std::string(factors) + ".", 0);
     if (is_es_) out += "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
     return out + "\n";
   }

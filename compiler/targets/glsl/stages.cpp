@@ -44,6 +44,14 @@ constexpr std::string_view canonical_bits =
 constexpr std::string_view canonical_vector =
     "ivec4 canonical(vec4 v) { return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w)); }\n";
 
+/// Of depth and cutout.
+std::string visibility_interface(Variant variant) {
+  std::string text(push_constants);
+  if (variant == Variant::layer)
+    text += binding(3, "") + "uniform isampler2D former_ids;\n" + binding(4, "") + "uniform sampler2D former_depth;\n";
+  return text + "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
+}
+
 std::string buffers_of(const ir::Module& module, std::vector<bool> used) {
   std::string text;
   for (size_t i = 0; i < used.size(); ++i) {
@@ -109,6 +117,79 @@ std::string pixel_main() {
          "}\n";
 }
 
+/// `BlendResult blended = blend(...)` over what is behind the pixel; the new depth goes with it.
+std::string blend_main(const FunctionText& called) {
+  using namespace lower;
+  return std::string(canonical_bits) + std::string(canonical_vector) +
+         "\nvoid main() {\n"
+         "  ivec2 target = ivec2(gl_FragCoord.xy), at = target + ivec2(push.origin_x, push.origin_y);\n"
+         "  int triangle = texelFetch(ids, target, 0).x - 1;\n"
+         "  if (triangle < 0) discard;\n"
+         "  int word = triangles[triangle * " +
+         std::to_string(triangle_word::stride) + " + " + std::to_string(triangle_word::object) +
+         "];\n"
+         "  int object = word >> " +
+         std::to_string(triangle_flag::bits) +
+         ";\n"
+         "  if (int(objects[object + " +
+         std::to_string(object_word::program) +
+         "]) != push.program) discard;\n"
+         "  precise vec4 behind = texelFetch(former_color, target, 0);\n  " +
+         called.result_type + " blended = " + called.name +
+         "(at.x, at.y, triangle, object, push.light_count, behind);\n"
+         "  color = intBitsToFloat(canonical(blended." +
+         called.result_fields[0] +
+         "));\n"
+         "  precise float z = blended." +
+         called.result_fields[1] +
+         ";\n"
+         "  if ((word & " +
+         std::to_string(triangle_flag::keeps_depth) +
+         ") != 0) z = texelFetch(former_depth, target, 0).x;\n"
+         "  new_depth = z;\n"
+         "}\n";
+}
+
+/// The head of the visibility shader of a layer: `at`, and whether the pixel comes after the layer before.
+std::string layer_head() {
+  return "void main() {\n"
+         "  ivec2 target = ivec2(gl_FragCoord.xy), at = target + ivec2(push.origin_x, push.origin_y);\n"
+         "  int after = push.first;\n"
+         "  if (after < 0) {\n"
+         "    after = texelFetch(former_ids, target, 0).x;\n"
+         "    if (after == 0) discard;  // the pixel has no further layer\n"
+         "  }\n"
+         "  if (triangle < after) discard;\n";
+}
+/// The test of its depth `z`. Triangles are drawn in their order, and of those that come through the first is kept.
+std::string layer_tail() {
+  using namespace lower;
+  return "  int word = triangles[triangle * " + std::to_string(triangle_word::stride) + " + " +
+         std::to_string(triangle_word::object) +
+         "];\n"
+         "  if ((word & " +
+         std::to_string(triangle_flag::over) +
+         ") == 0 && !(z > texelFetch(former_depth, target, 0).x)) discard;\n"
+         "  gl_FragDepth = 1.0;\n"
+         "  id = triangle + 1;\n"
+         "}\n";
+}
+
+std::string depth_layer_main() {
+  return layer_head() + "  precise float z = depth(at.x, at.y, triangle);\n" + layer_tail();
+}
+
+std::string cutout_layer_main(const FunctionText& called) {
+  using namespace lower;
+  return layer_head() + "  int object = triangles[triangle * " + std::to_string(triangle_word::stride) + " + " +
+         std::to_string(triangle_word::object) + "] >> " + std::to_string(triangle_flag::bits) + ";\n  " +
+         called.result_type + " covered = " + called.name +
+         "(at.x, at.y, triangle, object);\n"
+         "  if (!covered." +
+         called.result_fields[0] + ") discard;\n  precise float z = covered." + called.result_fields[1] + ";\n" +
+         layer_tail();
+}
+
 std::string post_main() {
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
@@ -168,7 +249,7 @@ std::string vertex_eval_main(const ir::Function& kernel, const FunctionText& cal
 }  // namespace
 
 std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const Heading& heading,
-                       EvalIn eval_in) {
+                       Variant variant) {
   std::vector<bool> used = used_buffers(module, entry);
   std::string text = head();
   text +=
@@ -184,15 +265,13 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
       body = vertex_main();
       break;
     case lower::Stage::depth:
-      interface = std::string(push_constants) +
-                  "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
-      body = depth_main();
+      interface = visibility_interface(variant);
+      body = variant == Variant::layer ? depth_layer_main() : depth_main();
       break;
     case lower::Stage::cutout:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
-      interface = std::string(push_constants) +
-                  "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
-      body = cutout_main(texts[entry]);
+      interface = visibility_interface(variant);
+      body = variant == Variant::layer ? cutout_layer_main(texts[entry]) : cutout_main(texts[entry]);
       break;
     case lower::Stage::pixel:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
@@ -201,8 +280,17 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
                   "uniform isampler2D ids;\nlayout(location = 0) out vec4 color;\n";
       body = pixel_main();
       break;
+    case lower::Stage::blend:
+      used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
+      used[static_cast<size_t>(lower::FrameBuffer::objects)] = true;
+      interface = std::string(push_constants) + binding(1, "") + "uniform isampler2D ids;\n" + binding(4, "") +
+                  "uniform sampler2D former_depth;\n" + binding(5, "") +
+                  "uniform sampler2D former_color;\n"
+                  "layout(location = 0) out vec4 color;\nlayout(location = 1) out float new_depth;\n";
+      body = blend_main(texts[entry]);
+      break;
     case lower::Stage::eval:
-      if (eval_in == EvalIn::vertex_shader) {
+      if (variant == Variant::vertex_eval) {
         interface = binding(0) + "writeonly buffer words_block { int words[]; };\n";
         body = vertex_eval_main(module.functions[entry], texts[entry]);
         break;

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// The views of a frame and what each of them draws.
+#include <algorithm>
+#include <utility>
+
+#include "compiler/lower/frame_layout.h"
+#include "compiler/lower/shadow.h"
+#include "compiler/support/visible.h"
+#include "runtime/render/planner.h"
+#include "runtime/render/visibility.h"
+#include "runtime/scene/host_math.h"
+#include "runtime/scene/placement.h"
+
+namespace isoshade::render {
+
+using scene::Instance;
+using scene::Object;
+using support::quote;
+
+/// Places one pass after the other, each over all parts.
+void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped) {
+  const Object& object = scene_.objects[o];
+  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+  std::vector<std::vector<float>> parameters;
+  for (const ParameterValues& part : parameters_[o])
+    parameters.push_back(part.words(copy.instance, [&](int number) { return textures_.record(number); }));
+  const glm::vec3& scale = object.transform.scale;
+  const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
+  for (size_t p = 0; p < effect.passes.size(); ++p) {
+    const driver::EffectPass& pass = effect.passes[p];
+    const auto may_see = [&](size_t v) {
+      if (is_shadow_map(v) && !(object.casts_shadow && pass.casts_shadow)) return false;
+      return !copy.views[v].outside || pass.moves_vertices;
+    };
+    bool unseen = true;
+    for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v);
+    bool left_out = false;
+    for (size_t part = 0; part < mesh.parts.size(); ++part) {
+      if (!options_.disabled && effect.parameters.is_off(pass.enabled, parameters[part])) {
+        ++skipped[p].disabled;
+      } else if (unseen) {
+        left_out = true;
+      } else {
+        PassPrograms programs = programs_of_effect_[effect_of_object_[o]][p];
+        const bool blended = pass.blend && !effect.parameters.is_off(pass.blended, parameters[part]);
+        if (blended) programs.pixel = programs.blend;
+        backends::Draw draw = make_draw(copy.place, programs, mesh.parts[part], parameters[part]);
+        draw.state = pass.state;
+        draw.blended = blended;
+        if (effect.parameters.is_on(pass.double_sided, parameters[part])) draw.state.cull = interface::Cull::none;
+        draw.mirrored = mirrored;
+        draw.cutout = pass.cutout && effect.parameters.cuts_out(pass.cutoff, parameters[part]);
+        if (pass.cutout && !draw.cutout) ++skipped[p].uncut;
+        plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
+        for (size_t v = 0; v < copy.views.size(); ++v) {
+          if (!may_see(v)) continue;
+          backends::Draw seen = draw;
+          if (is_shadow_map(v)) {
+            seen.state = {};
+            seen.state.cull = interface::Cull::none;
+            seen.blended = false;
+          }
+          place_draw(seen, copy.views[v], v);
+        }
+      }
+    }
+    if (left_out) ++skipped[p].unseen;
+  }
+}
+
+backends::Draw Planner::make_draw(const ObjectTransforms& place, const PassPrograms& programs,
+                                  const MeshPart& part, const std::vector<float>& parameters) {
+  const size_t first = plan_.frame.objects.size();
+  append_object(place, programs.pixel, parameters, plan_.frame.objects);
+  backends::Draw draw;
+  draw.vertex_program = programs.vertex;
+  draw.pixel_program = programs.pixel;
+  draw.object = static_cast<int>(first);
+  draw.first_vertex = part.first_vertex;
+  draw.vertex_count = part.vertex_count;
+  draw.indices = part.indices;
+  return draw;
+}
+
+void Planner::place_draw(backends::Draw draw, Appearance& appearance, size_t v) {
+  if (draw.blended && has_opaque_view_ && v == opaque_view()) return;
+  backends::View& view = plan_.frame.views[v];
+  if (appearance.matrix < 0) appearance.matrix = append_matrix(appearance.projected, view.words);
+  draw.projected = appearance.matrix;
+  if (draw.blended)
+    blended_[v].push_back({appearance.nearness, draw});
+  else
+    view.draws.push_back(draw);
+  ++plan_.stats.draws;
+  plan_.stats.vertices += draw.vertex_count;
+  plan_.stats.triangles += static_cast<int64_t>(draw.indices.size() / 3);
+}
+
+void Planner::place_object(size_t o) {
+  const Object& object = scene_.objects[o];
+  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+  const int64_t count = scene::instance_count(object);
+  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+  std::vector<PassSkips> skipped(effect.passes.size());
+  std::vector<Appearance> views(cameras_.size());
+  for (int64_t i = 0; i < count; ++i) {
+    const Instance instance = scene::instance(object, i);
+    const ObjectTransforms place = place_of(object, instance);
+    for (size_t v = 0; v < views.size(); ++v) {
+      const backends::Target& target = plan_.frame.views[v].target;
+      const glm::mat4 projected = scene::multiply(cameras_[v].projection, place.model);
+      const glm::vec4 middle(0.5f * mesh.low + 0.5f * mesh.high, 1.0f);
+      views[v] = {projected,
+                  options_.skip && outside_view(mesh.low, mesh.high, projected, target.width, target.height),
+                  scene::multiply(cameras_[v].view, scene::multiply(place.model, middle)).z};
+    }
+    place_copy(o, {instance, place, views}, skipped);
+  }
+  plan_.stats.copies += count;
+  report_skips(object, effect, static_cast<int64_t>(mesh.parts.size()), skipped, plan_.stats.skips);
+}
+
+void Planner::add_view(const scene::Camera& camera, const scene::View& view, int width, int height,
+                       backends::Target target) {
+  cameras_.push_back(view);
+  blended_.emplace_back();
+  backends::View& added = plan_.frame.views.emplace_back();
+  added.target = std::move(target);
+  added.words = view_words(camera, view, width, height);
+}
+
+std::vector<Hull> Planner::find_hulls(const scene::View& picture) const {
+  // Of a mesh whose passes move vertices; an author who moves them further leaves their shadows incomplete.
+  constexpr float moved = 0.5f;
+  std::vector<Hull> hulls;
+  for (size_t o = 0; o < scene_.objects.size(); ++o) {
+    const Object& object = scene_.objects[o];
+    const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+    const std::vector<driver::EffectPass>& passes = plan_.effects[effect_of_object_[o]].passes;
+    const bool casts = object.casts_shadow && std::ranges::any_of(passes, &driver::EffectPass::casts_shadow);
+    const bool moves = std::ranges::any_of(passes, &driver::EffectPass::moves_vertices);
+    const int64_t count = scene::instance_count(object);
+    for (int64_t i = 0; i < count; ++i) {
+      const glm::mat4 model = scene::model_matrix(object, scene::instance(object, i));
+      const glm::mat4 projected = scene::multiply(picture.projection, model);
+      const bool is_seen = moves || !outside_view(mesh.low, mesh.high, projected, scene::max_size, scene::max_size);
+      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts,
+                       object.receives_shadow && is_seen});
+    }
+  }
+  return hulls;
+}
+
+void Planner::add_lights(const scene::View& picture) {
+  namespace word = lower::light_word;
+  const bool any = std::ranges::any_of(scene_.lights, [](const scene::Light& light) { return light.shadow.has_value(); });
+  const std::vector<Hull> hulls = any ? find_hulls(picture) : std::vector<Hull>{};
+  backends::Frame& frame = plan_.frame;
+  for (const scene::Light& light : scene_.lights) {
+    auto record = scene::light_record(light);
+    const std::vector<ShadowMap> maps = light.shadow ? shadow_maps(light, hulls, picture) : std::vector<ShadowMap>{};
+    if (light.shadow && maps.empty()) plan_.stats.skips.push_back({"shadow of " + light.name, "it darkens nothing that is seen"});
+    if (!maps.empty()) {
+      const size_t place = frame.views.size() + (has_opaque_view_ ? 1 : 0);
+      record[word::shadow] = static_cast<float>(1 + place * lower::shadow_map_records);
+      record[word::shadow_maps] = static_cast<float>(maps.size());
+      record[word::softness] = scene::canonical(light.shadow->softness);
+    }
+    for (const ShadowMap& map : maps) {
+      const int size = light.shadow->size;
+      add_view(map.camera, map.view, size, size, {"the shadow of light " + quote(light.name), size, size, false});
+      frame.views.back().depth_bias = map.bias;
+      widen_rays(frame.views.back().words, map.margin);
+    }
+    frame.lights.insert(frame.lights.end(), record.begin(), record.end());
+  }
+}
+
+/// The shadow maps; then what is opaque if a pass reads that, with one sample a pixel; and last the picture.
+void Planner::add_views(int width, int height, int side) {
+  const auto reads_scene = [](const driver::Effect& effect) {
+    return std::ranges::any_of(effect.passes, &driver::EffectPass::reads_scene);
+  };
+  has_opaque_view_ = std::ranges::any_of(plan_.effects, reads_scene);
+  const scene::View camera = scene::make_view(scene_.camera, width, height);
+  std::vector<backends::View>& views = plan_.frame.views;
+  add_lights(camera);
+  shadow_maps_ = views.size();
+  if (has_opaque_view_) add_view(scene_.camera, camera, width, height, {"what is opaque", width, height});
+  add_view(scene_.camera, camera, width, height, {"the picture", side * width, side * height});
+  for (size_t v = shadow_maps_; v < views.size(); ++v) {
+    // Programs find what is opaque at the first place, and all of them find the shadow maps at the same ones behind it.
+    if (has_opaque_view_) views[v].reads.push_back(v == opaque_view() ? backends::View::nothing : opaque_view());
+    for (size_t map = 0; map < shadow_maps_; ++map) views[v].reads.push_back(map);
+    for (size_t i = 0; i < 4; ++i) views[v].background[i] = scene::canonical(scene_.background[i]);
+  }
+}
+
+void Planner::append_blended() {
+  for (size_t v = 0; v < blended_.size(); ++v) {
+    if (scene_.sort == scene::Sort::back_to_front)
+      std::ranges::stable_sort(blended_[v], {}, &BlendedDraw::nearness);
+    for (const BlendedDraw& blended : blended_[v]) plan_.frame.views[v].draws.push_back(blended.draw);
+  }
+}
+
+}  // namespace isoshade::render
