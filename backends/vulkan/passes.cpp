@@ -157,7 +157,7 @@ void Device::Impl::prepare_layers() {
     return make_attachment(format, made.width, made.height, Usage::eSampled | Usage::eTransferSrc);
   };
   made.second_ids = attachment(ids_format);
-  made.order = make_attachment(depth_format, made.width, made.height, {});
+  made.order = make_attachment(depth_format, made.width, made.height, Usage::eTransferSrc);  // where its pass ends
   made.layers[0].own_color = attachment(color_format);
   for (size_t i = 0; i < 2; ++i) {
     LayerTarget& layer = made.layers[i];

@@ -174,7 +174,6 @@ class Maker {
   bool add_forward(const driver::Shader& shader) {
     return for_each_target([&](const emit::Target& target, bool is_text, const emit::Binary* binary) {
       if (target.forward == nullptr) return cannot(target.name, "forward shaders");
-      if (!driver::can_be_forward(shader, diagnostics_)) return false;
       if (!driver::within_limits(shader, target, options_.division, diagnostics_)) return false;
       for (const driver::ForwardPair& pair : pairs(shader, target)) {
         const std::string stem = pair.stem + std::string(target.forward_infix);
@@ -248,7 +247,9 @@ std::optional<Artifacts> make_artifacts(const support::Source& source, const dri
   }
   const auto shader =
       driver::compile_shader(source, of_shader, {options.prefix, options.division}, diagnostics);
-  return shader ? maker.make(*shader, stages, compile.library->files()) : std::nullopt;
+  if (!shader) return std::nullopt;
+  if (options.wrapper == Wrapper::forward && !driver::can_be_forward(*shader, diagnostics)) return std::nullopt;
+  return maker.make(*shader, stages, compile.library->files());
 }
 
 }  // namespace isoshade::api

@@ -178,6 +178,9 @@ bool is_sampler(const PureShader& shader, const ir::Function& function) {
 
 ForwardLayout forward_layout(const ForwardProgram& program) { return Layout(program).make(); }
 
+namespace {
+
+/// The device's blending that is closest to isoshade's; empty for none.
 std::string_view blend_factors(interface::Blend blend) {
   switch (blend) {
     case interface::Blend::none: return "";
@@ -187,6 +190,18 @@ std::string_view blend_factors(interface::Blend blend) {
     case interface::Blend::premultiplied: return "ONE, ONE_MINUS_SRC_ALPHA";
   }
   return "";
+}
+
+}  // namespace
+
+std::vector<std::string> forward_notes(interface::Blend blend, bool is_post) {
+  std::vector<std::string> notes{
+      std::string("Outside the contract of isoshade: the hardware interpolates") +
+      (is_post ? "" : ", takes derivatives over blocks of pixels") +
+      " and may round in its own way, so pictures are close to those of isoshade, but not the same bits."};
+  const std::string_view factors = blend_factors(blend);
+  if (!factors.empty()) notes.push_back("Draw it after what is opaque, with the blend factors " + std::string(factors) + ".");
+  return notes;
 }
 
 }  // namespace isoshade::emit

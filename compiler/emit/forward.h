@@ -88,9 +88,9 @@ struct ForwardLayout {
 /// Whether a function of the shader's module samples an image as a whole.
 bool is_sampler(const PureShader& shader, const ir::Function& function);
 
-/// The device's blending that is closest to isoshade's, in words; empty for none. For Blend::multiply the pair multiplies
-/// the color by its alpha.
-std::string_view blend_factors(interface::Blend blend);
+/// What the head of a shader says: how far it can be relied on, and how to blend what the pair draws. For Blend::multiply
+/// the pair multiplies the color by its alpha.
+std::vector<std::string> forward_notes(interface::Blend blend, bool is_post);
 
 ForwardLayout forward_layout(const ForwardProgram& program);
 

@@ -40,7 +40,7 @@ TEST(CheckBlending, RejectsKeysWithoutEffect) {
 TEST(CheckBlending, LetsTheColorReadThePicture) {
   EXPECT_FALSE(has(messages_of(R"("blend": "over", "color": "seen")"), "error"));
   EXPECT_FALSE(has(messages_of(R"("blend": "add", "color": "c")",
-                               R"(, "c": {"type": "expression", "code": "color3(z)", "z": "far.linear"})"),
+                               R"j(, "c": {"type": "expression", "code": "color3(z)", "z": "far.linear"})j"),
                    "error"));
 }
 
@@ -62,8 +62,8 @@ TEST(CheckBlending, RejectsReadingThePictureWhereThereIsNone) {
 
 TEST(CheckBlending, RejectsDerivativesOfThePicture) {
   const std::string found = messages_of(R"("color": "c", "blend": "over")",
-                                        R"(, "w": {"type": "fwidth", "in": "seen.r"},
-    "c": {"type": "expression", "code": "color3(w)", "w": "w"})");
+                                        R"j(, "w": {"type": "fwidth", "in": "seen.r"},
+    "c": {"type": "expression", "code": "color3(w)", "w": "w"})j");
   EXPECT_TRUE(has(found, "\"fwidth\" takes the derivative of a value that depends on \"seen\"")) << found;
 }
 
