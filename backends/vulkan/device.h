@@ -39,7 +39,9 @@ enum class Output : uint8_t {
   buffer,      ///< words at the output binding, by a vertex shader; nothing is rasterised
   visibility,  ///< R32_SINT ids, and D32_SFLOAT depth under the test `>`
   color,       ///< R32G32B32A32_SFLOAT
-  layer,       ///< R32G32B32A32_SFLOAT, and R32_SFLOAT for the depth
+  layer,       ///< the same, over what is there
+  deep_layer,  ///< the same, and R32_SFLOAT for the depth, both over what is there
+  depth_copy,  ///< R32_SFLOAT
   words,       ///< up to 8 of R32G32B32A32_SINT
 };
 
@@ -57,16 +59,14 @@ struct PipelineSource {
 /// A vertex shader that covers every pixel with one triangle.
 const std::string& full_screen_vertex();
 
-/// A fragment shader of Output::layer that copies color and depth of the layer before where a layer has no triangle.
-const std::string& keep_fragment();
+/// A fragment shader of Output::depth_copy that copies the depth of what is opaque.
+const std::string& depth_copy_fragment();
 
 /// A vertex shader that draws the triangles of the buffer at their snapped positions; `flat out int triangle` at
 /// location 0. The map from 1/256 pixel to clip space is an exact power of two.
 const std::string& triangle_vertex();
 
 using PipelineIndex = uint32_t;
-
-struct Layers;
 
 /// One draw call of triangles (of points for Output::buffer) inside a rectangle of the view.
 struct Call {
@@ -77,15 +77,19 @@ struct Call {
   Window scissor{};
 };
 
-/// What draws triangles that are blended, a layer at a time: each pixel's next triangle, by number, that is not behind
-/// what is there.
+/// Consecutive triangles that are blended, which are drawn a layer at a time: each pixel's next triangle, by number, that
+/// is not behind what is there. All of them write depth, or none does.
+struct LayerGroup {
+  uint32_t first = 0;            ///< the number of the first triangle
+  uint32_t count = 0;            ///< of triangles; at most so many layers are drawn
+  Window area{};                 ///< where they lie in the view
+  std::vector<Call> visibility;  ///< of Output::visibility, glsl::Variant::layer
+  std::vector<Call> blending;    ///< of Output::layer, or deep_layer if they write depth: one for each program
+  bool writes_depth = false;
+};
 struct Layers {
-  /// Of Output::visibility, glsl::Variant::layer; over all triangles that are blended.
-  std::vector<Call> visibility;
-  /// Of Output::layer: first the one of keep_fragment(), then one for each program of Stage::blend.
-  std::vector<Call> blending;
-  uint32_t first = 0;  ///< the number of the first triangle
-  uint32_t count = 0;  ///< of triangles; at most so many layers are drawn
+  std::vector<LayerGroup> groups;  ///< in the order in which they are drawn
+  std::optional<Call> copy_depth;  ///< of depth_copy_fragment(), if a group writes depth
 };
 
 class Device {

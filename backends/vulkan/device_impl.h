@@ -42,13 +42,14 @@ struct Attachment {
   vk::raii::ImageView view{nullptr};
 };
 
-/// Where one layer of triangles that are blended goes. Layers take two of them in turn.
-struct LayerTarget {
-  Attachment own_color, depth;
-  const Attachment* ids = nullptr;
-  const Attachment* color = nullptr;  ///< of the one before: its own, or that of the window
-  vk::raii::Framebuffer visibility{nullptr};
-  vk::raii::Framebuffer blending{nullptr};
+/// What layers of triangles that are blended need beside ids, depth and color of the window.
+struct LayerAttachments {
+  Attachment ids;       ///< layers write these and those of the window in turn
+  Attachment order;     ///< the depth by which each pixel keeps the first triangle of a layer
+  Attachment backdrop;  ///< the color before the layer, where it is drawn
+  Attachment depth;     ///< if layers write depth
+  std::array<vk::raii::Framebuffer, 2> visibility{nullptr, nullptr};  ///< of these ids, of those of the window
+  vk::raii::Framebuffer blending{nullptr}, deep_blending{nullptr}, depth_copying{nullptr};
 };
 
 /// The attachments of a window; made again when its size changes.
@@ -56,12 +57,11 @@ struct WindowAttachments {
   int width = 0;
   int height = 0;
   bool has_color = false;   ///< otherwise `color` and `shading` are empty
-  bool has_layers = false;  ///< otherwise all that follows `shading` is empty
+  bool has_layers = false;  ///< otherwise `layers` is empty
   Attachment ids, depth, color;
   vk::raii::Framebuffer visibility{nullptr};
   vk::raii::Framebuffer shading{nullptr};
-  Attachment second_ids, order;  ///< order: the depth by which each pixel keeps the first triangle of a layer
-  std::array<LayerTarget, 2> layers;
+  LayerAttachments layers;
 };
 
 /// The images that shaders read. Those that a call does not read may be any.
@@ -94,16 +94,18 @@ struct Device::Impl {
 
   void prepare_attachments(int width, int height, bool has_color, bool has_layers = false);
   void prepare_layers();
-  /// Draws layers over the opaque part of the window that the attachments hold, and returns where the last one is. Calls
-  /// record(commands, call) for each call.
-  template <class Record>
-  const LayerTarget& draw_layers(const Layers& layers, const Record& record);
+  vk::raii::Framebuffer make_framebuffer(Output output, std::span<const vk::ImageView> views, int width, int height);
+  /// Draws a group over what is there. `depth`: what its triangles are tested against; (x, y): the pixel of the view at the
+  /// attachments' first.
+  void draw_group(const LayerGroup& group, const Attachment& depth, int x, int y);
   TableAttachments& prepare_table(uint32_t attachments, int height);
 
   /// Points the descriptor set at the current buffers. It always writes every descriptor: lavapipe crashes on one that
   /// is not written, even if no shader uses it.
   void write_descriptors(const ImagesRead& images);
   void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
+  /// With the attachments' first pixel at (x, y) of the view.
+  void record_at(const vk::raii::CommandBuffer& commands, std::span<const Call> calls, int x, int y) const;
 
   /// Records, submits and waits. Afterwards the host sees what the device wrote. Shaders read the ids of the window.
   template <class Record>

@@ -53,12 +53,20 @@ void change_layout(const vk::raii::CommandBuffer& commands, const vk::raii::Imag
   commands.pipelineBarrier(all, all, {}, {}, {}, barrier);
 }
 
-/// From what a render pass leaves to what is copied, and back to what shaders read.
-void begin_copying(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format) {
-  change_layout(commands, image, format, vk::ImageLayout::eShaderReadOnlyOptimal, vk::ImageLayout::eTransferSrcOptimal);
-}
-void end_copying(const vk::raii::CommandBuffer& commands, const vk::raii::Image& image, vk::Format format) {
-  change_layout(commands, image, format, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eShaderReadOnlyOptimal);
+/// Copies the color of a rectangle, for shaders to read.
+void copy_backdrop(const vk::raii::CommandBuffer& commands, const vk::raii::Image& color, const vk::raii::Image& backdrop,
+                   const vk::Rect2D& rectangle) {
+  using Layout = vk::ImageLayout;
+  change_layout(commands, backdrop, color_format, Layout::eUndefined, Layout::eTransferDstOptimal);
+  const vk::ImageSubresourceLayers layers{.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1};
+  const vk::Offset3D offset{rectangle.offset.x, rectangle.offset.y, 0};
+  commands.copyImage(*color, Layout::eTransferSrcOptimal, *backdrop, Layout::eTransferDstOptimal,
+                     vk::ImageCopy{.srcSubresource = layers,
+                                   .srcOffset = offset,
+                                   .dstSubresource = layers,
+                                   .dstOffset = offset,
+                                   .extent = {rectangle.extent.width, rectangle.extent.height, 1}});
+  change_layout(commands, backdrop, color_format, Layout::eTransferDstOptimal, Layout::eShaderReadOnlyOptimal);
 }
 
 class PassEncoder {
@@ -112,6 +120,17 @@ void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output
   std::memcpy(output.data(), results.data, output.size_bytes());
 }
 
+vk::raii::Framebuffer Device::Impl::make_framebuffer(Output output, std::span<const vk::ImageView> views, int width,
+                                                     int height) {
+  const uint32_t colors = output == Output::deep_layer ? 2 : 1;
+  return {device, vk::FramebufferCreateInfo{.renderPass = *render_pass(output, colors),
+                                            .attachmentCount = static_cast<uint32_t>(views.size()),
+                                            .pAttachments = views.data(),
+                                            .width = static_cast<uint32_t>(width),
+                                            .height = static_cast<uint32_t>(height),
+                                            .layers = 1}};
+}
+
 void Device::Impl::prepare_attachments(int width, int height, bool has_color, bool has_layers) {
   WindowAttachments& made = attachments;
   if (made.width == width && made.height == height && (made.has_color || !has_color) &&
@@ -120,20 +139,13 @@ void Device::Impl::prepare_attachments(int width, int height, bool has_color, bo
   using Usage = vk::ImageUsageFlagBits;
   made = {};  // first, because both might not fit
   made.ids = make_attachment(ids_format, width, height, Usage::eSampled);
-  const vk::ImageUsageFlags copied = has_layers ? Usage::eTransferSrc | Usage::eSampled : Usage::eTransferSrc;
-  made.depth = make_attachment(depth_format, width, height, copied);
-  const auto framebuffer = [&](Output output, std::span<const vk::ImageView> views) {
-    return vk::raii::Framebuffer(device, {.renderPass = *render_pass(output, 1),
-                                          .attachmentCount = static_cast<uint32_t>(views.size()),
-                                          .pAttachments = views.data(),
-                                          .width = static_cast<uint32_t>(width),
-                                          .height = static_cast<uint32_t>(height),
-                                          .layers = 1});
-  };
-  made.visibility = framebuffer(Output::visibility, std::array{*made.ids.view, *made.depth.view});
+  made.depth = make_attachment(depth_format, width, height,
+                               has_layers ? Usage::eTransferSrc | Usage::eSampled : Usage::eTransferSrc);
+  made.visibility =
+      make_framebuffer(Output::visibility, std::array{*made.ids.view, *made.depth.view}, width, height);
   if (has_color) {
-    made.color = make_attachment(color_format, width, height, copied);
-    made.shading = framebuffer(Output::color, std::array{*made.color.view});
+    made.color = make_attachment(color_format, width, height, Usage::eTransferSrc);
+    made.shading = make_framebuffer(Output::color, std::array{*made.color.view}, width, height);
   }
   made.has_color = has_color;
   made.has_layers = has_layers;
@@ -144,68 +156,60 @@ void Device::Impl::prepare_attachments(int width, int height, bool has_color, bo
 
 void Device::Impl::prepare_layers() {
   using Usage = vk::ImageUsageFlagBits;
-  WindowAttachments& made = attachments;
-  const auto framebuffer = [&](Output output, uint32_t colors, std::span<const vk::ImageView> views) {
-    return vk::raii::Framebuffer(device, {.renderPass = *render_pass(output, colors),
-                                          .attachmentCount = static_cast<uint32_t>(views.size()),
-                                          .pAttachments = views.data(),
-                                          .width = static_cast<uint32_t>(made.width),
-                                          .height = static_cast<uint32_t>(made.height),
-                                          .layers = 1});
-  };
-  const auto attachment = [&](vk::Format format) {
-    return make_attachment(format, made.width, made.height, Usage::eSampled | Usage::eTransferSrc);
-  };
-  made.second_ids = attachment(ids_format);
-  made.order = make_attachment(depth_format, made.width, made.height, Usage::eTransferSrc);  // where its pass ends
-  made.layers[0].own_color = attachment(color_format);
-  for (size_t i = 0; i < 2; ++i) {
-    LayerTarget& layer = made.layers[i];
-    layer.depth = attachment(layer_depth_format);
-    layer.ids = i == 0 ? &made.second_ids : &made.ids;
-    layer.color = i == 0 ? &layer.own_color : &made.color;
-    layer.visibility = framebuffer(Output::visibility, 1, std::array{*layer.ids->view, *made.order.view});
-    layer.blending = framebuffer(Output::layer, 2, std::array{*layer.color->view, *layer.depth.view});
+  const int width = attachments.width, height = attachments.height;
+  LayerAttachments& made = attachments.layers;
+  made.ids = make_attachment(ids_format, width, height, Usage::eSampled);
+  made.order = make_attachment(depth_format, width, height, Usage::eTransferSrc);  // as its render pass leaves it
+  made.backdrop = make_attachment(color_format, width, height, Usage::eSampled | Usage::eTransferDst);
+  made.depth = make_attachment(layer_depth_format, width, height, Usage::eSampled | Usage::eTransferSrc);
+  const Attachment* const ids[] = {&made.ids, &attachments.ids};
+  for (size_t i = 0; i < 2; ++i)
+    made.visibility[i] =
+        make_framebuffer(Output::visibility, std::array{*ids[i]->view, *made.order.view}, width, height);
+  const vk::ImageView color = *attachments.color.view, depth = *made.depth.view;
+  made.blending = make_framebuffer(Output::layer, std::array{color}, width, height);
+  made.deep_blending = make_framebuffer(Output::deep_layer, std::array{color, depth}, width, height);
+  made.depth_copying = make_framebuffer(Output::depth_copy, std::array{depth}, width, height);
+}
+
+void Device::Impl::record_at(const vk::raii::CommandBuffer& to, std::span<const Call> calls, int x, int y) const {
+  for (Call call : calls) {
+    call.push.origin_x = x;
+    call.push.origin_y = y;
+    record(to, call);
   }
 }
 
-template <class Record>
-const LayerTarget& Device::Impl::draw_layers(const Layers& layers, const Record& record) {
-  const WindowAttachments& made = attachments;
-  const vk::Rect2D all = area(made.width, made.height);
-  const LayerTarget* former = nullptr;
-  for (uint32_t number = 0; number <= layers.count; ++number) {
-    const LayerTarget& layer = made.layers[number % 2];
-    const ImagesRead read{*layer.ids->view, *(former == nullptr ? made.ids : *former->ids).view,
-                          *(former == nullptr ? made.depth : former->depth).view,
-                          *(former == nullptr ? made.color : *former->color).view};
+void Device::Impl::draw_group(const LayerGroup& group, const Attachment& depth, int x, int y) {
+  const LayerAttachments& made = attachments.layers;
+  const vk::Rect2D group_area = area(moved(group.area, x, y));
+  const Attachment* const ids[] = {&made.ids, &attachments.ids};
+  std::vector<Call> visibility = group.visibility;
+  for (uint32_t number = 0; number < group.count; ++number) {
+    const size_t turn = number % 2;
+    // The first layer begins with the first triangle, a later one in each pixel after that of the layer before.
+    for (Call& call : visibility) call.push.first = number == 0 ? static_cast<int32_t>(group.first) : -1;
+    const ImagesRead read{*ids[turn]->view, *ids[1 - turn]->view, *depth.view, *made.backdrop.view};
     submit(read, [&](const vk::raii::CommandBuffer& commands) {
-      if (former == nullptr) {
-        end_copying(commands, made.depth.image, depth_format);
-        end_copying(commands, made.color.image, color_format);
-      }
       commands.resetQueryPool(*samples_passed, 0, 1);
       {
         const std::array<vk::ClearValue, 2> nothing{};
-        const PassEncoder pass(commands, render_pass(Output::visibility, 1), layer.visibility, all, nothing);
+        const PassEncoder pass(commands, render_pass(Output::visibility, 1), made.visibility[turn], group_area, nothing);
         commands.beginQuery(*samples_passed, 0, {});
-        for (Call call : layers.visibility) {
-          call.push.first = former == nullptr ? static_cast<int32_t>(layers.first) : -1;
-          record(commands, call);
-        }
+        record_at(commands, visibility, x, y);
         commands.endQuery(*samples_passed, 0);
       }
-      const std::array<vk::ClearValue, 2> nothing{};
-      const PassEncoder pass(commands, render_pass(Output::layer, 2), layer.blending, all, nothing);
-      for (const Call& call : layers.blending) record(commands, call);
+      copy_backdrop(commands, attachments.color.image, made.backdrop.image, group_area);
+      const bool deep = group.writes_depth;
+      const PassEncoder pass(commands, render_pass(deep ? Output::deep_layer : Output::layer, deep ? 2 : 1),
+                             deep ? made.deep_blending : made.blending, group_area, {});
+      record_at(commands, group.blending, x, y);
     });
-    former = &layer;
     const auto [result, passed] = samples_passed.getResult<uint64_t>(
         0, 1, sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not count the pixels of a layer");
-    if (passed == 0) break;
+    if (passed == 0) return;
   }
-  return *former;
 }
 
 void Device::render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
@@ -214,16 +218,10 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
   const bool has_color = !image.rgba.empty();
   const int margin = window.x > 0 || window.y > 0 ? margin_of_windows : 0;
   const int origin_x = window.x - margin, origin_y = window.y - margin;
-  const bool has_layers = layers.count > 0;
+  const bool has_layers = !layers.groups.empty();
   impl_->prepare_attachments(width + margin, height + margin, has_color, has_layers);
   const WindowAttachments& attachments = impl_->attachments;
   const vk::Rect2D all = area(attachments.width, attachments.height);
-  const auto record = [&](const vk::raii::CommandBuffer& commands, Call call) {
-    call.push.origin_x = origin_x;
-    call.push.origin_y = origin_y;
-    impl_->record(commands, call);
-  };
-
   const size_t row_bytes = static_cast<size_t>(width) * ((has_color ? pixel_bytes : 0) + depth_bytes);
   const int band =
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
@@ -237,34 +235,42 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
       const std::array<vk::ClearValue, 2> nothing{};
       const PassEncoder pass(commands, impl_->render_pass(Output::visibility, 1), attachments.visibility, all,
                              nothing);
-      for (const Call& call : visibility) record(commands, call);
+      impl_->record_at(commands, visibility, origin_x, origin_y);
     }
     if (!has_color) return;
     const vk::ClearValue backdrop{
         vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
     const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading, all, {&backdrop, 1});
-    for (const Call& call : color) record(commands, call);
+    impl_->record_at(commands, color, origin_x, origin_y);
   };
-  const LayerTarget* last = nullptr;
+  const bool deep = layers.copy_depth.has_value();
+  const Attachment& depth = deep ? attachments.layers.depth : attachments.depth;
+  const vk::Format format_of_depth = deep ? layer_depth_format : depth_format;
   if (has_layers) {
-    impl_->submit(draw_opaque);
-    last = &impl_->draw_layers(layers, record);
+    const vk::ImageView ids = *attachments.ids.view;
+    impl_->submit({ids, ids, *attachments.depth.view, ids}, [&](const vk::raii::CommandBuffer& commands) {
+      draw_opaque(commands);
+      change_layout(commands, attachments.depth.image, depth_format, vk::ImageLayout::eTransferSrcOptimal,
+                    vk::ImageLayout::eShaderReadOnlyOptimal);
+      if (!deep) return;
+      const vk::ClearValue nothing{};
+      const PassEncoder pass(commands, impl_->render_pass(Output::depth_copy, 1), attachments.layers.depth_copying, all,
+                             {&nothing, 1});
+      impl_->record_at(commands, {&*layers.copy_depth, 1}, origin_x, origin_y);
+    });
+    for (const LayerGroup& group : layers.groups) impl_->draw_group(group, depth, origin_x, origin_y);
   }
-  const Attachment& drawn_color = last == nullptr ? attachments.color : *last->color;
-  const Attachment& drawn_depth = last == nullptr ? attachments.depth : last->depth;
-  const vk::Format drawn_depth_format = last == nullptr ? depth_format : layer_depth_format;
 
   for (int first = 0; first < height; first += band) {
     const int rows = std::min(band, height - first);
     impl_->submit([&](const vk::raii::CommandBuffer& commands) {
       if (first == 0 && !has_layers) draw_opaque(commands);
-      if (first == 0 && has_layers) {
-        begin_copying(commands, drawn_color.image, color_format);
-        begin_copying(commands, drawn_depth.image, drawn_depth_format);
-      }
+      if (first == 0 && has_layers)
+        change_layout(commands, depth.image, format_of_depth, vk::ImageLayout::eShaderReadOnlyOptimal,
+                      vk::ImageLayout::eTransferSrcOptimal);
       const Window lines{margin, margin + first, width, rows};
-      if (has_color) copy(commands, drawn_color.image, color_format, lines, impl_->readback, 0);
-      copy(commands, drawn_depth.image, drawn_depth_format, lines, impl_->readback, depth_at);
+      if (has_color) copy(commands, attachments.color.image, color_format, lines, impl_->readback, 0);
+      copy(commands, depth.image, format_of_depth, lines, impl_->readback, depth_at);
     });
     const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
     const size_t pixels = static_cast<size_t>(rows) * static_cast<size_t>(width);

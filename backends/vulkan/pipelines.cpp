@@ -28,23 +28,30 @@ std::array<vk::SubpassDependency, 2> order_everything() {
   return {before, after};
 }
 
-vk::raii::RenderPass make_render_pass(const vk::raii::Device& device, std::span<const vk::Format> colors,
-                                      vk::ImageLayout colors_end_as, bool depth) {
+/// A color attachment of a render pass, which clears it, or keeps what it finds in the layout in which it leaves it.
+struct ColorTarget {
+  vk::Format format;
+  vk::ImageLayout ends_as;
+  bool kept = false;
+};
+
+vk::raii::RenderPass make_render_pass(const vk::raii::Device& device, std::span<const ColorTarget> colors, bool depth) {
   std::vector<vk::AttachmentDescription> attachments;
   std::vector<vk::AttachmentReference> references;
-  const auto add = [&](vk::Format format, vk::ImageLayout drawn_as, vk::ImageLayout ends_as) {
+  const auto add = [&](const ColorTarget& target, vk::ImageLayout drawn_as) {
     references.push_back({static_cast<uint32_t>(attachments.size()), drawn_as});
-    attachments.push_back({.format = format,
+    attachments.push_back({.format = target.format,
                            .samples = vk::SampleCountFlagBits::e1,
-                           .loadOp = vk::AttachmentLoadOp::eClear,
+                           .loadOp = target.kept ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear,
                            .storeOp = vk::AttachmentStoreOp::eStore,
                            .stencilLoadOp = vk::AttachmentLoadOp::eDontCare,
                            .stencilStoreOp = vk::AttachmentStoreOp::eDontCare,
-                           .finalLayout = ends_as});
+                           .initialLayout = target.kept ? target.ends_as : vk::ImageLayout::eUndefined,
+                           .finalLayout = target.ends_as});
   };
-  for (const vk::Format format : colors) add(format, vk::ImageLayout::eColorAttachmentOptimal, colors_end_as);
+  for (const ColorTarget& color : colors) add(color, vk::ImageLayout::eColorAttachmentOptimal);
   if (depth)
-    add(depth_format, vk::ImageLayout::eDepthStencilAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);
+    add({depth_format, vk::ImageLayout::eTransferSrcOptimal}, vk::ImageLayout::eDepthStencilAttachmentOptimal);
 
   const vk::SubpassDescription subpass{.pipelineBindPoint = vk::PipelineBindPoint::eGraphics,
                                        .colorAttachmentCount = static_cast<uint32_t>(colors.size()),
@@ -83,21 +90,13 @@ void main() {
   return text;
 }
 
-const std::string& keep_fragment() {
-  const auto image = [](uint32_t binding, std::string_view of) {
-    return "layout(set = 0, binding = " + std::to_string(binding) + ") uniform " + std::string(of) + ";\n";
-  };
-  static const std::string text =
-      glsl::head() + image(ids_binding, "isampler2D ids") + image(former_depth_binding, "sampler2D former_depth") +
-      image(former_color_binding, "sampler2D former_color") + R"(
-layout(location = 0) out vec4 color;
-layout(location = 1) out float depth;
+const std::string& depth_copy_fragment() {
+  static const std::string text = glsl::head() + "layout(set = 0, binding = " + std::to_string(former_depth_binding) +
+                                  ") uniform sampler2D former_depth;" + R"(
+layout(location = 0) out float depth;
 
 void main() {
-  ivec2 target = ivec2(gl_FragCoord.xy);
-  if (texelFetch(ids, target, 0).x != 0) discard;
-  color = texelFetch(former_color, target, 0);
-  depth = texelFetch(former_depth, target, 0).x;
+  depth = texelFetch(former_depth, ivec2(gl_FragCoord.xy), 0).x;
 }
 )";
   return text;
@@ -127,23 +126,18 @@ const vk::raii::RenderPass& Device::Impl::render_pass(Output output, uint32_t at
   const std::pair which{output, attachments};
   if (const auto found = render_passes.find(which); found != render_passes.end()) return found->second;
 
-  using Layout = vk::ImageLayout;
-  std::vector<vk::Format> colors;
-  Layout ends_as = Layout::eTransferSrcOptimal;
+  constexpr auto copied = vk::ImageLayout::eTransferSrcOptimal, read = vk::ImageLayout::eShaderReadOnlyOptimal;
+  std::vector<ColorTarget> colors;
   switch (output) {
     case Output::buffer: break;
-    case Output::visibility:
-      colors = {ids_format};
-      ends_as = Layout::eShaderReadOnlyOptimal;
-      break;
-    case Output::color: colors = {color_format}; break;
-    case Output::layer:
-      colors = {color_format, layer_depth_format};
-      ends_as = Layout::eShaderReadOnlyOptimal;
-      break;
-    case Output::words: colors.assign(attachments, words_format); break;
+    case Output::visibility: colors = {{ids_format, read}}; break;
+    case Output::color: colors = {{color_format, copied}}; break;
+    case Output::layer: colors = {{color_format, copied, true}}; break;
+    case Output::deep_layer: colors = {{color_format, copied, true}, {layer_depth_format, read, true}}; break;
+    case Output::depth_copy: colors = {{layer_depth_format, read}}; break;
+    case Output::words: colors.assign(attachments, {words_format, copied}); break;
   }
-  auto made = make_render_pass(device, colors, ends_as, output == Output::visibility);
+  auto made = make_render_pass(device, colors, output == Output::visibility);
   return render_passes.emplace(which, std::move(made)).first->second;
 }
 

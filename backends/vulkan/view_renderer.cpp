@@ -58,6 +58,58 @@ std::vector<Run> runs_of(const Frame& frame, std::span<const int32_t> triangles,
   return runs;
 }
 
+Box united(const Box& a, const Box& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+int64_t area_of(const Box& box) { return int64_t{box.x1 - box.x0 + 1} * (box.y1 - box.y0 + 1); }
+
+/// Triangles that are blended and drawn layer by layer at once.
+struct BlendedGroup {
+  uint32_t begin, end;  ///< their numbers
+  Box box;              ///< where they lie
+  bool writes_depth;
+  std::map<size_t, Box> programs = {};  ///< and where those of each program lie
+  std::vector<Box> objects = {};
+};
+
+/// The triangles [begin, end) in groups: objects that lie side by side are drawn at once, because each layer of a group
+/// costs as much as its box is large.
+std::vector<BlendedGroup> groups_of(const Frame& frame, const Window& window, std::span<const int32_t> triangles,
+                                    uint32_t begin, uint32_t end) {
+  constexpr size_t most_objects = 64;
+  const Box area = raster::box_at(window.x, window.y, window.width, window.height);
+  std::vector<BlendedGroup> groups;
+  while (begin < end) {
+    const raster::Triangle first = raster::triangle_at(triangles.data(), static_cast<int>(begin));
+    Box box{area.x1 + 1, area.y1 + 1, area.x0 - 1, area.y0 - 1};
+    uint32_t next = begin;
+    for (; next < end; ++next) {
+      const raster::Triangle triangle = raster::triangle_at(triangles.data(), static_cast<int>(next));
+      if (triangle.object() != first.object()) break;
+      if (const Box covered = raster::bounds(triangle).within(area); !covered.empty()) box = united(box, covered);
+    }
+    if (!box.empty()) {
+      const bool writes_depth = !first.keeps_depth();
+      const auto fits = [&](const BlendedGroup& group) {
+        int64_t areas = area_of(box);
+        for (const Box& other : group.objects) areas += area_of(other);
+        const auto touches = [&](const Box& other) { return !box.within(other).empty(); };
+        return group.writes_depth == writes_depth && group.end == begin && group.objects.size() < most_objects &&
+               area_of(united(group.box, box)) <= 4 * areas && std::ranges::none_of(group.objects, touches);
+      };
+      if (groups.empty() || !fits(groups.back())) groups.push_back({begin, next, box, writes_depth});
+      BlendedGroup& group = groups.back();
+      group.end = next;
+      group.box = united(group.box, box);
+      group.objects.push_back(box);
+      Box& of_program = group.programs.try_emplace(backends::pixel_program_of(frame, first.object()), box).first->second;
+      of_program = united(of_program, box);
+    }
+    begin = next;
+  }
+  return groups;
+}
+
 Window window_of(const Box& box) { return {box.x0, box.y0, box.x1 - box.x0 + 1, box.y1 - box.y0 + 1}; }
 
 }  // namespace
@@ -76,61 +128,75 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
       if (!triangles.empty() && !upload(triangles, diagnostics)) return false;
       const auto count = static_cast<uint32_t>(triangles.size() / lower::triangle_word::stride);
       const auto opaque = static_cast<uint32_t>(raster::opaque_count(triangles.data(), static_cast<int>(count)));
-      Calls calls{light_count, window};
-      if (!add_visibility(triangles, 0, opaque, false, calls, diagnostics)) return false;
-      calls.layers.first = opaque;
-      calls.layers.count = count - opaque;
-      if (opaque < count && !add_visibility(triangles, opaque, count, true, calls, diagnostics)) return false;
-      if (opaque < count && !add_keeping(calls, diagnostics)) return false;
+      std::vector<Call> visibility, color;
+      if (!add_visibility(triangles, {0, opaque, window}, false, visibility, diagnostics)) return false;
       std::vector<Box> bounds;
-      if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles);
+      if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles.first(opaque * stride));
       for (size_t p = 0; p < bounds.size(); ++p) {
         if (bounds[p].empty()) continue;
-        const driver::Program& program = *pass_.frame.programs[p];
-        if (!shading_[p]) shading_[p] = pixel_pipeline(program, diagnostics);
+        if (!shading_[p]) shading_[p] = pixel_pipeline(*pass_.frame.programs[p], diagnostics);
         if (!shading_[p]) return false;
-        std::vector<Call>& to = program.stage == driver::Stage::blend ? calls.layers.blending : calls.color;
-        to.push_back({.pipeline = *shading_[p],
-                      .push = {.light_count = light_count, .program = static_cast<int32_t>(p)},
-                      .scissor = window_of(bounds[p])});
+        color.push_back({.pipeline = *shading_[p],
+                         .push = {.light_count = light_count, .program = static_cast<int32_t>(p)},
+                         .scissor = window_of(bounds[p])});
       }
+      Layers layers;
+      if (opaque < count && !add_layers(window, triangles, opaque, count, layers, diagnostics)) return false;
       image.resize(window.width, window.height, has_color);
-      backend_.device_->render(calls.visibility, calls.color, calls.layers, pass_.view.background, window, image);
+      backend_.device_->render(visibility, color, layers, pass_.view.background, window, image);
       return true;
     });
   }
 
  private:
-  /// What draws a window.
-  struct Calls {
-    int light_count;
-    Window window;
-    std::vector<Call> visibility = {}, color = {};
-    Layers layers = {};
-  };
+  static constexpr size_t stride = lower::triangle_word::stride;
 
-  /// Adds what finds where the triangles [begin, end) are seen.
-  bool add_visibility(std::span<const int32_t> triangles, uint32_t begin, uint32_t end, bool in_layers, Calls& calls,
+  struct Range {
+    uint32_t begin, end;  ///< numbers of triangles
+    Window area;
+  };
+  /// Adds what finds where triangles are seen.
+  bool add_visibility(std::span<const int32_t> triangles, const Range& range, bool in_layers, std::vector<Call>& calls,
                       Diagnostics& diagnostics) {
-    for (const Run& run : runs_of(pass_.frame, triangles, begin, end)) {
+    for (const Run& run : runs_of(pass_.frame, triangles, range.begin, range.end)) {
       const auto pipeline = visibility_pipeline(run, in_layers, diagnostics);
       if (!pipeline) return false;
-      (in_layers ? calls.layers.visibility : calls.visibility)
-          .push_back({.pipeline = *pipeline,
-                      .push = {.light_count = calls.light_count},
-                      .first_vertex = 3 * run.first,
-                      .vertex_count = 3 * run.count,
-                      .scissor = calls.window});
+      calls.push_back({.pipeline = *pipeline,
+                       .push = {.light_count = pass_.frame.light_count},
+                       .first_vertex = 3 * run.first,
+                       .vertex_count = 3 * run.count,
+                       .scissor = range.area});
     }
     return true;
   }
 
-  /// Adds what keeps the pixels that a layer leaves as they were.
-  bool add_keeping(Calls& calls, Diagnostics& diagnostics) {
-    const auto pipeline =
-        backend_.device_->pipeline({Output::layer, 2, full_screen_vertex(), keep_fragment()}, diagnostics);
-    if (pipeline) calls.layers.blending.push_back({.pipeline = *pipeline, .scissor = calls.window});
-    return pipeline.has_value();
+  /// Adds what blends the triangles [begin, end).
+  bool add_layers(const Window& window, std::span<const int32_t> triangles, uint32_t begin, uint32_t end,
+                  Layers& layers, Diagnostics& diagnostics) {
+    for (const BlendedGroup& group : groups_of(pass_.frame, window, triangles, begin, end)) {
+      LayerGroup& made = layers.groups.emplace_back();
+      made.first = group.begin;
+      made.count = group.end - group.begin;
+      made.area = window_of(group.box);
+      made.writes_depth = group.writes_depth;
+      if (!add_visibility(triangles, {group.begin, group.end, made.area}, true, made.visibility, diagnostics))
+        return false;
+      for (const auto& [p, box] : group.programs) {
+        std::optional<PipelineIndex>& pipeline = blending_[{p, group.writes_depth}];
+        if (!pipeline) pipeline = blend_pipeline(*pass_.frame.programs[p], group.writes_depth, diagnostics);
+        if (!pipeline) return false;
+        made.blending.push_back(
+            {.pipeline = *pipeline,
+             .push = {.light_count = pass_.frame.light_count, .program = static_cast<int32_t>(p)},
+             .scissor = window_of(box)});
+      }
+      if (!group.writes_depth || layers.copy_depth) continue;
+      const auto copy = backend_.device_->pipeline(
+          {Output::depth_copy, 1, full_screen_vertex(), depth_copy_fragment()}, diagnostics);
+      if (!copy) return false;
+      layers.copy_depth = Call{.pipeline = *copy, .scissor = window};
+    }
+    return true;
   }
 
   /// Uploads the triangles; the first time, also everything that cut-outs and pixel programs read.
@@ -159,9 +225,18 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   std::optional<PipelineIndex> pixel_pipeline(const driver::Program& program, Diagnostics& diagnostics) {
     auto text = backend_.text_of(program, diagnostics);
     if (!text) return std::nullopt;
-    const bool blends = program.stage == driver::Stage::blend;
-    PipelineSource source{blends ? Output::layer : Output::color, blends ? 2u : 1u, full_screen_vertex(),
-                          std::move(*text)};
+    PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
+    source.what = driver::description(program);
+    return backend_.device_->pipeline(source, diagnostics);
+  }
+
+  std::optional<PipelineIndex> blend_pipeline(const driver::Program& program, bool writes_depth,
+                                              Diagnostics& diagnostics) {
+    auto text = backend_.text_of(program, diagnostics);
+    if (!text) return std::nullopt;
+    if (writes_depth) text = driver::glsl_of_layer(program, backend_.division_);
+    PipelineSource source{writes_depth ? Output::deep_layer : Output::layer, writes_depth ? 2u : 1u,
+                          full_screen_vertex(), std::move(*text)};
     source.what = driver::description(program);
     return backend_.device_->pipeline(source, diagnostics);
   }
@@ -174,6 +249,8 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   std::map<std::tuple<const driver::Program*, bool, bool>, std::optional<PipelineIndex>> visibility_;
   std::vector<std::optional<PipelineIndex>>
       shading_;  ///< one for each program of the frame, made when needed
+  /// By the program, and whether its triangles write depth.
+  std::map<std::pair<size_t, bool>, std::optional<PipelineIndex>> blending_;
 };
 
 std::unique_ptr<backends::ViewRenderer> VulkanBackend::begin(const ViewPass& pass,

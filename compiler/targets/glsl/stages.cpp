@@ -117,18 +117,16 @@ std::string pixel_main() {
          "}\n";
 }
 
-/// `BlendResult blended = blend(...)` over what is behind the pixel; the new depth goes with it.
-std::string blend_main(const FunctionText& called) {
+/// `BlendResult blended = blend(...)` over what is behind the pixel.
+std::string blend_main(const FunctionText& called, Variant variant) {
   using namespace lower;
   return std::string(canonical_bits) + std::string(canonical_vector) +
          "\nvoid main() {\n"
          "  ivec2 target = ivec2(gl_FragCoord.xy), at = target + ivec2(push.origin_x, push.origin_y);\n"
          "  int triangle = texelFetch(ids, target, 0).x - 1;\n"
          "  if (triangle < 0) discard;\n"
-         "  int word = triangles[triangle * " +
-         std::to_string(triangle_word::stride) + " + " + std::to_string(triangle_word::object) +
-         "];\n"
-         "  int object = word >> " +
+         "  int object = triangles[triangle * " +
+         std::to_string(triangle_word::stride) + " + " + std::to_string(triangle_word::object) + "] >> " +
          std::to_string(triangle_flag::bits) +
          ";\n"
          "  if (int(objects[object + " +
@@ -138,16 +136,8 @@ std::string blend_main(const FunctionText& called) {
          called.result_type + " blended = " + called.name +
          "(at.x, at.y, triangle, object, push.light_count, behind);\n"
          "  color = intBitsToFloat(canonical(blended." +
-         called.result_fields[0] +
-         "));\n"
-         "  precise float z = blended." +
-         called.result_fields[1] +
-         ";\n"
-         "  if ((word & " +
-         std::to_string(triangle_flag::keeps_depth) +
-         ") != 0) z = texelFetch(former_depth, target, 0).x;\n"
-         "  new_depth = z;\n"
-         "}\n";
+         called.result_fields[0] + "));\n" +
+         (variant == Variant::layer ? "  new_depth = blended." + called.result_fields[1] + ";\n" : "") + "}\n";
 }
 
 /// The head of the visibility shader of a layer: `at`, and whether the pixel comes after the layer before.
@@ -283,11 +273,10 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
     case lower::Stage::blend:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
       used[static_cast<size_t>(lower::FrameBuffer::objects)] = true;
-      interface = std::string(push_constants) + binding(1, "") + "uniform isampler2D ids;\n" + binding(4, "") +
-                  "uniform sampler2D former_depth;\n" + binding(5, "") +
-                  "uniform sampler2D former_color;\n"
-                  "layout(location = 0) out vec4 color;\nlayout(location = 1) out float new_depth;\n";
-      body = blend_main(texts[entry]);
+      interface = std::string(push_constants) + binding(1, "") + "uniform isampler2D ids;\n" + binding(5, "") +
+                  "uniform sampler2D former_color;\nlayout(location = 0) out vec4 color;\n";
+      if (variant == Variant::layer) interface += "layout(location = 1) out float new_depth;\n";
+      body = blend_main(texts[entry], variant);
       break;
     case lower::Stage::eval:
       if (variant == Variant::vertex_eval) {

@@ -12,8 +12,7 @@
 //           target's first pixel is (origin_x, origin_y) of the frame, as it is of pixel.
 //   cutout  the same, but it discards pixels where the effect's cut-out does not hold.
 //   pixel   a fragment shader: the id at its pixel, 0 for none; discards pixels of other programs; out vec4 at 0.
-//   blend   as pixel, for a layer of triangles that are blended; reads `former_depth` and `former_color` at its pixel; out
-//           vec4 at 0, and out float at 1, the depth after the layer.
+//   blend   as pixel, for a layer of triangles that are blended, over `former_color`.
 //   eval    a fragment shader: row = first + x + y * width; discards rows >= count; results as bits, four to an
 //           `out ivec4` at locations 0, 1, ...
 //   post    a fragment shader: out vec4 at 0
@@ -33,7 +32,8 @@ enum class Variant : uint8_t {
                 ///< binding of `clip` (ints)
   /// Of depth and cutout: keeps pixels whose triangle has a number of at least `first`, or if that is negative of at least
   /// the id that `former_ids` has there (none where that is 0), and passes the depth test against `former_depth`.
-  /// gl_FragDepth is 1, so that under the test `>` the first triangle is kept that comes through.
+  /// gl_FragDepth is 1, so that under the test `>` the first triangle is kept that comes through. Of blend: writes the
+  /// depth of the triangle, too, as out float at 1.
   layer
 };
 
