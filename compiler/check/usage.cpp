@@ -319,7 +319,7 @@ void check_derivatives_of_environment(Work& work) {
       const graph::Node& source = work.graph().nodes[i];
       work.report(Id::unsupported, source.type_place,
                   quote(source.label()) + " takes the derivative of " +
-                      quote(work.graph().nodes[operands[k].index].label()) + ", which depends on the environment")
+                      quote(work.graph().nodes[operands[k].index].id) + ", which depends on the environment")
           .suggest("take the derivative of a value that does not depend on it");
     }
     depends[i] = depends[i] || needs(typed, i, StageNeed::environment);

@@ -9,14 +9,11 @@
 
 namespace isoshade::functions {
 
-/// The levels of the map of radiance, and the texels of each side: each level has half of those before, but not fewer than
-/// the last.
-inline constexpr int environment_levels = 7;
-inline constexpr int environment_side = 512, environment_last_side = 32;
-constexpr int environment_side_of(int level) {
-  const int side = environment_side >> level;
-  return side > environment_last_side ? side : environment_last_side;
-}
+/// The levels of the map of radiance: texels of each side. Texels are narrower than the lobes, because bilinear filters show
+/// the folds of the octahedron where texels are wide.
+inline constexpr int environment_sides[] = {512, 256, 256, 128, 64, 64, 64, 64};
+inline constexpr int environment_levels = static_cast<int>(sizeof environment_sides / sizeof environment_sides[0]);
+inline constexpr int environment_side = environment_sides[0];
 /// Texels of each side of the map of irradiance.
 inline constexpr int irradiance_side = 64;
 /// Around each level lie texels that repeat those beyond its edges, so that filters need not wrap around.
@@ -54,22 +51,22 @@ vec<F, 3> octahedral_direction(vec<F, 2> place) {
   return {folded(x), y, folded(z)};
 }
 
-/// The level of a roughness (alpha of GGX), 0 to the last level: with p = sqrt(roughness), p (2 - p) of the last level.
-/// So the lobes of the levels are wider than their texels, and grow evenly.
+/// The level of a roughness (alpha of GGX), 0 to the last level: with p = sqrt(roughness), p (3 - p) / 2 of the last
+/// level.
 /// Domain: all floats; NaN counts as 0, and what is beyond [0, 1] as the nearer end.
 /// Error: 3 ULP.
 template <class F>
 F environment_level(F roughness) {
   const F from_0 = select(roughness > 0.0f, roughness, F(0.0f));
   const F p = sqrt(select(from_0 < 1.0f, from_0, F(1.0f)));
-  return (p * (2.0f - p)) * static_cast<float>(environment_levels - 1);
+  return (p * (3.0f - p)) * (0.5f * static_cast<float>(environment_levels - 1));
 }
 
 /// The roughness of a level: the inverse of environment_level.
 /// Domain: [0, environment_levels - 1].
 template <class F>
 F environment_roughness(F level) {
-  const F p = 1.0f - sqrt(1.0f - level / static_cast<float>(environment_levels - 1));
+  const F p = 1.5f - sqrt(2.25f - level / (0.5f * static_cast<float>(environment_levels - 1)));
   return p * p;
 }
 

@@ -27,7 +27,7 @@ static_assert(std::endian::native == std::endian::little, "entries of the cache 
 std::vector<int> widths() {
   std::vector<int> widths;
   for (int level = 0; level < functions::environment_levels; ++level)
-    widths.push_back(functions::environment_side_of(level) + 2 * functions::environment_border);
+    widths.push_back(functions::environment_sides[level] + 2 * functions::environment_border);
   widths.push_back(functions::irradiance_side + 2 * functions::environment_border);
   return widths;
 }

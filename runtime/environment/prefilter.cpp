@@ -14,12 +14,15 @@ namespace {
 
 using backends::Workers;
 
-/// Rays for each level of roughness from 1 on: powers of two.
-constexpr int ray_counts[] = {128, 256, 512, 1024, 1024, 1024};
-static_assert(std::size(ray_counts) == functions::environment_levels - 1);
+/// Rays for each level of roughness from 1 on: powers of two. The lobes of the other levels are wide enough for LobeJob.
+constexpr int ray_counts[] = {128, 512, 1024};
+constexpr int narrow_levels = std::size(ray_counts);
+/// The levels of the pyramid that wide lobes are summed over: the coarse one from this roughness on.
+constexpr int fine_source = 2, coarse_source = 3;
+constexpr float coarse_from = 0.5f;
 /// A ray reads texels of this many times the size of its share of the lobe: rays overlap, and so the noise is low.
 /// Source: Krivanek and Colbert 2008, Real-time Shading with Filtered Importance Sampling.
-constexpr float ray_overlap = 2;
+constexpr float ray_overlap = 4;
 /// An image is read at a size of at most this many columns.
 constexpr int most_columns = 2 * functions::environment_side * rays_each_way / 2;
 
@@ -119,20 +122,29 @@ Maps prefilter(const Pyramid& source, const PrefilterOptions& options) {
     scene::TextureLevel& mirror = maps.emplace_back(bordered(functions::environment_side));
     std::copy_n(source.level(0), mirror.texels.size(), mirror.texels.begin());
   }
-  for (int level = 1; level < functions::environment_levels; ++level) {
-    const int side = functions::environment_side_of(level);
-    scene::TextureLevel& made = maps.emplace_back(bordered(side));
-    const std::vector<Ray> rays = rays_of_level(level);
-    make_rows(RadianceJob{source, rays, side}, made.texels.data(), side, options);
-  }
-  std::vector<float> directions;
+  std::vector<float> directions[Pyramid::levels], roughness;
   {
     const lanes::FpGuard guard;
-    directions = directions_of(Pyramid::side_of(IrradianceJob::level));
+    for (const int level : {fine_source, coarse_source}) directions[level] = directions_of(Pyramid::side_of(level));
+    for (int level = 0; level < functions::environment_levels; ++level)
+      roughness.push_back(functions::environment_roughness(static_cast<float>(level)));
   }
-  scene::TextureLevel& irradiance = maps.emplace_back(bordered(functions::irradiance_side));
-  make_rows(IrradianceJob{source, directions, functions::irradiance_side}, irradiance.texels.data(),
-            functions::irradiance_side, options);
+  const auto add_lobes = [&](float of, int level, int side) {
+    scene::TextureLevel& made = maps.emplace_back(bordered(side));
+    make_rows(LobeJob{source, level, directions[level], of, side}, made.texels.data(), side, options);
+  };
+  for (int level = 1; level < functions::environment_levels; ++level) {
+    const int side = functions::environment_sides[level];
+    if (level > narrow_levels) {
+      const float of = roughness[static_cast<size_t>(level)];
+      add_lobes(of, of < coarse_from ? fine_source : coarse_source, side);
+      continue;
+    }
+    scene::TextureLevel& made = maps.emplace_back(bordered(side));
+    const std::vector<Ray> rays = rays_of_level(level);
+    make_rows(RaysJob{source, rays, side}, made.texels.data(), side, options);
+  }
+  add_lobes(1, fine_source, functions::irradiance_side);
   return maps;
 }
 

@@ -30,7 +30,7 @@ void fill_levels(Pyramid& pyramid);
 /// The maps of a pyramid whose levels are filled. The bits do not depend on the options.
 Maps prefilter(const Pyramid& source, const PrefilterOptions& options);
 
-/// The rays for a level of roughness, 1 and above.
+/// The rays for a level of roughness whose lobes are narrow, from 1 on.
 std::vector<Ray> rays_of_level(int level);
 
 }  // namespace isoshade::environment

@@ -44,26 +44,28 @@ struct Ray {
   float level;  ///< of the pyramid that has texels of the size of its share of the lobe, on the axes
 };
 
-/// A row of a level of the map of radiance.
-struct RadianceJob {
+/// A row of a level of the map of radiance whose lobes are narrow: the mean over some rays.
+struct RaysJob {
   const Pyramid& source;
   std::span<const Ray> rays;
   int side;
 };
 
-/// A row of the map of irradiance. Level `level` of the source is summed over all its texels.
-struct IrradianceJob {
-  static constexpr int level = 2;
+/// A row of a level whose lobes are wide: the mean over all texels of a level of the source. With a roughness of 1
+/// the weight is the cosine, and the mean is the irradiance divided by pi.
+struct LobeJob {
   const Pyramid& source;
+  int level;
   std::span<const float> directions;  ///< of its texels: x y z of a unit vector, and the solid angle
+  float roughness;
   int side;
 };
 
 namespace detail {
 #define ISOSHADE_ROWS(lanes)                                                    \
   void make_row_##lanes(const Equirect& image, int row, float* texels);       \
-  void make_row_##lanes(const RadianceJob& job, int row, float* texels);      \
-  void make_row_##lanes(const IrradianceJob& job, int row, float* texels);
+  void make_row_##lanes(const RaysJob& job, int row, float* texels);          \
+  void make_row_##lanes(const LobeJob& job, int row, float* texels);
 ISOSHADE_ROWS(1)
 ISOSHADE_ROWS(4)
 ISOSHADE_ROWS(8)

@@ -140,7 +140,7 @@ ISOSHADE_INLINE Vec3<F> read_level(FloatBuffer texels, IntBuffer firsts, Ints<F>
 
 /// The mean over the rays around each direction.
 template <int W>
-ISOSHADE_INLINE void radiance_row(const RadianceJob& job, int row, float* texels) {
+ISOSHADE_INLINE void rays_row(const RaysJob& job, int row, float* texels) {
   using F = typename Lanes<W>::Float;
   using Int = Ints<F>;
   const FloatBuffer source{job.source.texels.data(), static_cast<int>(job.source.texels.size())};
@@ -180,13 +180,14 @@ ISOSHADE_INLINE void radiance_row(const RadianceJob& job, int row, float* texels
   }
 }
 
-/// The mean over the half of the sphere around each direction, weighted by the cosine.
+/// The mean over the half of the sphere around each direction, weighted by GGX and the cosine, viewed along the direction.
 template <int W>
-ISOSHADE_INLINE void irradiance_row(const IrradianceJob& job, int row, float* texels) {
+ISOSHADE_INLINE void lobe_row(const LobeJob& job, int row, float* texels) {
   using F = typename Lanes<W>::Float;
-  constexpr int side = Pyramid::side_of(IrradianceJob::level), width = Pyramid::width_of(IrradianceJob::level);
+  const int side = Pyramid::side_of(job.level), width = Pyramid::width_of(job.level);
   constexpr int border = functions::environment_border;
-  const float* const source = job.source.level(IrradianceJob::level);
+  const float* const source = job.source.level(job.level);
+  const float slope = 0.5f * (job.roughness * job.roughness - 1.0f);
   for (int x = 0; x < job.side; x += W) {
     const Vec3<F> n = direction_of(columns_from<F>(x), row, job.side);
     Vec3<F> sum(F(0.0f), F(0.0f), F(0.0f));
@@ -196,7 +197,9 @@ ISOSHADE_INLINE void irradiance_row(const IrradianceJob& job, int row, float* te
         const float* const d = &job.directions[static_cast<size_t>(channels * (v * side + u))];
         const float* const color = source + channels * ((v + border) * width + u + border);
         const F cosine = (n.x * F(d[0]) + n.y * F(d[1])) + n.z * F(d[2]);
-        const F weight = select(cosine > F(0.0f), cosine, F(0.0f)) * F(d[3]);
+        const F facing = select(cosine > F(0.0f), cosine, F(0.0f));
+        const F root = (F(1.0f) + facing) * F(slope) + F(1.0f);  // (n.h)^2 (roughness^2 - 1) + 1
+        const F weight = facing * F(d[3]) / (root * root);
         sum = sum + Vec3<F>(F(color[0]), F(color[1]), F(color[2])) * weight;
         weights = weights + weight;
       }

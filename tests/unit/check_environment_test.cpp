@@ -6,10 +6,10 @@ namespace isoshade {
 namespace {
 
 constexpr const char* nodes = R"("n": {"type": "normal"}, "e": {"type": "environment", "direction": "n"},
-"bright": {"type": "luminance", "in": "e"}, )";
+"bright": {"type": "extract", "in": "e"})";
 
 std::string effect(const std::string& more, const std::string& pass = R"("color": "color")") {
-  return "{\"isoshade\": 1, \"effect\": \"e\", \"nodes\": {\n" + (nodes + more) +
+  return "{\"isoshade\": 1, \"effect\": \"e\", \"nodes\": {\n" + more + (more.empty() ? "" : ", ") + nodes +
          "},\n\"passes\": [{\"name\": \"p\", " + pass + "}]}";
 }
 
