@@ -111,7 +111,9 @@ std::optional<std::string> make_page(const scene::Scene& scene, const PageOption
   all.disabled = true;
   all.compiler.library = options.library;
   all.compiler.tier = options.tier;
-  const auto plan = render::plan_frame(scene, all, diagnostics);
+  scene::Scene drawn = scene;
+  drawn.environment.reset();  // its maps are large, and the page's shaders do not read them
+  const auto plan = render::plan_frame(drawn, all, diagnostics);
   if (!plan || report_large(scene, array_bytes(*plan), diagnostics)) return std::nullopt;
   const auto shaders = compile_shaders(*plan, options, diagnostics);
   if (!shaders) return std::nullopt;

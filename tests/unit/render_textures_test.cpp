@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "backends/interpreter/backend.h"
+#include "compiler/functions/environment.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/render/plan.h"
 #include "runtime/render/render.h"
@@ -92,6 +93,35 @@ TEST_F(Textures, AreUprightWithTheOriginAtTheUpperLeft) {
   const auto made = plan(square("shown"));
   ASSERT_TRUE(made) << diagnostics_.text();
   EXPECT_EQ(draw(*made), picture().texels);
+}
+
+TEST_F(Textures, MapsOfTheEnvironmentStandBehindTexturesInTheFrame) {
+  const auto without = plan(square("shown"));
+  ASSERT_TRUE(without) << diagnostics_.text();
+  options_.cache = path("cache");
+  const auto made = plan(square("shown") + R"(, "environment": {"file": "a.png", "rotate": 5})");
+  ASSERT_TRUE(made) << diagnostics_.text();
+  const std::vector<int32_t>& records = made->frame.textures;
+  const auto first = static_cast<size_t>(made->frame.frame[lower::frame_word::environment]);
+  EXPECT_EQ(first * word::stride, without->frame.textures.size());
+  ASSERT_EQ(records.size() - first * word::stride, (functions::environment_levels + 1u) * word::stride);
+  const int32_t* const mirror = &records[first * word::stride];
+  EXPECT_EQ(mirror[word::width], functions::environment_side + 2);
+  EXPECT_EQ(mirror[word::table], -1);
+  EXPECT_FALSE(made->stats.environment_cached);
+  EXPECT_TRUE(plan(square("shown") + R"(, "environment": {"file": "a.png", "rotate": 5})")->stats.environment_cached);
+}
+
+TEST_F(Textures, AnEnvironmentMustBeAnImageInTheFoldersOfTheScene) {
+  options_.cache = path("cache");
+  const auto says = [&](const std::string& file, support::Id id) {
+    EXPECT_FALSE(plan(square("shown") + R"(, "environment": {"file": ")" + file + "\"}"));
+    ASSERT_EQ(diagnostics_.error_count(), 1u) << diagnostics_.text();
+    EXPECT_EQ(diagnostics_.all()[0].id, id) << diagnostics_.text();
+  };
+  says("missing.hdr", support::Id::missing_file);
+  says("bad.png", support::Id::bad_image);
+  says("../a.png", support::Id::outside_reference);
 }
 
 TEST_F(Textures, TrilinearSelectsTheMipLevelByPixelSize) {
