@@ -260,7 +260,7 @@ class Reflection(unittest.TestCase):
             ("parameters/0/type", "any"),
             ("images/0/samplings/0/filter", "cubic"),
             ("passes/0/states/cull", ...),
-            ("passes/0/states/blend", "none"),
+            ("passes/0/states/stencil", "none"),
             ("host/0/name", "printf"),
         ]:
             self.assertNotEqual(self.errors(changed(reflection, path, value)), [], f"{path} = {value}")

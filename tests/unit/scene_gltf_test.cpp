@@ -86,6 +86,8 @@ TEST_F(Gltf, ReadsAlphaModesAndSides) {
   EXPECT_EQ(material(R"("alphaMode": "MASK", "alphaCutoff": 0.25, )").alpha_cutoff, 0.25f);
   EXPECT_EQ(material(R"("alphaMode": "MASK", "alphaCutoff": 1.5, )").alpha_cutoff, 1.5f);
   EXPECT_TRUE(material(R"("doubleSided": true, )").double_sided);
+  EXPECT_TRUE(material(R"("alphaMode": "BLEND", )").blended);
+  EXPECT_FALSE(material(R"("alphaMode": "MASK", )").blended);
 }
 
 TEST_F(Gltf, TextWithASeparateBufferGivesTheSameMesh) {
@@ -273,7 +275,7 @@ TEST_F(Gltf, WarnsOnceAboutEachUnsupportedFeature) {
     const char* name;
   };
   const Case cases[] = {
-      {R"("materials": [{)", R"("materials": [{"alphaMode": "BLEND", )", "the alpha mode BLEND"},
+      {R"("materials": [{)", R"("materials": [{"alphaMode": "BLEND", )", nullptr},
       {R"("materials": [{)", R"("materials": [{"alphaMode": "MASK", "alphaCutoff": 0.3, )", nullptr},
       {R"("materials": [{)", R"("materials": [{"alphaMode": "OPAQUE", )", nullptr},
       {R"("materials": [{)", R"("materials": [{"doubleSided": true, )", nullptr},
