@@ -19,9 +19,12 @@ void feed_effect(const support::Source& source, const driver::CompileOptions& op
   for (const driver::EffectPass& pass : effect->passes) {
     support::assert_that(!driver::glsl(pass.pixel, driver::Division::exact).empty(), "no GLSL");
     support::assert_that(!driver::cpp(pass.pixel).empty(), "no C++");
-    if (!pass.cutout) continue;
-    support::assert_that(!driver::glsl(*pass.cutout, driver::Division::exact).empty(), "no GLSL");
-    support::assert_that(!driver::cpp(*pass.cutout).empty(), "no C++");
+    for (const std::optional<driver::Program>* program : {&pass.cutout, &pass.blend}) {
+      if (!*program) continue;
+      support::assert_that(!driver::glsl(**program, driver::Division::exact).empty(), "no GLSL");
+      support::assert_that(!driver::glsl_of_layer(**program, driver::Division::exact).empty(), "no GLSL of a layer");
+      support::assert_that(!driver::cpp(**program).empty(), "no C++");
+    }
   }
 }
 

@@ -309,13 +309,14 @@ std::vector<std::string> sample_texts() {
   if (is_full())
     effects.insert(effects.end(),
                    {"materials/gltf_pbr.json", "materials/derivatives.json", "effects/terrain.json",
-                    "effects/dissolve.json"});
+                    "effects/dissolve.json", "effects/refraction.json"});
   for (const char* path : effects)
     if (const auto effect = driver::compile_effect(read(path), options, diagnostics))
       for (const driver::EffectPass& pass : effect->passes) {
         add(pass.vertex);
         add(pass.pixel);
         if (pass.cutout) add(*pass.cutout);
+        if (pass.blend) add(*pass.blend);
       }
   for (const char* path : posts)
     if (const auto post = driver::compile_post(read(path), options, diagnostics)) add(post->program);
