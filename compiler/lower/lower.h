@@ -76,7 +76,7 @@ struct LowerOptions {
 /// without bodies (see add_post_kernel), only called for pixels that the image has.
 Lowered lower(const check::TypedGraph& graph, const LowerOptions& options = {});
 
-/// Of a post: whether the result depends on nothing but the camera and what the depth and the image that it goes over have
+/// Of a post: whether the result depends on nothing but the camera, the environment and what the depth and the image that it goes over have
 /// at the pixel.
 bool is_pointwise(const Lowered& post);
 

@@ -288,7 +288,7 @@ bool is_pointwise(const Lowered& post) {
     for (const ir::Instruction& instruction : function.instructions) {
       const interface::HostFunction* const read =
           instruction.op == ir::Opcode::call ? interface.find(instruction.imm) : nullptr;
-      if (read == nullptr) continue;
+      if (read == nullptr || read->image == ir::none) continue;
       const bool is_own_image = read->image == interface::image_record::depth || read->image == interface::image_record::color;
       const bool is_own_pixel = std::ranges::all_of(function.operands_of(instruction), [&](ir::ValueId operand) {
         return std::ranges::find(own_pixel, operand) != own_pixel.end();

@@ -265,6 +265,19 @@ Layers layers_of(const PostStep& step, const std::vector<Layer>& images, const b
   return layers;
 }
 
+/// The pass of a step over its whole image.
+backends::ScreenPass pass_of(const PostStep& step, const backends::Frame& frame, const Layers& arrays) {
+  return {.program = &step.post->program,
+          .width = step.width,
+          .height = step.height,
+          .frame = frame.frame,
+          .view = std::span(frame.picture().words).first(lower::view_word::camera_words),
+          .record = step.record,
+          .layers = arrays.floats,
+          .layer_records = arrays.records,
+          .textures = step.post->reads_environment ? &frame : nullptr};
+}
+
 }  // namespace
 
 std::optional<PostChain> plan_posts(const scene::Scene& scene,
@@ -290,15 +303,10 @@ bool run_sample_posts(const PostChain& chain, const backends::Frame& frame, int 
     };
     add(step.post->reads_depth, samples.depth, 1);
     add(step.sources[0] != PostStep::not_read, samples.rgba, 4);
-    const backends::ScreenPass pass{.program = &step.post->program,
-                                    .width = width,
-                                    .height = samples.height,
-                                    .first_row = first_row,
-                                    .frame = frame.frame,
-                                    .view = std::span(view.words).first(lower::view_word::camera_words),
-                                    .record = step.record,
-                                    .layers = arrays.floats,
-                                    .layer_records = arrays.records};
+    backends::ScreenPass pass = pass_of(step, frame, arrays);
+    pass.width = width;
+    pass.height = samples.height;
+    pass.first_row = first_row;
     if (!backend.post(pass, samples.rgba, diagnostics)) return false;
     NonFinite made = find_non_finite(samples.rgba, width);
     const bool is_known = std::ranges::find(reports, step.post_number, &NonFiniteReport::Post::post) != reports.end();
@@ -327,16 +335,7 @@ bool run_posts(const PostChain& chain, size_t first, const backends::Frame& fram
     stats.kept_images = std::max(stats.kept_images, ++kept);
     {
       const Layers arrays = layers_of(step, layers, image);
-      const backends::ScreenPass pass{
-          .program = &step.post->program,
-          .width = step.width,
-          .height = step.height,
-          .frame = frame.frame,
-          .view = std::span(frame.picture().words).first(lower::view_word::camera_words),
-          .record = step.record,
-          .layers = arrays.floats,
-          .layer_records = arrays.records,
-          .textures = step.post->reads_environment ? &frame : nullptr};
+      const backends::ScreenPass pass = pass_of(step, frame, arrays);
       if (!backend.post(pass, made.rgba, diagnostics)) return false;
     }
     note_non_finite(step, layers, made, stats.non_finite);
