@@ -55,7 +55,7 @@ class ReferenceBackend final : public backends::Backend {
   bool transform(const backends::ViewPass& pass, std::vector<std::vector<float>>& clip,
                  Diagnostics& diagnostics) override {
     const backends::Target& target = pass.view.target;
-    if (target.width > max_size || target.height > max_size) {
+    if (target.has_color && (target.width > max_size || target.height > max_size)) {
       const std::string most = std::to_string(max_size);
       diagnostics
           .report(support::Id::device_limit,

@@ -348,6 +348,11 @@ struct WholeHost {
   texel_of<I> texel(I, I, I) const;
   template <class I>
   ImageSize<I> image_size(I) const;
+  bool has_environment() const { return false; }
+  template <class F>
+  vec3<F> environment(vec3<F>, F) const;
+  template <class F>
+  vec3<F> irradiance(vec3<F>) const;
   float time() const;
   vec3<float> world_from_object(int) const;
   vec3<float> object_from_world(int) const;

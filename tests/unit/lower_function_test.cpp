@@ -113,7 +113,7 @@ TEST(LowerFunction, WhatItReadsFromTheStageFollowsItsInputs) {
   const auto [module, interface] = lower::lower(*effect);
   EXPECT_EQ(ir::validate(module), "");
   EXPECT_EQ(names(module.functions[module.find("lit")]),
-            "normal x position surface_normal texcoord view_from_world_0 view_from_world_1 view_from_world_2 time map "
+            "normal x shown_position surface_normal texcoord view_from_world_0 view_from_world_1 view_from_world_2 time map "
             "light_count ");
   EXPECT_EQ(names(module.functions[interface.entry]),
             "surface.position surface.normal surface.texcoord spaces.view_from_world_0 spaces.view_from_world_1 "

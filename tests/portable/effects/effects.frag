@@ -38,6 +38,10 @@ isoshade_ImageSize isoshade_image_size(int image) {
   return isoshade_ImageSize(size.x, size.y, 0);
 }
 
+bool isoshade_has_environment() { return true; }
+vec3 isoshade_environment(vec3 direction, float roughness) { return vec3(0.5 + 0.1 * roughness); }
+vec3 isoshade_irradiance(vec3 direction) { return vec3(0.5) + direction; }
+
 void main() {
   vec3 view = normalize(camera - position);
   cook_torrance_Surface metal;

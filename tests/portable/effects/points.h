@@ -43,7 +43,7 @@ struct Images {
   std::vector<float> texels;  ///< count * side * side of four
 };
 
-/// Two lights, one far away and one near, and the images.
+/// Two lights, one far away and one near, an environment and the images.
 class Host {
  public:
   explicit Host(const Images& images)
@@ -64,6 +64,16 @@ class Host {
   isoshade::Light<T> light_change(int index, vec3<T> position, vec3<T> change) const {
     const isoshade::Light<T> here = light(index, position), there = light(index, position + change);
     return {there.direction - here.direction, there.color - here.color};
+  }
+
+  bool has_environment() const { return true; }
+  template <class T>
+  vec3<T> environment(vec3<T> direction, T roughness) const {
+    return direction * vec3<T>(roughness) + vec3<T>(T(1.25f));
+  }
+  template <class T>
+  vec3<T> irradiance(vec3<T> direction) const {
+    return direction * vec3<T>(T(0.25f)) + vec3<T>(T(0.5f));
   }
 
   template <class I>
