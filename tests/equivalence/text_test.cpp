@@ -257,7 +257,11 @@ TEST(Text, DocumentTextCannotInjectCode) {
 }
 
 TEST(Text, HasTheSameStructureInBothLanguages) {
+  size_t compared = 0;
   for (const Texts& texts : shipped()) {
+    // In C++ the functions of large programs are cut into parts.
+    if (texts.cpp.find("// A large program") != std::string::npos) continue;
+    ++compared;
     SCOPED_TRACE(texts.name);
     // The same functions in the same order, and the same nodes of the same lines.
     std::vector<std::string> glsl = matches(texts.glsl, function_head);
@@ -286,6 +290,7 @@ TEST(Text, HasTheSameStructureInBothLanguages) {
     EXPECT_EQ(matches(body(texts.glsl, "// The bits of a float"), definition),
               matches(body(texts.cpp, "namespace isoshade_program\n\nstruct"), definition));
   }
+  EXPECT_GT(compared, shipped().size() / 2);
 }
 
 TEST(Text, CallsNodesByTheirIds) {
