@@ -18,6 +18,9 @@ constexpr float intensity = 2;
 struct Host {
   int light_count() const { return 1; }
   isoshade::Light<float> light(int, vec3<float>) const { return {{0, 0, 1}, vec3<float>(intensity)}; }
+  bool has_environment() const { return false; }
+  vec3<float> environment(vec3<float>, float) const { return vec3<float>(0); }
+  vec3<float> irradiance(vec3<float>) const { return vec3<float>(0); }
 };
 
 const isoshade::Backend backend = [] {
