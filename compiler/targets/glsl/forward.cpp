@@ -6,20 +6,17 @@
 #include "compiler/emit/names.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
+#include "compiler/targets/glsl/forward_host.h"
 #include "compiler/targets/glsl/glsl.h"
 
 namespace isoshade::glsl {
 
 using namespace emit;
-using interface::HostCall;
 using lower::ForwardFunction;
 using lower::ForwardInput;
 using lower::FrameBuffer;
 
 namespace {
-
-/// The number of an image's first level; its smaller levels are the numbers behind it (the wrapper's own convention).
-constexpr int levels = 16;
 
 std::string number(size_t value) { return std::to_string(value); }
 
@@ -41,7 +38,7 @@ class Pair {
     out += varyings("out") + "\n";
     const bool moves = program_.move_vertex.has_value();
     out += blocks(moves);
-    if (moves) out += functions(program_.vertex, "isoshade_in_") + host();
+    if (moves) out += functions(program_.vertex, "isoshade_in_") + forward_host(program_, is_es_);
     out += "void main() {\n";
     for (const ForwardLayout::Attribute& attribute : varying_attributes())
       out += "  isoshade_at_" + attribute.vertex + " = " + attribute.name + ";\n";
@@ -53,7 +50,7 @@ class Pair {
   std::string fragment() const {
     std::string out = head("fragment") + (is_post() ? "" : varyings("in"));
     out += std::string(is_es_ ? "" : "layout(location = 0) ") + "out vec4 isoshade_color;\n\n";
-    out += blocks(true) + functions(program_.point, "isoshade_at_") + host();
+    out += blocks(true) + functions(program_.point, "isoshade_at_") + forward_host(program_, is_es_);
     out += "void main() {\n";
     if (is_post()) {
       out += "  int x = int(gl_FragCoord.x), y = int(gl_FragCoord.y);\n";
@@ -256,7 +253,7 @@ class Pair {
     const LinkedText text = print_linked(program_.module, entries, *language(dialect_), names, texts);
     for (const uint32_t entry : entries) {
       const std::string& record = texts[entry].result_type;
-      support::assert_that(record.empty() || record == result_record(program_.module.functions[entry].name), record);
+      support::assert_that(record.empty() || record == forward_result_record(program_.module.functions[entry].name), record);
     }
     return out + text.shared + "\n" + text.own + "\n";
   }
@@ -275,23 +272,12 @@ class Pair {
       values.clear();
       Names names(Scope::field);
       for (const ir::Result& result : made.results) values.push_back("at." + names.take(result.name));
-      out += indent + result_record(made.name) + " at = " + call + ";\n";
+      out += indent + forward_result_record(made.name) + " at = " + call + ";\n";
     } else {
       out += indent + std::string(ir::name(made.results[0].type)) + " at = " + call + ";\n";
     }
     for (const PureField& field : fields) out += indent + "point." + field.name + " = " + value_of(field, bindings, values) + ";\n";
     return out;
-  }
-
-  /// What print_linked calls the struct of a function's results.
-  static std::string result_record(const std::string& name) {
-    std::string record = own("");
-    bool begins = true;
-    for (const char c : name) {
-      if (c != '_') record += begins && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-      begins = c == '_';
-    }
-    return record + "Result";
   }
 
   std::string value_of(const PureField& field, const std::vector<interface::Binding>& bindings,
@@ -319,7 +305,7 @@ class Pair {
       if (field.parameter.type == ir::bool_type) value += " != 0";
       const auto image = std::ranges::find(program_.images, field.name, &ForwardImage::field);
       if (image != program_.images.end())
-        value += " < 0 ? -1 : " + number(levels * static_cast<size_t>(image - program_.images.begin()));
+        value += " < 0 ? -1 : " + number(forward_levels * static_cast<size_t>(image - program_.images.begin()));
       out += "  parameters." + field.name + " = " + value + ";\n";
     }
     return out;
@@ -360,107 +346,6 @@ class Pair {
     return "// Draw three vertices without attributes: a triangle that covers the screen.\n"
            "void main() {\n  gl_Position = vec4(" +
            vertex + " == 1 ? 3.0 : -1.0, " + vertex + " == 2 ? 3.0 : -1.0, 0.0, 1.0);\n}\n";
-  }
-
-  /// A choice among samplers by a number that runs from 0: what `value` makes of the sampler's name.
-  template <class Value>
-  static std::string choose(const char* stem, size_t count, const std::string& which, const char* none, Value value) {
-    std::string out;
-    for (size_t i = 0; i < count; ++i)
-      out += "  if (" + which + " == " + number(i) + ") return " + value(stem + number(i)) + ";\n";
-    return out + "  return " + none + ";\n}\n";
-  }
-
-  /// A texel of a picture that was drawn before; in OpenGL y is up in it.
-  std::string fetch_drawn(const std::string& sampler) const {
-    const std::string y = is_es_ ? "textureSize(" + sampler + ", 0).y - 1 - y" : "y";
-    return "texelFetch(" + sampler + ", ivec2(x, " + y + "), 0)";
-  }
-
-  std::string host() const {
-    std::string out = "// What the functions ask for.\n";
-    for (const HostCall call : host_calls(pure_)) out += host(call);
-    if (program_.sampling == ForwardSampling::samplers)
-      for (const ir::Function& function : pure_.module.functions)
-        if (is_sampler(pure_, function)) out += sampler(function);
-    return out + "\n";
-  }
-
-  /// `vec4 sample_linear_clamp(int picture, vec2 texcoord)`, which may take further integers; `level` is in 1/65536.
-  std::string sampler(const ir::Function& function) const {
-    const bool has_level = function.parameters.back().name == "level";
-    std::string rest;
-    for (size_t i = 2; i < function.parameters.size(); ++i) rest += ", int " + function.parameters[i].name;
-    const std::string level = has_level ? "float(level) / 65536.0" : "float(picture % " + number(levels) + ")";
-    return "vec4 " + prefixed(function.name) + "(int picture, vec2 texcoord" + rest + ") {\n" +
-           choose("isoshade_image", program_.images.size(), "picture / " + number(levels), "vec4(0.0)",
-                  [&](const std::string& image) { return "textureLod(" + image + ", texcoord, " + level + ")"; });
-  }
-
-  std::string host(HostCall call) const {
-    const interface::HostRow& asked = interface::row(call);
-    const std::string result = (asked.returns_record() ? "isoshade_" : "") + std::string(asked.result);
-    const std::string begin = result + " isoshade_" + std::string(asked.name) + "(" + std::string(asked.parameters) + ") {";
-    const auto line = [&](const std::string& value) { return begin + " return " + value + "; }\n"; };
-    switch (call) {
-      case HostCall::light_count: return line("min(isoshade_lights.count, " + number(most_forward_lights) + ")");
-      case HostCall::light:
-        return begin + "\n  " + result_record("light_at") + " at = " + own("light_at") +
-               "(index, position);\n  return isoshade_Light(at.direction, at.color);\n}\n";
-      case HostCall::light_change:
-        return begin + "\n  " + result_record("light_at") + " at = " + own("light_at") + "(index, position), next = " +
-               own("light_at") + "(index, position + change);\n" +
-               "  return isoshade_Light(next.direction - at.direction, next.color - at.color);\n}\n";
-      case HostCall::has_environment: return line("false");
-      case HostCall::environment:
-      case HostCall::irradiance: return line("vec3(0.0)");
-      case HostCall::texel:
-        return begin + "\n" + choose("isoshade_image", program_.images.size(), "image / " + number(levels), "vec4(0.0)",
-                                     [](const std::string& sampler) {
-                                       return "texelFetch(" + sampler + ", ivec2(x, y), image % " + number(levels) + ")";
-                                     });
-      case HostCall::image_size: return image_size(begin);
-      case HostCall::time: return line((is_post() ? "isoshade_screen" : "isoshade_view") + std::string(".time"));
-      case HostCall::world_from_object:
-      case HostCall::object_from_world: return line("isoshade_object." + std::string(asked.name) + "[column].xyz");
-      case HostCall::view_from_world:
-      case HostCall::world_from_view: return line("isoshade_view." + std::string(asked.name) + "[column].xyz");
-      case HostCall::picture:
-        return begin + "\n" + choose("isoshade_picture", program_.pictures, "image", "vec4(0.0)",
-                                     [&](const std::string& sampler) { return fetch_drawn(sampler); });
-      case HostCall::picture_width:
-      case HostCall::picture_height: {
-        const std::string axis = call == HostCall::picture_width ? ".x" : ".y";
-        return begin + "\n" + choose("isoshade_picture", program_.pictures, "image", "1", [&](const std::string& sampler) {
-                 return "textureSize(" + sampler + ", 0)" + axis;
-               });
-      }
-      case HostCall::depth: return line(fetch_drawn("isoshade_depth_picture") + ".x");
-      case HostCall::depth_width: return line("textureSize(isoshade_depth_picture, 0).x");
-      case HostCall::depth_height: return line("textureSize(isoshade_depth_picture, 0).y");
-      case HostCall::screen_size: return line("isoshade_screen.size");
-      case HostCall::camera_position:
-      case HostCall::camera_direction:
-      case HostCall::depth_numerator:
-      case HostCall::depth_denominator: return line("isoshade_screen." + std::string(asked.name));
-    }
-    support::bug("no such function of a host");
-  }
-
-  std::string image_size(const std::string& begin) const {
-    std::string out = begin + "\n  ivec2 size = ivec2(1);\n  int smaller = 0;\n";
-    for (size_t i = 0; i < program_.images.size(); ++i) {
-      const std::string name = "isoshade_image" + number(i);
-      // Not the size of level `image % 16`: lavapipe takes the level of one pixel for its neighbours.
-      out += "  if (image / " + number(levels) + " == " + number(i) + ") {\n    size = max(textureSize(" + name +
-             ", 0) >> image % " + number(levels) + ", ivec2(1));\n";
-      // GLSL ES cannot ask: the image has all levels down to 1 x 1.
-      if (program_.images[i].mips)
-        out += is_es_ ? "    smaller = int(floor(log2(float(max(size.x, size.y)))));\n"
-                      : "    smaller = textureQueryLevels(" + name + ") - 1 - image % " + number(levels) + ";\n";
-      out += "  }\n";
-    }
-    return out + "  return isoshade_ImageSize(size.x, size.y, smaller);\n}\n";
   }
 
   const ForwardProgram& program_;
