@@ -3,26 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <numeric>
 
 #include "backends/cpu/lane_count.h"
 #include "backends/reference/backend.h"
 #include "runtime/render/samples.h"
-#include "tests/equivalence/scenes.h"
+#include "tests/equivalence/scene_folder.h"
 #include "tests/unit/gltf_files.h"
-#include "tests/unit/scene_documents.h"
-#include "tests/unit/temporary_folder.h"
 
 namespace isoshade::equivalence {
 namespace {
 
 using Color = std::array<float, 4>;
-
-struct Size {
-  int width, height;
-};
 
 /// An effect of one pass that is blended so, with further keys.
 std::string pane(const std::string& name, const std::string& blend, const std::string& keys = "") {
@@ -87,7 +80,7 @@ const std::string members = R"("size": [160, 120], "sort": "back_to_front", )" +
                 "transform": {"rotate": [90, 10, 0], "translate": [0, 0, 2]},
                 "parameters": {"level": 0.9}}})";
 
-class Blending : public ::testing::Test {
+class Blending : public SceneFolder {
  protected:
   Blending() {
     folder_.write("solid.json", R"({"isoshade": 1, "effect": "solid",
@@ -101,17 +94,8 @@ class Blending : public ::testing::Test {
     }
   }
 
-  render::Plan plan(Size size, int samples, const std::string& text = members) {
-    support::Diagnostics diagnostics;
-    const auto document = isoshade::testing::document_of(isoshade::testing::scene_text(text), diagnostics,
-                                                         (folder_.path() / "scene.json").string());
-    auto scene = document ? scene::parse_scene(*document, diagnostics) : std::nullopt;
-    EXPECT_TRUE(scene) << diagnostics.text();
-    if (!scene) return {};
-    scenes_.push_back(std::move(*scene));
-    scenes_.back().samples = samples;
-    return equivalence::plan(scenes_.back(), size.width, size.height);
-  }
+  using SceneFolder::plan;
+  render::Plan plan(Size size, int samples) { return plan(size, samples, members); }
 
   /// A plane before the camera at this z, with a number as its name.
   static std::string plane(int number, const std::string& effect, float z, const Color& tint) {
@@ -135,13 +119,7 @@ class Blending : public ::testing::Test {
     return color;
   }
 
-  isoshade::testing::TemporaryFolder folder_;
-  std::deque<scene::Scene> scenes_;
 };
-
-std::string text(Size size, int samples) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height) + ", " + std::to_string(samples) + " samples";
-}
 
 TEST_F(Blending, GivesWhatTheFormulasGive) {
   const Color tint{0.5f, 0.25f, 1, 0.25f};
