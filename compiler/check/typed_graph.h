@@ -89,8 +89,8 @@ struct TypedGraph {
   /// By StageNeed: the first node that an output depends on and that needs it, by itself or because it calls a function
   /// that does; or no_node.
   std::array<uint32_t, stage_need_count> needed_by = filled_with_no_node();
-  bool has_derivative = false;                  ///< an output depends on the derivative of something
-  std::vector<bool> differentiated_inputs = {};  ///< by Graph::inputs: of which it takes the derivative
+  int derivative_order = 0;  ///< of how many derivatives, each taken of the other, its outputs are
+  std::vector<int> differentiated_inputs = {};  ///< by Graph::inputs: how often it takes the derivative of each
 
   std::span<const Operand> operands_of(const Node& node) const {
     return {operands.data() + node.first_operand, node.operand_count};

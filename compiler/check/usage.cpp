@@ -192,7 +192,7 @@ void check_derivatives_of_pictures(Work& work) {
     for (size_t k = 0; k < operands.size(); ++k) {
       if (operands[k].from != From::node || !depends[operands[k].index]) continue;
       depends[i] = true;
-      const bool differentiates = node.row == nullptr ? node.callee->differentiated_inputs[k]
+      const bool differentiates = node.row == nullptr ? node.callee->differentiated_inputs[k] > 0
                                                       : node.row->is<nodes::Derivative>() ||
                                                             (may_be_trilinear(typed, node) &&
                                                              k == nodes::image_port::texcoord);
@@ -243,62 +243,75 @@ void check_nested_sums(Work& work) {
   }
 }
 
-/// Finds the inputs of which a document takes the derivative, by itself or in a function that it calls.
-void find_differentiated_inputs(TypedGraph& typed) {
-  typed.differentiated_inputs.assign(typed.graph.inputs.size(), false);
-  std::vector<bool> differentiated(typed.nodes.size());
-  const auto mark = [&](const Operand& operand) {
-    if (operand.from == From::node) differentiated[operand.index] = true;
-    if (operand.from == From::input) typed.differentiated_inputs[operand.index] = true;
-  };
+/// A derivative may be taken of a derivative, but not of that one: each makes a program several times as long.
+constexpr int most_derivatives = 2;
+
+/// Finds how often a document takes the derivative of each input, by itself and in functions that it calls, and reports
+/// second derivatives of lights: hosts give their first.
+void find_differentiated_inputs(Work& work) {
+  TypedGraph& typed = work.typed;
+  typed.differentiated_inputs.assign(typed.graph.inputs.size(), 0);
+  std::vector<int> differentiated(typed.nodes.size());
   for (auto it = typed.order.rbegin(); it != typed.order.rend(); ++it) {
     const Node& node = typed.nodes[*it];
     const std::span<const Operand> operands = typed.operands_of(node);
-    if (differentiated[*it] || (node.row != nullptr && node.row->is<nodes::Derivative>()))
-      std::ranges::for_each(operands, mark);
-    if (may_be_trilinear(typed, node)) mark(operands[nodes::image_port::texcoord]);
-    for (size_t i = 0; node.callee != nullptr && i < operands.size(); ++i)
-      if (node.callee->differentiated_inputs[i]) mark(operands[i]);
+    const int by_users = differentiated[*it];
+    const bool takes_one = node.row != nullptr && node.row->is<nodes::Derivative>();
+    for (size_t i = 0; i < operands.size(); ++i) {
+      int count = by_users + (takes_one ? 1 : 0);
+      if (node.callee != nullptr) count += node.callee->differentiated_inputs[i];
+      if (i == nodes::image_port::texcoord && may_be_trilinear(typed, node)) count = std::max(count, 1);
+      if (operands[i].from == From::node)
+        differentiated[operands[i].index] = std::max(differentiated[operands[i].index], count);
+      if (operands[i].from == From::input)
+        typed.differentiated_inputs[operands[i].index] = std::max(typed.differentiated_inputs[operands[i].index], count);
+    }
+    const int inside = node.callee != nullptr && by_users > 0 ? node.callee->derivative_order : 0;
+    if (by_users + inside < 2 || !needs(typed, *it, StageNeed::lights)) continue;
+    work.report(Id::unsupported, work.graph().nodes[*it].type_place,
+                "a second derivative is taken of " + quote(work.graph().nodes[*it].id) + ", which depends on lights")
+        .note("lights have first derivatives only");
   }
 }
 
-/// Reports derivatives of values that depend on a derivative: only first derivatives are supported.
+/// Reports derivatives of values that depend on a second derivative.
 void check_derivatives(Work& work) {
   TypedGraph& typed = work.typed;
   constexpr uint32_t nothing = ~0u;
-  std::vector<uint32_t> derivative(typed.nodes.size(), nothing);  ///< the derivative that each node depends on
+  /// How many derivatives, each taken of the other, a node depends on, and the last of them.
+  struct Depends {
+    int order = 0;
+    uint32_t on = nothing;
+  };
+  std::vector<Depends> all(typed.nodes.size());
   for (const uint32_t i : typed.order) {
     const Node& node = typed.nodes[i];
+    const graph::Node& source = work.graph().nodes[i];
     const bool takes_one = node.row != nullptr && node.row->is<nodes::Derivative>();
     const std::span<const Operand> operands = typed.operands_of(node);
+    Depends& made = all[i];
+    if (node.callee != nullptr && node.callee->derivative_order > 0) made = {node.callee->derivative_order, i};
     for (size_t k = 0; k < operands.size(); ++k) {
-      if (operands[k].from != From::node || derivative[operands[k].index] == nothing) continue;
-      derivative[i] = derivative[operands[k].index];
-      if (node.callee == nullptr || !node.callee->differentiated_inputs[k]) continue;
-      const graph::Node& source = work.graph().nodes[i];
-      work.report(Id::second_derivative, source.type_place,
-                  quote(source.label()) + " takes the derivative of its input " +
-                      quote(node.callee->graph.inputs[k].name) + ", which depends on the derivative " +
-                      quote(work.graph().nodes[derivative[i]].id));
+      const Depends given = operands[k].from == From::node ? all[operands[k].index] : Depends{};
+      const int taken = takes_one ? 1 : node.callee != nullptr ? node.callee->differentiated_inputs[k] : 0;
+      const int order = given.order + taken;
+      const auto of = [&] { return quote(work.graph().nodes[given.on].id); };
+      if (order > most_derivatives && given.order > 0) {
+        work.report(Id::third_derivative, source.type_place,
+                    takes_one ? quote(source.type) + " of a value that depends on the second derivative " + of()
+                              : quote(source.label()) + " takes the derivative of its input " +
+                                    quote(node.callee->graph.inputs[k].name) + ", which depends on the derivative " + of());
+      }
+      if (given.order == most_derivatives && k == nodes::image_port::texcoord && may_be_trilinear(typed, node)) {
+        work.report(Id::third_derivative, source.type_place,
+                    "a trilinear image takes derivatives of its \"texcoord\", which depends on the second derivative " + of())
+            .suggest("use the filtertype \"linear\"");
+      }
+      if (order > made.order) made = {std::min(order, most_derivatives), taken > 0 ? i : given.on};
     }
-    if (takes_one && derivative[i] != nothing) {
-      const graph::Node& source = work.graph().nodes[i];
-      work.report(Id::second_derivative, source.type_place,
-                  quote(source.type) + " of a value that depends on the derivative " +
-                      quote(work.graph().nodes[derivative[i]].id));
-    }
-    if (takes_one || (node.callee != nullptr && node.callee->has_derivative)) derivative[i] = i;
-    if (!may_be_trilinear(typed, node)) continue;
-    // The mip level depends on derivatives of texcoord; by definition, the derivative of the level is 0.
-    const Operand& texcoord = typed.operands_of(node)[nodes::image_port::texcoord];
-    if (texcoord.from != From::node || derivative[texcoord.index] == nothing) continue;
-    work.report(Id::second_derivative, work.graph().nodes[i].type_place,
-                "a trilinear image takes derivatives of its \"texcoord\", which depends on the derivative " +
-                    quote(work.graph().nodes[derivative[texcoord.index]].id))
-        .suggest("use the filtertype \"linear\"");
   }
   for (const Operand& output : typed.outputs)
-    typed.has_derivative |= output.from == From::node && derivative[output.index] != nothing;
+    if (output.from == From::node) typed.derivative_order = std::max(typed.derivative_order, all[output.index].order);
 }
 
 /// Reports derivatives of values that depend on the environment, whose maps have none.
@@ -313,7 +326,7 @@ void check_derivatives_of_environment(Work& work) {
     for (size_t k = 0; k < operands.size(); ++k) {
       if (operands[k].from != From::node || !depends[operands[k].index]) continue;
       depends[i] = true;
-      const bool differentiated = takes_one || (node.callee != nullptr && node.callee->differentiated_inputs[k]) ||
+      const bool differentiated = takes_one || (node.callee != nullptr && node.callee->differentiated_inputs[k] > 0) ||
                                   (may_be_trilinear(typed, node) && k == nodes::image_port::texcoord);
       if (!differentiated || std::exchange(reported, true)) continue;
       const graph::Node& source = work.graph().nodes[i];

@@ -300,6 +300,20 @@ std::string_view point_record(PureKind kind) {
   return "";
 }
 
+namespace {
+
+/// Of the field "a_ddx", or "a_ddx_ddy".
+std::string doc_of_derivative(std::string_view name) {
+  const size_t x = name.rfind("_ddx"), y = name.rfind("_ddy");
+  const bool is_x = y == std::string_view::npos || (x != std::string_view::npos && x > y);
+  const std::string_view of = name.substr(0, is_x ? x : y);
+  const bool is_second = of.ends_with("_ddx") || of.ends_with("_ddy");
+  return "What " + (is_second ? "`" + std::string(of) + "`" : "it") + " changes by to the next pixel " +
+         (is_x ? "to the right." : "below.");
+}
+
+}  // namespace
+
 std::vector<PureField> point_fields(const PureShader& shader, PureKind kind) {
   struct Found {
     ir::Parameter parameter;
@@ -317,11 +331,7 @@ std::vector<PureField> point_fields(const PureShader& shader, PureKind kind) {
           if (const auto* attribute = std::get_if<interface::source::Attribute>(&binding->source))
             rank = attribute->value.index();
         found.push_back({parameter, rank});
-        const bool is_x = parameter.name.find("_ddx") != std::string::npos;
-        found.back().parameter.doc =
-            binding != nullptr
-                ? doc_of(*binding)
-                : std::string("What it changes by to the next pixel ") + (is_x ? "to the right." : "below.");
+        found.back().parameter.doc = binding != nullptr ? doc_of(*binding) : doc_of_derivative(parameter.name);
       });
   std::ranges::stable_sort(found, {}, &Found::rank);
   Names names(Scope::field);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/passes/dependence.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace isoshade::passes {
@@ -34,8 +35,9 @@ class Marking {
 
 class Forward : Marking {
  public:
-  Forward(const Function& function, const Marks& parameters, const CallChanges& calls)
-      : Marking(function, Marks(function.values.size())), calls_(calls) {
+  /// `marks`: values that are marked by themselves.
+  Forward(const Function& function, Marks marks, const Marks& parameters, const CallChanges& calls)
+      : Marking(function, std::move(marks)), calls_(calls) {
     for (size_t i = 0; i < parameters.size(); ++i) mark(f_.blocks[0].parameters[i], parameters[i]);
   }
 
@@ -134,7 +136,14 @@ class Backward : Marking {
 }  // namespace
 
 Marks changing(const Function& function, const Marks& parameters, const CallChanges& calls) {
-  return Forward(function, parameters, calls).run();
+  return Forward(function, Marks(function.values.size()), parameters, calls).run();
+}
+
+Marks depending(const Function& function, Marks marks) {
+  const CallChanges calls = [](const Instruction& made, const Marks& arguments) {
+    return Marks(made.result_count, std::ranges::find(arguments, true) != arguments.end());
+  };
+  return Forward(function, std::move(marks), {}, calls).run();
 }
 
 Marks needed(const Function& function, const Marks& changing, const Marks& wanted) {

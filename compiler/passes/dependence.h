@@ -22,4 +22,7 @@ Marks changing(const ir::Function& function, const Marks& parameters, const Call
 /// Those of the `changing` values that are wanted, or on which wanted ones depend.
 Marks needed(const ir::Function& function, const Marks& changing, const Marks& wanted);
 
+/// The floats that are marked or depend on some that are, other than through ints, truth values and floor.
+Marks depending(const ir::Function& function, Marks marks);
+
 }  // namespace isoshade::passes

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -35,7 +36,11 @@ class Differentiation {
     const auto order = callees_first(module_, all);
     support::assert_that(order.has_value(), "a function calls itself");
     for (const uint32_t f : *order)
-      if (asks(module_.functions[f])) rewrite(f);
+      // Derivatives of values that depend on no other derivative, then those that depended on these alone, and so on.
+      for (size_t round = 0; asks(f); ++round) {
+        support::assert_that(round < module_.functions[f].instructions.size(), "a derivative depends on itself");
+        rewrite(f);
+      }
   }
 
  private:
@@ -43,15 +48,37 @@ class Differentiation {
   struct Gradient {
     uint32_t of;  ///< a parameter
     size_t way;
+    uint32_t parameter;
   };
 
-  bool asks(const Function& function) const {
+  /// The gradients that a call does not pass yet.
+  std::span<const Gradient> missing_gradients(const Function& caller, const Instruction& made) const {
+    if (made.op != Opcode::call || caller.operands_of(made).size() == module_.functions[made.imm].parameters.size())
+      return {};
+    return gradients_.at(made.imm);
+  }
+
+  bool asks(uint32_t f) const {
+    const Function& function = module_.functions[f];
     return std::ranges::any_of(function.blocks, [&](const Block& block) {
       return std::ranges::any_of(block.instructions, [&](InstructionId id) {
         const Instruction& made = function.instructions[id];
-        return is_derivative(made.op) || (made.op == Opcode::call && gradients_.contains(made.imm));
+        return is_derivative(made.op) || !missing_gradients(function, made).empty();
       });
     });
+  }
+
+  /// The values that depend on a derivative, so that their own comes later.
+  Marks find_derived(const Function& function) const {
+    Marks derivatives(function.values.size());
+    for (const Block& block : function.blocks) {
+      for (const InstructionId id : block.instructions) {
+        const Instruction& made = function.instructions[id];
+        if (!is_derivative(made.op) && missing_gradients(function, made).empty()) continue;
+        for (uint32_t k = 0; k < made.result_count; ++k) derivatives[made.first_result + k] = true;
+      }
+    }
+    return depending(function, std::move(derivatives));
   }
 
   /// The function that gives the derivatives of another's results where these start, or none.
@@ -75,11 +102,12 @@ class Differentiation {
   Marks results_changing(uint32_t function, const Marks& parameters);
 
   void rewrite(uint32_t function);
-  std::vector<Way> ways_of(const Function& function);
-  /// Appends parameters for the derivatives that a function needs.
-  std::vector<Gradient> add_gradients(Function& declared, const Function& from, const std::vector<Way>& ways);
+  std::vector<Way> ways_of(const Function& function, const Marks& derived);
+  /// Appends parameters for the derivatives that a function needs and does not have yet.
+  void add_gradients(uint32_t function, Function& declared, const Function& from, const std::vector<Way>& ways);
   Values call_with_gradients(Tangents& tangents, Builder& b, const Function& from,
-                             const std::vector<Way>& ways, const Instruction& made, Values arguments);
+                             const std::vector<Way>& ways, const Marks& derived, const Instruction& made,
+                             Values arguments);
 
   Values changes_of_call(Builder& b, const Instruction& made, const Values& arguments, const Way& way,
                          const Function& from);
@@ -154,7 +182,7 @@ Marks Differentiation::results_changing(uint32_t function, const Marks& paramete
   return results_changing_[key] = results;
 }
 
-std::vector<Way> Differentiation::ways_of(const Function& function) {
+std::vector<Way> Differentiation::ways_of(const Function& function, const Marks& derived) {
   Marks parameters;
   for (const Parameter& parameter : function.parameters)
     parameters.push_back(parameter.type.is_float() && !parameter.uniform);
@@ -163,13 +191,13 @@ std::vector<Way> Differentiation::ways_of(const Function& function) {
                         {std::string(ddy_suffix), Opcode::ddy, {}}};
   for (size_t w = 0; w < ways.size(); ++w) {
     Marks wanted(function.values.size());
+    const auto want = [&](ValueId value) { wanted[value] = wanted[value] || !derived[value]; };
     for (const Block& block : function.blocks) {
       for (const InstructionId id : block.instructions) {
         const Instruction& made = function.instructions[id];
-        if (made.op == ways[w].op) wanted[function.operands_of(made)[0]] = true;
-        if (made.op != Opcode::call || !gradients_.contains(made.imm)) continue;
-        for (const Gradient& gradient : gradients_[made.imm])
-          if (gradient.way == w) wanted[function.operands_of(made)[gradient.of]] = true;
+        if (made.op == ways[w].op) want(function.operands_of(made)[0]);
+        for (const Gradient& gradient : missing_gradients(function, made))
+          if (gradient.way == w) want(function.operands_of(made)[gradient.of]);
       }
     }
     ways[w].needed = needed(function, changes, wanted);
@@ -177,13 +205,14 @@ std::vector<Way> Differentiation::ways_of(const Function& function) {
   return ways;
 }
 
-std::vector<Differentiation::Gradient> Differentiation::add_gradients(Function& declared,
-                                                                      const Function& from,
-                                                                      const std::vector<Way>& ways) {
-  std::vector<Gradient> gradients;
+void Differentiation::add_gradients(uint32_t function, Function& declared, const Function& from,
+                                    const std::vector<Way>& ways) {
+  std::vector<Gradient>& known = gradients_[function];
   for (uint32_t i = 0; i < from.parameters.size(); ++i) {
     for (size_t w = 0; w < ways.size(); ++w) {
       if (!ways[w].needed[from.blocks[0].parameters[i]]) continue;
+      if (std::ranges::any_of(known, [&](const Gradient& gradient) { return gradient.of == i && gradient.way == w; }))
+        continue;
       std::string name = from.parameters[i].name + ways[w].suffix;
       const auto taken = [&] {
         return std::ranges::any_of(declared.parameters, [&](const Parameter& parameter) {
@@ -191,39 +220,39 @@ std::vector<Differentiation::Gradient> Differentiation::add_gradients(Function& 
         });
       };
       while (taken()) name += "_";
+      const auto parameter = static_cast<uint32_t>(declared.parameters.size());
       declared.parameters.push_back({name, from.parameters[i].type, "gradients", false});
-      gradients.push_back({i, w});
+      known.push_back({i, w, parameter});
     }
   }
-  return gradients;
 }
 
 void Differentiation::rewrite(uint32_t function) {
   const Function from = module_.functions[function];
-  std::vector<Way> ways = ways_of(from);
+  const Marks derived = find_derived(from);
+  std::vector<Way> ways = ways_of(from, derived);
   Function declared;
   declared.name = from.name;
   declared.document = from.document;
   declared.parameters = from.parameters;
   declared.results = from.results;
-  const std::vector<Gradient> gradients = add_gradients(declared, from, ways);
-  if (!gradients.empty()) gradients_[function] = gradients;
+  add_gradients(function, declared, from, ways);
   module_.functions[function] = std::move(declared);
 
   Builder b(module_, function);
   Tangents* self = nullptr;
   Tangents tangents(
-      b, from, ways,
+      b, from, ways, [&](const Instruction& made) { return derived[from.operands_of(made)[0]]; },
       [&](const Instruction& made, const Values& arguments) {
-        return call_with_gradients(*self, b, from, ways, made, arguments);
+        return call_with_gradients(*self, b, from, ways, derived, made, arguments);
       },
       [&](const Instruction& made, const Values& arguments, const Way& way) {
         return changes_of_call(b, made, arguments, way, from);
       });
   self = &tangents;
-  for (size_t i = 0; i < gradients.size(); ++i)
-    ways[gradients[i].way].change[from.blocks[0].parameters[gradients[i].of]] =
-        b.parameter(from.parameters.size() + i);
+  for (const Gradient& gradient : gradients_[function])
+    if (ways[gradient.way].needed[from.blocks[0].parameters[gradient.of]])
+      ways[gradient.way].change[from.blocks[0].parameters[gradient.of]] = b.parameter(gradient.parameter);
   tangents.run();
   b.set_origin(0);
   Values results;
@@ -232,11 +261,13 @@ void Differentiation::rewrite(uint32_t function) {
 }
 
 Values Differentiation::call_with_gradients(Tangents& tangents, Builder& b, const Function& from,
-                                            const std::vector<Way>& ways, const Instruction& made,
-                                            Values arguments) {
-  if (const auto asked = gradients_.find(made.imm); asked != gradients_.end())
-    for (const Gradient& gradient : asked->second)
-      arguments.push_back(tangents.change(ways[gradient.way], from.operands_of(made)[gradient.of]));
+                                            const std::vector<Way>& ways, const Marks& derived,
+                                            const Instruction& made, Values arguments) {
+  for (const Gradient& gradient : missing_gradients(from, made)) {
+    const ValueId of = from.operands_of(made)[gradient.of];
+    const Way& way = ways[gradient.way];
+    arguments.push_back(derived[of] ? b.op(way.op, {tangents.value(of)}) : tangents.change(way, of));
+  }
   return b.call(made.imm, arguments);
 }
 
@@ -327,7 +358,7 @@ void Differentiation::build_by_body(Builder& b, const Function& from, const Mark
     if (results[i]) wanted[from.blocks[0].yields[i]] = true;
   std::vector<Way> ways{{"_change", Opcode::constant, needed(from, changes, wanted)}};
   Tangents tangents(
-      b, from, ways,
+      b, from, ways, [](const Instruction&) { return false; },
       [&](const Instruction& made, const Values& arguments) { return b.call(made.imm, arguments); },
       [&](const Instruction& made, const Values& arguments, const Way& way) {
         return changes_of_call(b, made, arguments, way, from);

@@ -21,7 +21,9 @@ namespace isoshade::passes {
 /// group "gradients". The derivatives of called functions are computed in functions of their own, `..._change`; that of
 /// a function without a body is declared.
 ///
-/// Needs: a valid module without derivatives of derivatives, in which calls are not yet expanded (the rules are those
+/// Derivatives of derivatives follow: the same rules apply to what the first ones were made of.
+///
+/// Needs: a valid module in which no derivative depends on itself, and calls are not yet expanded (the rules are those
 /// of the functions, not of their bit operations). Leaves: no ddx and no ddy; a module without any is left as it is.
 void derivatives(ir::Module& module);
 

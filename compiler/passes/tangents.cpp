@@ -10,11 +10,12 @@ namespace isoshade::passes {
 
 using namespace ir;
 
-Tangents::Tangents(Builder& builder, const Function& from, std::vector<Way>& ways, Call call,
+Tangents::Tangents(Builder& builder, const Function& from, std::vector<Way>& ways, Waits waits, Call call,
                    CallChange call_change)
     : b_(builder),
       from_(from),
       ways_(ways),
+      waits_(std::move(waits)),
       call_(std::move(call)),
       call_change_(std::move(call_change)),
       values_(from.values.size(), none) {
@@ -83,6 +84,10 @@ void Tangents::copy(const Instruction& made) {
     case Opcode::loop: support::bug("differentiated after hide_foldables, or not as a block");
     case Opcode::ddx:
     case Opcode::ddy:
+      if (waits_(made)) {
+        result = b_.op(made.op, operands);
+        return;
+      }
       for (const Way& way : ways_)
         if (way.op == made.op) result = change(way, from_.operands_of(made)[0]);
       support::assert_that(result != none, "a derivative in what is differentiated");

@@ -27,6 +27,8 @@ class Tangents {
   using ValueId = ir::ValueId;
   using Values = std::vector<ValueId>;
 
+  /// Whether a ddx or ddy is copied as it is.
+  using Waits = std::function<bool(const ir::Instruction& derivative)>;
   /// Makes the call of `made`; `arguments` are those of the new body.
   using Call = std::function<Values(const ir::Instruction& made, const Values& arguments)>;
   /// The derivatives of the call's results; none where they are not needed.
@@ -34,7 +36,7 @@ class Tangents {
       std::function<Values(const ir::Instruction& made, const Values& arguments, const Way& way)>;
 
   /// `from` is the old function; the builder's function begins with the same parameters.
-  Tangents(ir::Builder& builder, const ir::Function& from, std::vector<Way>& ways, Call call,
+  Tangents(ir::Builder& builder, const ir::Function& from, std::vector<Way>& ways, Waits waits, Call call,
            CallChange call_change);
 
   /// Makes the body. The builder is then at its end.
@@ -60,6 +62,7 @@ class Tangents {
   ir::Builder& b_;
   const ir::Function& from_;
   std::vector<Way>& ways_;
+  Waits waits_;
   Call call_;
   CallChange call_change_;
   Values values_;  ///< by value of `from`

@@ -2,7 +2,7 @@
 // Derivatives on the screen are what neighbouring pixels differ by.
 #include <cmath>
 
-#include "tests/equivalence/scenes.h"
+#include "tests/equivalence/scene_folder.h"
 
 namespace isoshade::equivalence {
 namespace {
@@ -57,6 +57,72 @@ TEST(PixelDerivatives, TexcoordDerivativesMatchPixelDifferencesInOrthographic) {
   expect_differences(
       R"({"type": "orthographic", "position": [1, 4, 6], "target": [0, 0, 0], "up": [0.2, 1, 0.1], "height": 6})",
       1e-4f);
+}
+
+/// A floor that shows this, of `uv`, the texture coordinates, and of "f", a smooth function of them.
+class SecondDerivatives : public SceneFolder {
+ protected:
+  render::Plan showing(const std::string& nodes) {
+    folder_.write("shown.json", R"json({"isoshade": 1, "effect": "shown", "nodes": {"uv": {"type": "texcoord"},
+"f": {"type": "expression", "code": "vector2(sin(9 * uv.x) * uv.y, exp2(3 * uv.y) / (1 + uv.x * uv.x))", "uv": "uv"},
+)json" + nodes + R"json(,
+"color": {"type": "combine3", "in1": "shown.x", "in2": "shown.y", "to": "color3"}},
+"passes": [{"name": "base", "color": "color"}]})json");
+    return plan({width, height}, 1, R"("camera": {"position": [1, 4, 6], "target": [0, 0, 0], "up": [0.2, 1, 0.1],
+"fov": 40}, "objects": {"floor": {"mesh": {"type": "plane", "size": [60, 60], "segments": 4}, "effect": "shown.json"}})");
+  }
+  backends::Image image_of(const std::string& nodes) { return draw(showing(nodes), *cpu_backend()); }
+};
+
+TEST_F(SecondDerivatives, AreWhatFirstDerivativesOfNeighbouringPixelsDifferBy) {
+  for (const char* what : {"uv", "f"}) {
+    for (const char* first : {"ddx", "ddy"}) {
+      const std::string slope = R"("slope": {"type": ")" + std::string(first) + R"(", "in": ")" + what + "\"}, ";
+      const auto second = [&](const char* then) {
+        return image_of(slope + R"("shown": {"type": ")" + then + R"(", "in": "slope"})");
+      };
+      const backends::Image value = image_of(slope + R"("shown": {"type": "add", "in1": "slope", "in2": 0})"),
+                            right = second("ddx"), down = second("ddy");
+      double greatest = 0, sum = 0, error = 0;
+      for (int y = 1; y < height - 1; ++y) {
+        for (int x = 1; x < width - 1; ++x) {
+          for (int c = 0; c < 2; ++c) {
+            const auto at = [&](const backends::Image& image, int dx, int dy) {
+              return double{image.rgba[static_cast<size_t>(((y + dy) * width + x + dx) * 4 + c)]};
+            };
+            const double dx = (at(value, 1, 0) - at(value, -1, 0)) / 2, dy = (at(value, 0, 1) - at(value, 0, -1)) / 2;
+            greatest = std::max({greatest, std::abs(at(right, 0, 0) - dx), std::abs(at(down, 0, 0) - dy)});
+            error += std::abs(at(right, 0, 0) - dx) + std::abs(at(down, 0, 0) - dy);
+            sum += std::abs(dx) + std::abs(dy);
+          }
+        }
+      }
+      // Central differences have the part of the fourth derivative, and the roundings of first derivatives.
+      EXPECT_GT(sum, 1e-3) << what;
+      EXPECT_LT(error, 0.02 * sum) << what << " " << first << ", worst " << greatest;
+    }
+  }
+}
+
+TEST_F(SecondDerivatives, AreIdenticalOnEveryBackendAndThroughFunctions) {
+  folder_.write("slope_of.json", R"({"isoshade": 1, "function": "slope_of", "inputs": {"x": {"type": "float"}},
+"nodes": {"n": {"type": "normal"}, "d": {"type": "fwidth", "in": "x"}, "e": {"type": "multiply", "in1": "d", "in2": "n.y"}},
+"outputs": {"out": "e"}})");
+  const render::Plan plan = showing(R"("a": {"type": "slope_of.json", "x": "f.x"}, "b": {"type": "slope_of.json", "x": "a"},
+"w": {"type": "fwidth", "in": "f"}, "s": {"type": "ddy", "in": "w"},
+"shown": {"type": "combine2", "in1": "b", "in2": "s.y"})");
+  const backends::Image image = draw(plan, *interpreter::create());
+  for (const char* lanes : {"1", "4", "8", "8x2"})
+    expect_identical(image, draw(plan, *cpu_backend(lanes)), lanes);
+#ifdef ISOSHADE_VULKAN
+  expect_identical(image, draw(plan, *vulkan_backend()), "vulkan");
+#endif
+  // The function of the function is that of its formula.
+  const backends::Image direct = image_of(R"("da": {"type": "fwidth", "in": "f.x"}, "n": {"type": "normal"},
+"a": {"type": "multiply", "in1": "da", "in2": "n.y"}, "db": {"type": "fwidth", "in": "a"},
+"b": {"type": "multiply", "in1": "db", "in2": "n.y"}, "w": {"type": "fwidth", "in": "f"}, "s": {"type": "ddy", "in": "w"},
+"shown": {"type": "combine2", "in1": "b", "in2": "s.y"})");
+  expect_identical(image, direct, "without functions");
 }
 
 }  // namespace

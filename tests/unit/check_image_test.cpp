@@ -133,14 +133,14 @@ TEST(CheckImage, RejectsFilenamesAsOutputsOfFunctions) {
             std::string::npos);
 }
 
-TEST(CheckImage, RejectsDerivativesAsTexcoordsWithMips) {
+TEST(CheckImage, RejectsSecondDerivativesAsTexcoordsWithMips) {
   FrontEnd front_end;
   const std::string of_image = R"("i": {"type": "image", "file": "a.png", "filtertype": "trilinear"},
 "color": {"type": "ddx", "in": "i"})";
   EXPECT_NE(front_end.check(effect(of_image)), nullptr) << front_end.diagnostics.text();
-  const std::string of_derivative = R"("w": {"type": "fwidth", "in": "uv"}, "uv": {"type": "texcoord"},
-"color": {"type": "image", "file": "a.png", "texcoord": "w", "filtertype": ")";
-  EXPECT_NE(messages_of(effect(of_derivative + "trilinear\"}")).find("error[second-derivative]"),
+  const std::string of_derivative = R"("v": {"type": "fwidth", "in": "uv"}, "uv": {"type": "texcoord"},
+"w": {"type": "ddx", "in": "v"}, "color": {"type": "image", "file": "a.png", "texcoord": "w", "filtertype": ")";
+  EXPECT_NE(messages_of(effect(of_derivative + "trilinear\"}")).find("error[third-derivative]"),
             std::string::npos);
   EXPECT_NE(front_end.check(effect(of_derivative + "linear\"}")), nullptr) << front_end.diagnostics.text();
 }

@@ -149,21 +149,37 @@ TEST_F(StageNeeds, UnusedNodesNeedNothing) {
             std::string::npos);
 }
 
-TEST_F(StageNeeds, DerivativesOfDerivativesAreFoundAcrossCalls) {
-  const std::string uv = R"("uv": {"type": "texcoord"}, "d": {"type": "ddx", "in": "uv.x"},)";
-  EXPECT_EQ(messages(effect(uv + R"("s": {"type": "slope", "x": "uv.x"}, "t": {"type": "add", "in1": "s", "in2": "d"},
-"color": {"type": "convert", "in": "t", "to": "color3"})")),
+TEST_F(StageNeeds, SecondDerivativesAreAllowedAndThirdOnesAreFoundAcrossCalls) {
+  const std::string plain = R"("uv": {"type": "texcoord"},)", uv = plain + R"("d": {"type": "ddx", "in": "uv.x"},)";
+  const std::string color = R"("color": {"type": "convert", "in": "t", "to": "color3"})";
+  EXPECT_EQ(messages(effect(uv + R"("s": {"type": "slope", "x": "d"}, "t": {"type": "add", "in1": "s", "in2": "d"},)" +
+                            color)),
             "");
-  const std::string inner = messages(effect(uv + R"("s": {"type": "slope", "x": "d"}, "color": {"type": "convert", "in": "s", "to": "color3"})"));
-  EXPECT_NE(inner.find("error[second-derivative]: \"slope\" takes the derivative of its input \"x\", which depends on "
-                       "the derivative \"d\""),
+  EXPECT_EQ(messages(effect(plain + R"("s": {"type": "slope", "x": "uv.x"}, "t": {"type": "ddy", "in": "s"},)" + color)),
+            "");
+  const std::string inner = messages(
+      effect(uv + R"("e": {"type": "ddy", "in": "d"}, "t": {"type": "slope", "x": "e"},)" + color));
+  EXPECT_NE(inner.find("error[third-derivative]: \"slope\" takes the derivative of its input \"x\", which depends on "
+                       "the derivative \"e\""),
             std::string::npos)
       << inner;
-  const std::string outer = messages(effect(R"("uv": {"type": "texcoord"}, "s": {"type": "slope", "x": "uv.x"},
-"t": {"type": "ddy", "in": "s"}, "color": {"type": "convert", "in": "t", "to": "color3"})"));
-  EXPECT_NE(outer.find("error[second-derivative]: \"ddy\" of a value that depends on the derivative \"s\""),
+  const std::string outer = messages(effect(R"("uv": {"type": "texcoord"}, "r": {"type": "slope", "x": "uv.x"},
+"s": {"type": "slope", "x": "r"}, "t": {"type": "ddy", "in": "s"},)" + color));
+  EXPECT_NE(outer.find("error[third-derivative]: \"ddy\" of a value that depends on the second derivative \"s\""),
             std::string::npos)
       << outer;
+}
+
+TEST_F(StageNeeds, LightsHaveNoSecondDerivatives) {
+  const auto of_light = [&](const std::string& rest) {
+    return messages(effect(R"("l": {"type": "lightcolor"}, "d": {"type": "ddx", "in": "l"},)" + rest +
+                           R"("color": {"type": "sum_lights", "in": "x"})"));
+  };
+  EXPECT_EQ(of_light(R"("x": {"type": "add", "in1": "l", "in2": "d"},)"), "");
+  const std::string twice = of_light(R"("x": {"type": "ddy", "in": "d"},)");
+  EXPECT_NE(twice.find("error[unsupported]: a second derivative is taken of \"l\", which depends on lights"),
+            std::string::npos)
+      << twice;
 }
 
 TEST_F(StageNeeds, ARecursiveFunctionOfTheSurfaceIsAnError) {

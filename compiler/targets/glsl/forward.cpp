@@ -276,25 +276,19 @@ class Pair {
     } else {
       out += indent + std::string(ir::name(made.results[0].type)) + " at = " + call + ";\n";
     }
-    for (const PureField& field : fields) out += indent + "point." + field.name + " = " + value_of(field, bindings, values) + ";\n";
+    for (const PureField& field : fields) out += indent + "point." + field.name + " = " + value_of(field.parameter.name, bindings, values) + ";\n";
     return out;
   }
 
-  std::string value_of(const PureField& field, const std::vector<interface::Binding>& bindings,
+  std::string value_of(std::string_view name, const std::vector<interface::Binding>& bindings,
                        const std::vector<std::string>& values) const {
-    const auto find = [&](std::string_view name) -> const std::string* {
-      for (size_t i = 0; i < bindings.size(); ++i)
-        if (bindings[i].parameter.name == name) return &values[i];
-      return nullptr;
-    };
-    const std::string& name = field.parameter.name;
-    if (const std::string* value = find(name)) return *value;
+    for (size_t i = 0; i < bindings.size(); ++i)
+      if (bindings[i].parameter.name == name) return values[i];
     // A derivative of another field; y is down.
     for (const auto& [suffix, derivative] :
          {std::pair{"_ddx", "dFdx("}, std::pair{"_ddy", is_es_ ? "-dFdy(" : "dFdy("}})
-      if (name.ends_with(suffix))
-        if (const std::string* value = find(name.substr(0, name.size() - 4))) return derivative + *value + ")";
-    support::bug("a field without a value: " + name);
+      if (name.ends_with(suffix)) return derivative + value_of(name.substr(0, name.size() - 4), bindings, values) + ")";
+    support::bug("a field without a value: " + std::string(name));
   }
 
   std::string parameters() const {
