@@ -54,7 +54,8 @@ std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKi
       }
       return std::nullopt;
     case graph::DocumentKind::effect:
-    case graph::DocumentKind::scene: break;
+    case graph::DocumentKind::scene:
+    case graph::DocumentKind::image: break;
   }
   auto effect = driver::compile_effect(source, compile, diagnostics);
   if (!effect) return std::nullopt;

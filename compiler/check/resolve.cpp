@@ -61,12 +61,10 @@ class NodeResolver {
       if (node_.callee == nullptr || !passes_few_numbers()) return fail();
     }
     if (node_.row != nullptr && !available(node_.row->availability())) {
-      const DocumentKind kind = work_.graph().kind;
       support::Diagnostic& report =
           work_.report(Id::misplaced_node, source_.type_place,
                        quote(source_.label()) + " is not available in " +
-                           (kind == DocumentKind::effect ? "an " : "a ") + std::string(graph::kind_name(kind)) +
-                           " document");
+                           graph::with_article(work_.graph().kind) + " document");
       if (in_function()) report.suggest(function_fix());
       fail();
     }
@@ -96,7 +94,8 @@ class NodeResolver {
       case DocumentKind::post: return where != nodes::Availability::effects;
       case DocumentKind::function: return where != nodes::Availability::posts && where != nodes::Availability::pictures;
       case DocumentKind::effect:
-      case DocumentKind::scene: break;
+      case DocumentKind::scene:
+      case DocumentKind::image: break;
     }
     return where != nodes::Availability::posts;
   }

@@ -135,5 +135,7 @@ struct TypedGraph {
 
 /// Whether a node is an image that is trilinear, or that an input can make so.
 bool may_be_trilinear(const TypedGraph& graph, const Node& node);
+/// Whether a node is an image of which another layer than the first may be read.
+bool reads_layers(const TypedGraph& graph, const Node& node);
 
 }  // namespace isoshade::check

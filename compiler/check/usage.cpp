@@ -402,10 +402,16 @@ bool may_be_trilinear(const TypedGraph& typed, const Node& node) {
                                     : filter.index == trilinear;
 }
 
+bool reads_layers(const TypedGraph& typed, const Node& node) {
+  if (node.row == nullptr || !node.row->is<nodes::Image>()) return false;
+  const Operand& layer = typed.operands_of(node)[nodes::image_port::layer];
+  return layer.from != From::words || typed.words[layer.index] != 0;
+}
+
 void check_usage(Work& work) {
   mark_per_iteration(work.typed);
   find_stage_needs(work.typed);
-  find_differentiated_inputs(work.typed);
+  find_differentiated_inputs(work);
   check_summands(work);
   check_nested_sums(work);
   if (work.graph().kind == graph::DocumentKind::effect) {

@@ -368,6 +368,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
       case graph::DocumentKind::post: kind = emit::PureKind::post_process; break;
       case graph::DocumentKind::effect:
       case graph::DocumentKind::scene:
+      case graph::DocumentKind::image:
         const graph::Pass& pass = graph.passes[entry.pass];
         switch (entry.part) {
           case lower::PassPart::color:

@@ -53,7 +53,7 @@ emit::ForwardProgram program_of(const Shader& shader, const emit::PureShader& pu
   for (const Image& image : shader.parameters.images) {
     // Images are the last of the parameters, in the same order.
     const size_t at = pure.parameters.size() - shader.parameters.images.size() + program.images.size();
-    program.images.push_back({pure.parameters[at].name, image.slot.mips});
+    program.images.push_back({pure.parameters[at].name, image.slot.mips, image.slot.layers});
   }
   const bool is_post = shader.kind == graph::DocumentKind::post;
   if (is_post) program.pictures = 1 + shader.images.size();

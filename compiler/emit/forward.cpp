@@ -69,7 +69,7 @@ class Layout {
          {ForwardBlock::view, ForwardBlock::object, ForwardBlock::parameters, ForwardBlock::lights, ForwardBlock::screen})
       if (std::optional<ForwardLayout::Block> made = block_of(block)) layout_.blocks.push_back(std::move(*made));
     for (size_t i = 0; i < program_.images.size(); ++i)
-      add_sampler("isoshade_image" + std::to_string(i), program_.images[i].field);
+      add_sampler("isoshade_image" + std::to_string(i), program_.images[i].field, program_.images[i].layers);
     for (size_t i = 0; i < program_.pictures; ++i) add_sampler("isoshade_picture" + std::to_string(i), std::to_string(i));
     if (calls(HostCall::depth)) add_sampler("isoshade_depth_picture", "depth");
     return std::move(layout_);
@@ -97,9 +97,9 @@ class Layout {
     }
   }
 
-  void add_sampler(std::string name, std::string image) {
+  void add_sampler(std::string name, std::string image, bool layers = false) {
     layout_.samplers.push_back(
-        {std::move(name), static_cast<int>(forward_block_count + layout_.samplers.size()), std::move(image)});
+        {std::move(name), static_cast<int>(forward_block_count + layout_.samplers.size()), std::move(image), layers});
   }
 
   std::optional<ForwardLayout::Block> block_of(ForwardBlock block) {
@@ -169,6 +169,7 @@ bool is_sampler(const PureShader& shader, const ir::Function& function) {
     case interface::Host::irradiance:
     case interface::Host::texel:
     case interface::Host::texture_size:
+    case interface::Host::texture_layer:
     case interface::Host::image:
     case interface::Host::depth:
     case interface::Host::mip_level: break;

@@ -24,7 +24,8 @@ inline constexpr size_t forward_block_count = 5;
 /// An image that the functions read, by its place in the list: the field of Parameters that has its number.
 struct ForwardImage {
   std::string field;
-  bool mips = false;  ///< levels of half the size are read, too
+  bool mips = false;    ///< levels of half the size are read, too
+  bool layers = false;  ///< layers other than the first are read: the texture is an array
 };
 
 /// Who filters images.
@@ -77,6 +78,7 @@ struct ForwardLayout {
     std::string name;
     int binding = 0;
     std::string image;  ///< the field of Parameters; of a post the picture, or "depth"
+    bool layers = false;  ///< the texture is an array
   };
   std::vector<Attribute> attributes;
   std::vector<Block> blocks;

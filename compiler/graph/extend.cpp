@@ -20,11 +20,6 @@ size_t count_values(const Json& json) {
   return count;
 }
 
-/// "an effect"
-std::string with_article(DocumentKind kind) {
-  return (kind == DocumentKind::effect ? "an " : "a ") + std::string(kind_name(kind));
-}
-
 class Loader {
  public:
   Loader(const FileRule& files, support::Diagnostics& diagnostics) : files_(files), diagnostics_(diagnostics) {}

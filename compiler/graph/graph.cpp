@@ -38,7 +38,7 @@ constexpr std::array<TypeRow, 12> types = {{{"boolean", 0},
 static_assert(types.size() == static_cast<size_t>(Type::string) + 1);
 
 // In the order of DocumentKind.
-constexpr std::array<std::string_view, 4> kinds = {"function", "effect", "post", "scene"};
+constexpr std::array<std::string_view, 5> kinds = {"function", "effect", "post", "scene", "image"};
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
 
@@ -62,6 +62,11 @@ bool check_version(const Document& document, Diagnostics& diagnostics) {
 }  // namespace
 
 std::string_view kind_name(DocumentKind kind) { return kinds[static_cast<size_t>(kind)]; }
+
+std::string with_article(DocumentKind kind) {
+  const bool is_vowel = kind == DocumentKind::effect || kind == DocumentKind::image;
+  return (is_vowel ? "an " : "a ") + std::string(kind_name(kind));
+}
 
 std::string_view type_name(Type type) { return types[static_cast<size_t>(type)].name; }
 
@@ -113,7 +118,7 @@ std::optional<DocumentKind> document_kind(const Document& document, Diagnostics&
   if (named == nullptr) {
     diagnostics
         .report(Id::wrong_kind, {document.source, root.begin, root.begin + 1},
-                "a document must be a function, effect, post or scene")
+                "a document must be a function, effect, post, scene or image")
         .suggest("add \"effect\": \"its_name\", or another of these keys");
     return std::nullopt;
   }

@@ -16,12 +16,14 @@
 
 namespace isoshade::graph {
 
-enum class DocumentKind : uint8_t { function, effect, post, scene };
+enum class DocumentKind : uint8_t { function, effect, post, scene, image };
 
 std::string_view kind_name(DocumentKind kind);
+/// "an effect"
+std::string with_article(DocumentKind kind);
 
 /// Checks the version and returns the kind of a document. Reports a root that is not an object, a missing or
-/// wrong "isoshade": 1, and a document without exactly one of the keys function, effect, post, scene.
+/// wrong "isoshade": 1, and a document without exactly one of the keys function, effect, post, scene, image.
 std::optional<DocumentKind> document_kind(const Document& document, support::Diagnostics& diagnostics);
 
 enum class Type : uint8_t {
@@ -174,7 +176,7 @@ struct InputImage {
 struct Graph {
   support::Source source;
   std::vector<support::Source> bases = {};  ///< the documents that it extends: sources 1, 2, ... of places
-  DocumentKind kind = DocumentKind::function;  ///< never scene
+  DocumentKind kind = DocumentKind::function;  ///< never scene or image
   std::string name, doc;
   TextRange name_place;
   std::vector<Input> inputs;

@@ -191,10 +191,7 @@ std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
   const size_t errors_before = diagnostics_.error_count();
   const Json& root = document_.root;
   graph_.kind = kind;
-  ObjectReader reader(document_, root,
-                      "a" + std::string(kind == DocumentKind::effect ? "n " : " ") +
-                          std::string(kind_name(kind)) + " document",
-                      diagnostics_);
+  ObjectReader reader(document_, root, with_article(kind) + " document", diagnostics_);
   reader.ignore("isoshade");
   reader.ignore("$schema");
   if (kind == DocumentKind::effect) reader.ignore(extends_key);  // the base is merged in before
@@ -223,9 +220,9 @@ std::optional<Graph> GraphBuilder::build(DocumentKind kind) {
 std::optional<Graph> build_graph(const Document& document, Diagnostics& diagnostics) {
   const std::optional<DocumentKind> kind = document_kind(document, diagnostics);
   if (!kind) return std::nullopt;
-  if (*kind == DocumentKind::scene) {
-    diagnostics.report(Id::wrong_kind, document.span(*document.root.find("scene")),
-                       "a scene is not a graph; use a function, effect or post here");
+  if (*kind == DocumentKind::scene || *kind == DocumentKind::image) {
+    diagnostics.report(Id::wrong_kind, document.span(*document.root.find(kind_name(*kind))),
+                       with_article(*kind) + " is not a graph; use a function, effect or post here");
     return std::nullopt;
   }
   return GraphBuilder(document, diagnostics).build(*kind);

@@ -210,6 +210,7 @@ enum class Host : uint8_t {
   irradiance,    ///< irradiance_at(direction) -> irradiance / pi
   texel,         ///< texel_at(picture, x, y) -> texel
   texture_size,  ///< texture_size(picture) -> (width, height, smaller)
+  texture_layer, ///< texture_layer(picture, layer) -> picture
   image,         ///< NAME_at(x, y) -> color: of an image of a post
   depth,         ///< depth_at(x, y) -> depth
   mip_level,     ///< sample_level(picture, along_x, along_y) -> level, in 1/65536

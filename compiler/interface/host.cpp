@@ -53,6 +53,7 @@ std::optional<Answer> answer_of(const HostFunction& function) {
     case Host::irradiance: return Answer{HostCall::irradiance};
     case Host::texel: return Answer{HostCall::texel};
     case Host::texture_size: return Answer{HostCall::image_size};
+    case Host::texture_layer: return Answer{HostCall::image_layer};
     case Host::image: return Answer{HostCall::picture, picture_number(function.image)};
     case Host::depth: return Answer{HostCall::depth};
     case Host::mip_level:

@@ -215,8 +215,9 @@ Value Body::image(uint32_t index) {
   const auto number = [&](size_t port) {
     return operands[port].from == From::input ? read(operands[port]).id() : ir::none;
   };
-  const Chosen chosen{number(port::filtertype), number(port::uaddressmode), number(port::vaddressmode),
-                      check::may_be_trilinear(graph_, node)};
+  Chosen chosen{number(port::filtertype), number(port::uaddressmode), number(port::vaddressmode),
+                check::may_be_trilinear(graph_, node)};
+  if (check::reads_layers(graph_, node)) chosen.layer = read(operands[port::layer]).id();
   const auto picture = [&] {
     const ir::ValueId color = sample(b_, environment_.interface, sampling, texture, texcoord, chosen);
     std::array<ir::ValueId, 4> components;

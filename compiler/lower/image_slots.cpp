@@ -47,6 +47,7 @@ ImageSlot slot_of_image(const check::TypedGraph& graph, uint32_t index) {
   slot.decoding = decoding_of(graph, node);
   slot.samplings = {sampling_of(graph, node)};
   slot.mips = check::may_be_trilinear(graph, node);
+  slot.layers = check::reads_layers(graph, node);
   return slot;
 }
 
@@ -105,6 +106,7 @@ class SlotCollector {
       return number;
     }
     found->mips |= slot.mips;
+    found->layers |= slot.layers;
     for (const Sampling& sampling : slot.samplings)
       if (std::ranges::find(found->samplings, sampling) == found->samplings.end())
         found->samplings.push_back(sampling);

@@ -28,6 +28,7 @@ struct ImageSlot {
   support::Span place;    ///< where it does
   Decoding decoding = Decoding::linear;
   bool mips = false;  ///< levels of half the size are read too
+  bool layers = false;  ///< other layers than the first are read too
   std::vector<Sampling> samplings;  ///< the ways in which nodes read it, each once
 };
 

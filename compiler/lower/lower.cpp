@@ -409,6 +409,7 @@ Lowered lower(const TypedGraph& graph, const LowerOptions& options) {
     case DocumentKind::post: made = lowering.add_post(graph); break;
     case DocumentKind::effect:
     case DocumentKind::scene:
+    case DocumentKind::image:
       support::assert_that(options.pass < graph.graph.passes.size(), "the effect has no such pass");
       made = lowering.add_pass(graph, options.pass, options.part);
   }
@@ -438,6 +439,7 @@ LoweredShader lower_shader(const TypedGraph& graph) {
     case DocumentKind::post: made.entries.push_back({.interface = lowering.add_post(graph)}); break;
     case DocumentKind::effect:
     case DocumentKind::scene:
+    case DocumentKind::image:
       const std::vector<graph::Pass>& passes = graph.graph.passes;
       for (size_t i = 0; i < passes.size(); ++i) {
         const std::string prefix = passes.size() > 1 ? passes[i].name + "_" : "";

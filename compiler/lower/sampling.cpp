@@ -37,6 +37,10 @@ struct Samplers {
     return declared(interface::Host::texture_size, names::texture_size, {int_parameter("picture")},
                     {{"width", ir::int_type}, {"height", ir::int_type}, {"smaller", ir::int_type}});
   }
+  uint32_t texture_layer() {
+    return declared(interface::Host::texture_layer, names::texture_layer,
+                    {int_parameter("picture"), int_parameter("layer")}, {{"picture", ir::int_type}});
+  }
   uint32_t texel_at() {
     return declared(interface::Host::texel, names::texel_at,
                     {int_parameter("picture"), int_parameter("x"), int_parameter("y")},
@@ -245,6 +249,7 @@ Vec4 load_texel(Kernel& k, Int first, Int place, Int table) {
 ir::ValueId sample(ir::Builder& b, interface::Interface& interface, const Sampling& sampling, ir::ValueId texture,
                    ir::ValueId texcoord, const Chosen& chosen) {
   Samplers samplers{b.module(), interface};
+  if (chosen.layer != ir::none) texture = b.call(samplers.texture_layer(), std::array{texture, chosen.layer})[0];
   const bool by_mode = chosen.u != ir::none || chosen.v != ir::none;
   std::vector<ir::ValueId> arguments{texture, texcoord};
   if (by_mode) {
@@ -287,6 +292,14 @@ void define_texture_reads(ir::Module& module, const interface::Interface& interf
     Kernel k(module, size);
     k.b.finish(std::array{word(k, texture_word::width).value, word(k, texture_word::height).value,
                           word(k, texture_word::smaller).value});
+  }
+  if (const uint32_t layer = interface.find(interface::Host::texture_layer); layer != ir::none) {
+    Kernel k(module, layer);
+    const Int last = word(k, texture_word::layers) - Int(1);
+    const Int from_0 = select(k.integer(1) > Int(0), k.integer(1), Int(0));
+    const Int found = k.named("found", select(from_0 < last, from_0, last));
+    const Int records = word(k, texture_word::smaller) + Int(1);
+    k.b.finish(std::array{(k.integer(0) + found * records).value});
   }
   if (const uint32_t texel = interface.find(interface::Host::texel); texel != ir::none) {
     Kernel k(module, texel);

@@ -24,10 +24,12 @@ struct Sampling {
   friend bool operator==(const Sampling&, const Sampling&) = default;
 };
 
-/// The numbers of what inputs choose, and whether the filter can be trilinear; ir::none where the Sampling is fixed.
+/// The numbers of what inputs choose, and whether the filter can be trilinear; ir::none where the Sampling is fixed. And
+/// the layer; ir::none for the first.
 struct Chosen {
   ir::ValueId filter = ir::none, u = ir::none, v = ir::none;
   bool may_be_trilinear = false;
+  ir::ValueId layer = ir::none;
 };
 
 /// The colour of a texture at `texcoord`, as a vec4 under `builder`. Beyond edges of AddressMode::constant it is that

@@ -73,7 +73,7 @@ struct Image {};
 /// The ports of the row `image`, in order.
 namespace image_port {
 inline constexpr size_t file = 0, default_value = 1, texcoord = 2, uaddressmode = 3, vaddressmode = 4,
-                        filtertype = 5, colorspace = 6;
+                        filtertype = 5, colorspace = 6, layer = 7;
 }  // namespace image_port
 
 // The enumerations below have the order of the ports' choices.

@@ -3,6 +3,7 @@
 
 #include "compiler/graph/expression.h"
 #include "compiler/graph/extend.h"
+#include "compiler/graph/image_document.h"
 #include "compiler/nodes/example.h"
 #include "compiler/nodes/manual.h"
 #include "compiler/nodes/schema_json.h"
@@ -249,6 +250,15 @@ std::string json_schema(std::span<const Row> library, const DocumentSchema& scen
        {"images", described(array_schema(reference("id"), 0, 8), "names of further images that it reads")},
        {"enabled", described(reference("id"), "a parameter: where it is 0, the post is not run")},
        {"outputs", object_schema({{"color", color_schema(), true}}), true}});
+  const SchemaJson layer = object_schema(
+      {{"file", described(string_schema(), "path of an image file: the largest mip level; the others are computed")},
+       {"levels", described(array_schema(string_schema(), 1, graph::max_image_levels),
+                            "instead of `file`: of each mip level, from the largest on, each half the size")},
+       {"count", described(integer_schema(1, graph::max_image_layers),
+                           "how many layers stand in each file, one below the other; default 1")}});
+  SchemaJson image_layers = array_schema(layer, 1, graph::max_image_layers);
+  definitions["image"] = graph_schema("image", {{"layers", described(std::move(image_layers), "in order"), true}});
+  definitions["image"]["properties"].erase("nodes");
   definitions.update(SchemaJson::parse(scene.definitions));
   struct Kind {
     std::string_view key, doc;
@@ -256,7 +266,8 @@ std::string json_schema(std::span<const Row> library, const DocumentSchema& scen
   const Kind kinds[] = {{"function", "a function that graphs use as a node, and its name"},
                         {"effect", "an effect that draws a mesh, and its name"},
                         {"post", "a full-screen effect over a finished image, and its name"},
-                        {scene.kind, scene.doc}};
+                        {scene.kind, scene.doc},
+                        {"image", "an image of several layers or with mip levels of its own, and its name"}};
   // Editors complete the keys in "properties"; the other keys depend on the kind of document.
   SchemaJson properties{{"$schema", string_schema()}, {"isoshade", {{"const", 1}}}};
   std::vector<SchemaJson> one, branches;

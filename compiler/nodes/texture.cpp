@@ -29,6 +29,7 @@ std::vector<Row> texture_rows() {
          "the colour space of the file; auto: sRGB if it has 8 bits per channel and is read as a colour, else linear",
          "auto",
          {"auto", "srgb", "linear"}},
+        {"layer", Integer, "which layer of a file that has several; the nearest there is", 0.0f},
         {"to", name_of(AnyFloat), "the type of the result", "color3"}},
        AnyFloat,
        Image{}},

@@ -35,6 +35,8 @@ std::vector<Given> answer_of(interface::Host host) {
     case interface::Host::depth: return {{"depth", 0, 1}};
     case interface::Host::image: return {{"image", 0, default_limit}};
     case interface::Host::texel: return texel(Answer::other, 1);
+    case interface::Host::texture_layer:
+      return {{"picture", interface::assume::texture.lo, interface::assume::texture.hi}};
     case interface::Host::texture_size:
       return {{"width", 1, interface::max_size}, {"height", 1, interface::max_size}, {"smaller", 0, 13}};
     case interface::Host::mip_level: {

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "compiler/graph/image_document.h"
 #include "compiler/lower/image_slots.h"
 #include "compiler/support/read_file.h"
 #include "compiler/support/sha256.h"
@@ -24,6 +25,19 @@ void add_functions(const check::TypedGraph& graph, std::map<std::string, const c
     found.emplace(graph::canonical_path(callee->graph.source->path()), callee);
     add_functions(*callee, found, seen);
   }
+}
+
+/// The files that an image document names; none if it cannot be read, which `isoshade render` reports.
+std::vector<graph::ImageFile> files_of_image(const std::string& path, const support::Span& where,
+                                             const graph::FileRule& rule) {
+  std::vector<graph::ImageFile> files;
+  support::Diagnostics unseen;
+  if (!graph::may_read(path, where, rule, unseen)) return files;
+  const auto image = graph::read_image_document(path, rule, unseen, where);
+  if (!image) return files;
+  for (const graph::ImageLayers& layers : image->layers)
+    files.insert(files.end(), layers.levels.begin(), layers.levels.end());
+  return files;
 }
 
 }  // namespace
@@ -56,6 +70,9 @@ std::vector<ReadFile> files_of(const check::TypedGraph& graph, const graph::File
     const std::string& document = slot.place.file->path();
     const std::string path = graph::path_beside(document, slot.path);
     images.emplace(graph::canonical_path(path), Image{path, slot.place});
+    if (!graph::is_image_document(path)) continue;
+    for (const graph::ImageFile& file : files_of_image(path, slot.place, rule))
+      images.emplace(graph::canonical_path(file.path), Image{file.path, file.where});
   }
   for (const auto& [canonical, image] : images) {
     const auto& [path, where] = image;

@@ -72,7 +72,8 @@ class Reflector {
       case graph::DocumentKind::effect: add_passes(); break;
       case graph::DocumentKind::post: add_pictures(); break;
       case graph::DocumentKind::function: add_outputs(); break;
-      case graph::DocumentKind::scene: break;
+      case graph::DocumentKind::scene:
+      case graph::DocumentKind::image: break;
     }
     for (const HostCall call : emit::host_calls(pure_, pure_.functions)) add_host(call);
     if (!options_.pairs.empty()) add_pairs();
@@ -175,6 +176,7 @@ class Reflector {
       made.parameter = if_any(image.slot.parameter);
       made.decoding = decoding(image.slot.decoding);
       made.mips = image.slot.mips;
+      made.layers = image.slot.layers;
       for (const lower::Sampling& sampling : image.slot.samplings)
         made.samplings.push_back({{Text(words::filters()[static_cast<size_t>(sampling.filter)])},
                                   {Text(words::wraps()[static_cast<size_t>(sampling.u)])},
@@ -333,7 +335,7 @@ class Reflector {
         made.blocks.push_back({block_role(block.block), block.name, block.instance, block.binding, block.size,
                                members_of(block.members)});
       for (const emit::ForwardLayout::Sampler& sampler : pair.layout.samplers)
-        made.samplers.push_back({sampler.name, sampler.binding, sampler.image});
+        made.samplers.push_back({sampler.name, sampler.binding, sampler.image, sampler.layers});
       if (!pair.layout.light.empty())
         made.light =
             LightRecord{pair.layout.light_size, emit::most_forward_lights, members_of(pair.layout.light)};

@@ -94,6 +94,13 @@ concept image_size = requires(const Host& host, int_of<F> image) {
   { host.image_size(image) } -> ConvertsTo<ImageSize<int_of<F>>>;
 };
 
+/// The number of the image that is a layer of another, by the order of layers: the first for those below 0, the last for
+/// those above. Asked for only by shaders that read layers.
+template <class Host, class F>
+concept image_layer = requires(const Host& host, int_of<F> image, int_of<F> layer) {
+  { host.image_layer(image, layer) } -> ConvertsTo<int_of<F>>;
+};
+
 /// Whether there is an environment: light from all directions, far away.
 template <class Host, class F>
 concept has_environment = requires(const Host& host) {
@@ -321,6 +328,11 @@ template <class F, class Host>
   requires gives::image_size<Host, F>
 ISOSHADE_INLINE ImageSizeOf<F> isoshade_image_size(const Host& host, int_of<F> image) {
   return host.image_size(image);
+}
+template <class F, class Host>
+  requires gives::image_layer<Host, F>
+ISOSHADE_INLINE int_of<F> isoshade_image_layer(const Host& host, int_of<F> image, int_of<F> layer) {
+  return host.image_layer(image, layer);
 }
 template <class F, class Host>
   requires gives::picture<Host, F>

@@ -238,18 +238,22 @@ class Data {
     }
   }
 
-  /// Each texture with its mip levels, and by the number of its record the number of the texture.
+  /// Each texture by the number of its record: its layers, each a list of mip levels.
   void add_textures() {
     namespace word = lower::texture_word;
     const std::vector<int32_t>& records = plan_.frame.textures;
     json_["textures"] = ordered_json::array();
     for (size_t first = 0; first < records.size();) {
-      ordered_json texture{{"record", first / word::stride}, {"levels", ordered_json::array()}};
-      for (int left = records[first + word::smaller]; left >= 0; --left, first += word::stride)
-        texture["levels"].push_back({{"first", records[first + word::first]},
-                                     {"width", records[first + word::width]},
-                                     {"height", records[first + word::height]},
-                                     {"table", records[first + word::table]}});
+      ordered_json texture{{"record", first / word::stride}, {"layers", ordered_json::array()}};
+      for (int layers = records[first + word::layers]; layers > 0; --layers) {
+        ordered_json levels = ordered_json::array();
+        for (int left = records[first + word::smaller]; left >= 0; --left, first += word::stride)
+          levels.push_back({{"first", records[first + word::first]},
+                            {"width", records[first + word::width]},
+                            {"height", records[first + word::height]},
+                            {"table", records[first + word::table]}});
+        texture["layers"].push_back(std::move(levels));
+      }
       json_["textures"].push_back(std::move(texture));
     }
   }

@@ -19,7 +19,10 @@ namespace isoshade::render {
 class Planner {
  public:
   Planner(const scene::Scene& scene, const PlanOptions& options, support::Diagnostics& diagnostics)
-      : scene_(scene), options_(options), diagnostics_(diagnostics) {}
+      : scene_(scene),
+        options_(options),
+        diagnostics_(diagnostics),
+        textures_(options.compiler.library != nullptr ? &options.compiler.library->files() : nullptr) {}
 
   std::optional<Plan> plan();
 

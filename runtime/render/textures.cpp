@@ -11,19 +11,19 @@
 namespace isoshade::render {
 namespace {
 
-/// The number of texels of a texture of this size, with or without mip levels.
-int64_t texel_count(const scene::ImageHeader& header, bool mips) {
-  int64_t width = header.width, height = header.height, count = width * height;
+/// The number of texels of a texture of this shape, with or without mip levels.
+int64_t texel_count(const ImageShape& shape, bool mips) {
+  int64_t width = shape.header.width, height = shape.header.height, count = width * height;
   while (mips && (width > 1 || height > 1)) {
     width = std::max<int64_t>(1, width / 2);
     height = std::max<int64_t>(1, height / 2);
     count += width * height;
   }
-  return count;
+  return count * shape.layers;
 }
 
-int64_t bytes_of(const scene::ImageHeader& header, bool mips) {
-  return texel_count(header, mips) * (header.bytes ? 4 : 16);
+int64_t bytes_of(const ImageShape& shape, bool mips) {
+  return texel_count(shape, mips) * (shape.header.bytes ? 4 : 16);
 }
 
 bool is_srgb(lower::Decoding decoding, const ImageSource& source, const scene::ImageHeader& header) {
@@ -48,12 +48,13 @@ std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects) {
   return skips;
 }
 
-int64_t TextureStore::Texture::texel_count() const { return render::texel_count(header, mips); }
-int64_t TextureStore::Texture::bytes() const { return bytes_of(header, mips); }
+int64_t TextureStore::Texture::texel_count() const { return render::texel_count(shape, mips); }
+int64_t TextureStore::Texture::bytes() const { return bytes_of(shape, mips); }
 
 backends::Largest TextureStore::Texture::described() const {
-  return {"the image " + support::quote(source.path) + ", " + std::to_string(header.width) + " x " +
-              std::to_string(header.height) + (mips ? " with mip levels: " : ": ") + std::to_string(bytes()) +
+  return {"the image " + support::quote(source.path) + ", " + std::to_string(shape.header.width) + " x " +
+              std::to_string(shape.header.height) +
+              (shape.layers > 1 ? ", " + std::to_string(shape.layers) + " layers" : "") + (mips ? " with mip levels: " : ": ") + std::to_string(bytes()) +
               " bytes",
           source.where};
 }
@@ -82,35 +83,37 @@ bool TextureStore::fits(int64_t bytes, bool is_new, const ImageSource& source,
 std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding decoding, bool mips,
                                       support::Diagnostics& diagnostics) {
   const std::string canonical = graph::canonical_path(source.path);
-  if (const auto read = headers_.find(canonical); read != headers_.end()) {
-    const auto known = numbers_.find({canonical, is_srgb(decoding, source, read->second)});
+  if (const auto read = shapes_.find(canonical); read != shapes_.end()) {
+    const auto known = numbers_.find({canonical, is_srgb(decoding, source, read->second.header)});
     if (known != numbers_.end()) {
       Texture& texture = textures_[static_cast<size_t>(known->second)];
       if (mips && !texture.mips) {
-        const int64_t more = bytes_of(texture.header, true) - texture.bytes();
+        const int64_t more = bytes_of(texture.shape, true) - texture.bytes();
         if (!fits(more, false, source, diagnostics)) return std::nullopt;
         texture.mips = true;
       }
       return known->second;
     }
   }
-  std::optional<std::string> file;
-  if (source.bytes == nullptr) file = scene::read_image_file(source.path, diagnostics, source.where);
-  if (source.bytes == nullptr && !file) return std::nullopt;
-  const std::string_view bytes = file ? *file : *source.bytes;
-  const auto header = scene::read_header(source.path, bytes, diagnostics, source.where);
-  if (!header || !fits(bytes_of(*header, mips), true, source, diagnostics)) return std::nullopt;
-  auto image = scene::read_image(source.path, bytes, diagnostics, source.where);
-  if (!image) return std::nullopt;
-  const bool srgb = is_srgb(decoding, source, *header);
+  const auto image = LayeredImage::open(source, rule_, diagnostics);
+  if (!image || !fits(bytes_of(image->shape(), mips), true, source, diagnostics)) return std::nullopt;
+  auto layers = image->decode(diagnostics);
+  if (!layers) return std::nullopt;
+  const ImageShape& shape = image->shape();
+  const bool srgb = is_srgb(decoding, source, shape.header);
   const auto number = static_cast<int>(textures_.size());
-  headers_[canonical] = *header;
+  shapes_[canonical] = shape;
   numbers_[{canonical, srgb}] = number;
-  Texture& texture = textures_.emplace_back(Texture{source, srgb, mips, *header, {}});
-  if (header->bytes)
-    texture.largest = scene::ByteLevel{image->width, image->height, std::move(image->bytes)};
-  else
-    texture.largest = scene::linear_level(*std::move(image), srgb);
+  Texture& texture = textures_.emplace_back(Texture{source, srgb, mips, shape, {}});
+  for (std::vector<scene::FileImage>& layer : *layers) {
+    Levels& levels = texture.layers.emplace_back();
+    for (scene::FileImage& level : layer) {
+      if (shape.header.bytes)
+        levels.emplace_back(scene::ByteLevel{level.width, level.height, std::move(level.bytes)});
+      else
+        levels.emplace_back(scene::linear_level(std::move(level), srgb));
+    }
+  }
   return number;
 }
 
@@ -118,25 +121,32 @@ namespace {
 
 namespace word = lower::texture_word;
 
+/// What the record of a level says beside its size.
+struct Follow {
+  int smaller = 0;  ///< levels after it
+  int layers = 1;
+};
+
 /// Adds the record of a level whose texels will come after those that are stored.
-void add_record(size_t first, int width, int height, int smaller, int table, backends::Frame& frame) {
+void add_record(size_t first, int width, int height, Follow follow, int table, backends::Frame& frame) {
   int32_t record[word::stride];
   record[word::first] = static_cast<int32_t>(first);
   record[word::width] = width;
   record[word::height] = height;
-  record[word::smaller] = smaller;
+  record[word::smaller] = follow.smaller;
+  record[word::layers] = follow.layers;
   record[word::table] = table;
   frame.textures.insert(frame.textures.end(), std::begin(record), std::end(record));
 }
 
-void add_level(const scene::ByteLevel& level, bool srgb, int smaller, backends::Frame& frame) {
+void add_level(const scene::ByteLevel& level, bool srgb, Follow follow, backends::Frame& frame) {
   const int table = srgb ? lower::byte_table::srgb : lower::byte_table::linear;
-  add_record(frame.texel_bytes.size(), level.width, level.height, smaller, table, frame);
+  add_record(frame.texel_bytes.size(), level.width, level.height, follow, table, frame);
   frame.texel_bytes.insert(frame.texel_bytes.end(), level.texels.begin(), level.texels.end());
 }
 
-void add_level(const scene::TextureLevel& level, int smaller, backends::Frame& frame) {
-  add_record(frame.texels.size(), level.width, level.height, smaller, -1, frame);
+void add_level(const scene::TextureLevel& level, Follow follow, backends::Frame& frame) {
+  add_record(frame.texels.size(), level.width, level.height, follow, -1, frame);
   frame.texels.insert(frame.texels.end(), level.texels.begin(), level.texels.end());
 }
 
@@ -148,14 +158,14 @@ int smaller_levels(const scene::ImageHeader& header) {
 
 int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Frame& frame) {
   const auto first = static_cast<int>(frame.textures.size() / word::stride);
-  for (size_t i = 0; i < levels.size(); ++i) add_level(levels[i], 0, frame);
+  for (size_t i = 0; i < levels.size(); ++i) add_level(levels[i], {}, frame);
   return first;
 }
 
 void TextureStore::store(backends::Frame& frame) {
   size_t byte_words = 0, float_words = 0;
   for (const Texture& texture : textures_)
-    (texture.header.bytes ? byte_words : float_words) += static_cast<size_t>(texture.bytes()) / 4;
+    (texture.shape.header.bytes ? byte_words : float_words) += static_cast<size_t>(texture.bytes()) / 4;
   frame.texel_bytes.reserve(1 + byte_words);
   if (!textures_.empty()) frame.texel_bytes.push_back(0);
   frame.texels.reserve(2 * lower::byte_table::size + float_words);
@@ -165,33 +175,44 @@ void TextureStore::store(backends::Frame& frame) {
   }
   for (Texture& texture : textures_) {
     records_.push_back(static_cast<int>(frame.textures.size() / word::stride));
-    int smaller = texture.mips ? smaller_levels(texture.header) : 0;
-    scene::TextureLevel next;
-    if (const auto* bytes = std::get_if<scene::ByteLevel>(&texture.largest)) {
-      add_level(*bytes, texture.srgb, smaller, frame);
-      if (smaller > 0) next = scene::half_size(*bytes, texture.srgb);
-    } else {
-      next = std::get<scene::TextureLevel>(std::move(texture.largest));
-      add_level(next, smaller, frame);
-      if (smaller > 0) next = scene::half_size(next);
-    }
-    texture.largest = scene::ByteLevel{};
-    // Each level of bytes is computed from floats before they are rounded to bytes, so that errors do not accumulate.
-    while (smaller-- > 0) {
-      if (texture.header.bytes)
-        add_level(scene::byte_level(next, texture.srgb), texture.srgb, smaller, frame);
-      else
-        add_level(next, smaller, frame);
-      if (smaller > 0) next = scene::half_size(next);
-    }
+    for (Levels& levels : texture.layers) store_layer(texture, std::exchange(levels, {}), frame);
   }
   const Texture* largest[] = {nullptr, nullptr};
   for (const Texture& texture : textures_) {
-    const Texture*& known = largest[texture.header.bytes ? 1 : 0];
+    const Texture*& known = largest[texture.shape.header.bytes ? 1 : 0];
     if (known == nullptr || texture.bytes() > known->bytes()) known = &texture;
   }
   if (largest[0] != nullptr) frame.largest_in_texels = largest[0]->described();
   if (largest[1] != nullptr) frame.largest_in_texel_bytes = largest[1]->described();
+}
+
+/// Stores the levels of files, then those that are computed from the last of them.
+void TextureStore::store_layer(const Texture& texture, Levels levels, backends::Frame& frame) const {
+  Follow follow{texture.mips ? smaller_levels(texture.shape.header) : 0, texture.shape.layers};
+  scene::TextureLevel next;
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const bool is_last = i + 1 == levels.size() || follow.smaller == 0;
+    const bool continues = is_last && follow.smaller > 0;
+    if (const auto* bytes = std::get_if<scene::ByteLevel>(&levels[i])) {
+      add_level(*bytes, texture.srgb, follow, frame);
+      if (continues) next = scene::half_size(*bytes, texture.srgb);
+    } else {
+      const auto& floats = std::get<scene::TextureLevel>(levels[i]);
+      add_level(floats, follow, frame);
+      if (continues) next = scene::half_size(floats);
+    }
+    levels[i] = scene::ByteLevel{};
+    if (is_last) break;
+    --follow.smaller;
+  }
+  // Each level of bytes is computed from floats before they are rounded to bytes, so that errors do not accumulate.
+  while (follow.smaller-- > 0) {
+    if (texture.shape.header.bytes)
+      add_level(scene::byte_level(next, texture.srgb), texture.srgb, follow, frame);
+    else
+      add_level(next, follow, frame);
+    if (follow.smaller > 0) next = scene::half_size(next);
+  }
 }
 
 }  // namespace isoshade::render

@@ -12,6 +12,7 @@
 
 #include "backends/backend.h"
 #include "compiler/driver/driver.h"
+#include "runtime/render/image_layers.h"
 #include "runtime/render/stats.h"
 #include "runtime/scene/texture.h"
 
@@ -23,15 +24,6 @@ namespace isoshade::render {
 inline constexpr int64_t max_texture_bytes = int64_t{3} << 29;
 inline constexpr size_t max_textures = 4096;
 
-/// Where an image comes from.
-struct ImageSource {
-  std::string path;                          ///< of its file, or another name that identifies it
-  std::shared_ptr<const std::string> bytes;  ///< of the image, if it is not a file on disk
-  support::Span where;                       ///< the text that names it
-  /// Whether integers that are read as a colour are sRGB, also those of 16 bits.
-  bool srgb = false;
-};
-
 /// The parameters of effects that name images which no pass reads.
 std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects);
 
@@ -41,7 +33,9 @@ int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Fram
 
 class TextureStore {
  public:
-  explicit TextureStore(int64_t most_bytes = max_texture_bytes) : most_bytes_(most_bytes) {}
+  /// `rule`: which files image documents may name; null for any.
+  explicit TextureStore(const graph::FileRule* rule = nullptr, int64_t most_bytes = max_texture_bytes)
+      : rule_(rule), most_bytes_(most_bytes) {}
 
   /// The number of the texture; it has mip levels if any caller passes `mips`. Reports what is not an image, or too
   /// large.
@@ -57,24 +51,28 @@ class TextureStore {
   int64_t texel_count() const;  ///< of all textures, with their mip levels
 
  private:
+  /// Of a layer, from the largest on.
+  using Levels = std::vector<std::variant<scene::ByteLevel, scene::TextureLevel>>;
   struct Texture {
     ImageSource source;  ///< of the first find()
     bool srgb;
     bool mips;
-    scene::ImageHeader header;
-    std::variant<scene::ByteLevel, scene::TextureLevel> largest;
+    ImageShape shape;
+    std::vector<Levels> layers;  ///< what the files have
 
     int64_t texel_count() const;
     int64_t bytes() const;
     backends::Largest described() const;
   };
+  void store_layer(const Texture& texture, Levels levels, backends::Frame& frame) const;
   /// Whether this many more bytes fit the limits, and one more texture if it is new.
   bool fits(int64_t bytes, bool is_new, const ImageSource& source, support::Diagnostics& diagnostics) const;
 
+  const graph::FileRule* rule_;
   int64_t most_bytes_;
   std::vector<Texture> textures_;
   std::map<std::pair<std::string, bool>, int> numbers_;  ///< by path and srgb
-  std::map<std::string, scene::ImageHeader> headers_;    ///< by path, of files that were read
+  std::map<std::string, ImageShape> shapes_;             ///< by path, of images that were read
   std::vector<int> records_;
 };
 

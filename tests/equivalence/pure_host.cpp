@@ -63,6 +63,9 @@ vec4 isoshade_texel(int image, int x, int y) { return vec4(float(x) * 0.125, flo
 constexpr const char* glsl_image_size = R"(
 isoshade_ImageSize isoshade_image_size(int image) { return isoshade_ImageSize(8, 4, 2); }
 )";
+constexpr const char* glsl_image_layer = R"(
+int isoshade_image_layer(int image, int layer) { return image + 2 * clamp(layer, 0, 3); }
+)";
 constexpr const char* glsl_pictures = R"(
 vec4 isoshade_picture(int image, int x, int y) { return vec4(float(x) * 0.125, float(y) * 0.25, float(image) * 0.5, 1.0); }
 float isoshade_depth(int x, int y) { return float(x) * 0.125; }
@@ -111,6 +114,11 @@ struct Host {
   template <class I>
   isoshade::ImageSize<I> image_size(I) const { return {I(8), I(4), I(2)}; }
   template <class I>
+  I image_layer(I image, I layer) const {
+    const I from_0 = select(layer > I(0), layer, I(0));
+    return image + I(2) * select(from_0 < I(3), from_0, I(3));
+  }
+  template <class I>
   vec4<float_of<I>> picture(int image, I x, I y) const { return texel(I(image), x, y); }
   template <class I>
   float_of<I> depth(I x, I) const { return to_float(x) * 0.125f; }
@@ -151,6 +159,7 @@ std::string glsl_host_of(const std::string& pure) {
   if (asks("IRRADIANCE")) text += glsl_irradiance;
   if (asks("TEXEL")) text += glsl_texel;
   if (asks("IMAGE_SIZE")) text += glsl_image_size;
+  if (asks("IMAGE_LAYER")) text += glsl_image_layer;
   if (asks("PICTURE") || asks("DEPTH")) text += glsl_pictures;
   return text;
 }
@@ -190,6 +199,11 @@ void define_host(ir::Module& module, const std::map<std::string, interface::Host
       case interface::HostCall::image_size:
         k.b.finish(std::array{k.b.constant(8), k.b.constant(4), k.b.constant(2)});
         break;
+      case interface::HostCall::image_layer: {
+        const Int layer = k.integer(1), from_0 = select(layer > Int(0), layer, Int(0));
+        k.b.finish(std::array{(k.integer(0) + Int(2) * select(from_0 < Int(3), from_0, Int(3))).value});
+        break;
+      }
       case interface::HostCall::picture:
         k.b.finish(std::array{lower::Vec4(number(0) * Float(0.125f), number(1) * Float(0.25f),
                                           Float(k.b, k.b.constant(static_cast<float>(answer->image) * 0.5f)),
@@ -234,6 +248,7 @@ ir::ValueId answer(lower::Kernel& k, const interface::place::Host& asked) {
     case irradiance:
     case texel:
     case image_size:
+    case image_layer:
     case picture:
     case depth: break;
   }

@@ -77,6 +77,54 @@ TEST_F(TextureFiles, ByteAndFloatTexelsAreIdentical) {
   expect_identical(shown, draw_everywhere(floats, "floats"), "bytes and floats");
 }
 
+TEST_F(TextureFiles, LayersAreIdenticalEverywhereAndThoseOfTheirFiles) {
+  constexpr int width = 12, height = 7, layers = 3;
+  std::vector<uint8_t> bytes(4 * width * height * layers), half(4 * (width / 2) * (height / 2) * layers);
+  std::mt19937 random(4);
+  for (std::vector<uint8_t>* all : {&bytes, &half})
+    for (uint8_t& byte : *all) byte = static_cast<uint8_t>(random());
+  folder_.write("strip.png", scene::png(width, height * layers, bytes));
+  folder_.write("half.png", scene::png(width / 2, height / 2 * layers, half));
+  for (int i = 0; i < layers; ++i) {
+    const std::string number = std::to_string(i);
+    const auto part = [&](const std::vector<uint8_t>& all) {
+      return std::span(all).subspan(all.size() / layers * static_cast<size_t>(i), all.size() / layers);
+    };
+    folder_.write("layer" + number + ".png", scene::png(width, height, part(bytes)));
+    folder_.write("half" + number + ".png", scene::png(width / 2, height / 2, part(half)));
+    folder_.write("one" + number + ".json", R"({"isoshade": 1, "image": "one", "layers": [{"levels": ["layer)" + number +
+                                                R"(.png", "half)" + number + R"(.png"]}]})");
+  }
+  folder_.write("strip.json", R"({"isoshade": 1, "image": "strip", "layers": [{"levels": ["strip.png", "half.png"], "count": 3}]})");
+  folder_.write("files.json", R"({"isoshade": 1, "image": "files", "layers": [{"file": "layer0.png"}, {"file": "layer1.png"},
+{"file": "layer2.png"}]})");
+  // Layers that vary by pixel, also beyond both ends.
+  const auto varying = [&](const std::string& file, const std::string& filter) {
+    return R"("far": {"type": "multiply", "in1": "at.x", "in2": 7}, "off": {"type": "subtract", "in1": "far", "in2": 2},
+"down": {"type": "floor", "in": "off"}, "layer": {"type": "convert", "in": "down", "to": "integer"},
+"color": )" + image(file, R"("layer": "layer", "filtertype": ")" + filter + "\"");
+  };
+  for (const char* filter : {"closest", "linear", "trilinear"}) {
+    draw_everywhere(plan_of(varying("strip.json", filter)), filter);
+    for (int i = 0; i < layers; ++i) {
+      const std::string number = std::to_string(i), ports = R"("filtertype": ")" + std::string(filter) + "\"";
+      const auto shown = [&](const std::string& file, const std::string& layer) {
+        return draw(plan_of(R"("color": )" + image(file, ports + layer)), *interpreter::create());
+      };
+      const backends::Image of_file = shown("one" + number + ".json", "");
+      expect_identical(of_file, shown("strip.json", R"(, "layer": )" + number), "layer " + number + " " + filter);
+      if (i == 0) expect_identical(of_file, shown("strip.json", ""), "no layer");
+      if (i == 0) expect_identical(of_file, shown("strip.json", R"(, "layer": -4)"), "before the first layer");
+      if (i + 1 == layers) expect_identical(of_file, shown("strip.json", R"(, "layer": 99)"), "after the last layer");
+      if (std::string_view(filter) != "trilinear")
+        expect_identical(of_file, shown("files.json", R"(, "layer": )" + number), "of files, " + number);
+      else
+        expect_identical(shown("layer" + number + ".png", ""), shown("files.json", R"(, "layer": )" + number),
+                         "computed levels of files, " + number);
+    }
+  }
+}
+
 TEST_F(TextureFiles, ChoicesOfParametersAreThoseOfTheNode) {
   const auto shown = [&](const std::string& parameters, const std::string& u, const std::string& v,
                          const std::string& filter) {

@@ -348,6 +348,8 @@ struct WholeHost {
   texel_of<I> texel(I, I, I) const;
   template <class I>
   ImageSize<I> image_size(I) const;
+  template <class I>
+  I image_layer(I, I) const;
   bool has_environment() const { return false; }
   template <class F>
   vec3<F> environment(vec3<F>, F) const;

@@ -204,7 +204,7 @@ TEST(Build, RequiresTheVersion) {
 
 TEST(Build, RequiresExactlyOneKind) {
   EXPECT_EQ(first(R"({"isoshade": 1})"),
-            "wrong-kind: a document must be a function, effect, post or scene | { | add \"effect\": \"its_name\", "
+            "wrong-kind: a document must be a function, effect, post, scene or image | { | add \"effect\": \"its_name\", "
             "or another of these keys");
   EXPECT_EQ(first(R"({"isoshade": 1, "function": "f", "effect": "e"})"),
             "wrong-kind: a document has only one kind | \"effect\"");

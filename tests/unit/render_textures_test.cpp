@@ -305,7 +305,7 @@ TEST_F(Textures, OfBytesAndOfFloatsGiveTheSamePixels) {
 TEST_F(Textures, AreRefusedBeforeDecompressionIfTooLarge) {
   const auto refusal = [&](const std::string& name, int64_t room, bool mips) {
     diagnostics_ = support::Diagnostics();
-    render::TextureStore store(room);
+    render::TextureStore store(nullptr, room);
     EXPECT_FALSE(store.find({path(name), nullptr, {}}, lower::Decoding::linear, mips, diagnostics_));
     return diagnostics_.text();
   };
@@ -331,13 +331,59 @@ TEST_F(Textures, AreRefusedBeforeDecompressionIfTooLarge) {
 TEST_F(Textures, AreRefusedIfTheirMipsDoNotFit) {
   for (const int64_t room : {4 * 16, 4 * 20, 4 * 21}) {
     diagnostics_ = support::Diagnostics();
-    render::TextureStore store(room);
+    render::TextureStore store(nullptr, room);
     const render::ImageSource source{path("a.png"), nullptr, {}};
     EXPECT_EQ(store.find(source, lower::Decoding::linear, false, diagnostics_), 0);
     EXPECT_EQ(store.find(source, lower::Decoding::linear, true, diagnostics_).has_value(), room == 4 * 21);
     EXPECT_EQ(diagnostics_.has_errors(), room != 4 * 21);
     // Decoded in another way it is a texture of its own.
     EXPECT_FALSE(store.find(source, lower::Decoding::srgb, false, diagnostics_));
+  }
+}
+
+TEST_F(Textures, ImageDocumentsThatDoNotFitAreErrors) {
+  folder_.write("half.png", scene::png(2, 2, std::vector<uint8_t>(16)));
+  folder_.write("strip.png", scene::png(4, 8, std::vector<uint8_t>(128)));
+  folder_.write("a.exr", scene::exr({4, 4, std::vector<float>(64, 0.5f), std::vector<float>(16)}));
+  const auto message = [&](const std::string& text) {
+    folder_.write("image.json", text);
+    EXPECT_FALSE(plan(square("shown", R"("map": "image.json")"))) << text;
+    return diagnostics_.text();
+  };
+  const auto expect = [&](const std::string& layers, const std::string& error) {
+    const std::string text = message(R"({"isoshade": 1, "image": "image", "layers": )" + layers + "}");
+    EXPECT_NE(text.find(error), std::string::npos) << layers << "\n" << text;
+    EXPECT_NE(text.find("image.json:1:"), std::string::npos) << "no place in the document: " << text;
+  };
+  expect("[]", "error[out-of-range]: an image has 1 to 64 layers");
+  expect(R"([{"file": "a.png", "count": 65}])", "error[out-of-range]");
+  expect(R"([{"file": "strip.png", "count": 2}, {"file": "a.png", "count": 63}])", "error[out-of-range]: an image has");
+  expect(R"([{"count": 2}])", "error[missing-key]");
+  expect(R"([{"file": "a.png", "levels": ["a.png"]}])", "both a \"file\" and \"levels\"");
+  expect(R"([{"levels": []}])", "error[out-of-range]: \"levels\" lists 0 files");
+  expect(R"([{"levels": ["a.png", 3]}])", "error[wrong-type]: the path of an image file is needed here");
+  expect(R"([{"file": "image.json"}])", "error[wrong-kind]: an image document names image files");
+  expect(R"([{"file": "a.png", "size": 4}])", "error[unknown-key]");
+  expect(R"([{"file": "missing.png"}])", "missing.png");
+  expect(R"([{"file": "../outside.png"}])", "error[outside-reference]");
+  expect(R"([{"file": "bad.png"}])", "error[bad-image]");
+  expect(R"([{"file": "a.png"}, {"file": "half.png"}])", "is 2 x 2; as level 0 of 1 layer it must be 4 x 4");
+  expect(R"([{"levels": ["a.png", "a.png"]}])", "is 4 x 4; as level 1 of 1 layer it must be 2 x 2");
+  expect(R"([{"file": "a.png", "count": 3}])", "is 4 x 4; as level 0 of 3 layers it must be 4 x 3");
+  expect(R"([{"file": "a.png"}, {"file": "a.exr"}])", "another number of bits per channel than");
+  const std::string other = message(R"({"isoshade": 1, "function": "f", "outputs": {}})");
+  EXPECT_NE(other.find("is not an image, but a document of the kind function"), std::string::npos) << other;
+}
+
+TEST_F(Textures, LayersCountInTheLimits) {
+  folder_.write("strip.png", scene::png(4, 8, std::vector<uint8_t>(128)));
+  folder_.write("strip.json", R"({"isoshade": 1, "image": "s", "layers": [{"file": "strip.png", "count": 2}]})");
+  for (const int64_t room : {4 * 41, 4 * 42}) {
+    diagnostics_ = support::Diagnostics();
+    render::TextureStore store(nullptr, room);
+    EXPECT_EQ(store.find({path("strip.json"), nullptr, {}}, lower::Decoding::linear, true, diagnostics_).has_value(),
+              room == 4 * 42)
+        << diagnostics_.text();
   }
 }
 
@@ -359,7 +405,8 @@ TEST_F(Textures, UnreadableFilesAreReportedWhereTheyAreNamed) {
   };
   for (const Case& wrong : {Case{R"("map": "none.png")", "error[missing-file]"},
                             {R"("map": "bad.png")", "error[bad-image]"},
-                            {R"("map": "shown.json")", "error[bad-image]"},
+                            {R"("map": "shown.json")", "error[wrong-kind]"},
+                            {R"("map": "none.json")", "error[missing-file]"},
                             {R"("map": ".")", "error[unreadable-file]"},
                             {R"("map": "../x.png")", "error[outside-reference]"},
                             {R"("map": "/etc/passwd")", "error[outside-reference]"},

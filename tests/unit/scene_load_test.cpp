@@ -129,7 +129,7 @@ TEST_F(LoadScene, AnExtendingSceneNeedsTheKeysOfADocument) {
   EXPECT_EQ(first_error(R"({"scene": "s", "extends": "base/base.json"})"),
             "missing-key: the document has no version");
   EXPECT_EQ(first_error(R"({"isoshade": 1, "extends": "base/base.json"})"),
-            "wrong-kind: a document must be a function, effect, post or scene");
+            "wrong-kind: a document must be a function, effect, post, scene or image");
   EXPECT_NE(first_error(R"({"isoshade": 1, "post": "p", "extends": "base/base.json"})").find("is not a scene"),
             std::string::npos);
 }

@@ -77,6 +77,8 @@ class Pair {
            comment_text(pure_.document) + "\n";
     for (const std::string& note : forward_notes(program_.blend, is_post())) comment_lines(out, note, 0);
     if (is_es_) out += "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+    if (is_es_ && std::ranges::any_of(layout_.samplers, &ForwardLayout::Sampler::layers))
+      out += "precision highp sampler2DArray;\n";
     return out + "\n";
   }
 
@@ -135,7 +137,7 @@ class Pair {
     for (const ForwardLayout::Sampler& sampler : layout_.samplers)
       if (all)
         out += (is_es_ ? "" : "layout(set = 0, binding = " + number(static_cast<size_t>(sampler.binding)) + ") ") +
-               "uniform sampler2D " + sampler.name + ";  // " + comment_text(sampler.image) + "\n";
+               "uniform sampler2D" + (sampler.layers ? "Array " : " ") + sampler.name + ";  // " + comment_text(sampler.image) + "\n";
     return out + "\n";
   }
 

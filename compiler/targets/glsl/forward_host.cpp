@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/targets/glsl/forward_host.h"
 
+#include <algorithm>
+
 #include "compiler/emit/pure.h"
 #include "compiler/support/assert.h"
 
@@ -41,6 +43,28 @@ class HostText {
     return out + "  return " + none + ";\n}\n";
   }
 
+  // Numbers of images: their place in the list times the levels that one may have, plus a level; and all those once more
+  // for each layer after the first.
+
+  bool has_layers() const { return std::ranges::any_of(program_.images, &ForwardImage::layers); }
+  std::string image_of(const std::string& value) const {
+    const std::string image = value + " / " + number(forward_levels);
+    return has_layers() ? image + " % " + number(program_.images.size()) : image;
+  }
+  static std::string level_of(const std::string& value) { return value + " % " + number(forward_levels); }
+  std::string layer_of(const std::string& value) const {
+    return value + " / " + number(forward_levels * program_.images.size());
+  }
+
+  /// A choice among images by a number: what `value` makes of the sampler's name and of the layer, "" if it has none.
+  template <class Value>
+  std::string choose_image(const std::string& which, Value value) const {
+    size_t next = 0;
+    return choose("isoshade_image", program_.images.size(), image_of(which), "vec4(0.0)", [&](const std::string& sampler) {
+      return value(sampler, program_.images[next++].layers ? layer_of(which) : "");
+    });
+  }
+
   /// A texel of a picture that was drawn before; in OpenGL y is up in it.
   std::string fetch_drawn(const std::string& sampler) const {
     const std::string y = is_es_ ? "textureSize(" + sampler + ", 0).y - 1 - y" : "y";
@@ -52,10 +76,12 @@ class HostText {
     const bool has_level = function.parameters.back().name == "level";
     std::string rest;
     for (size_t i = 2; i < function.parameters.size(); ++i) rest += ", int " + function.parameters[i].name;
-    const std::string level = has_level ? "float(level) / 65536.0" : "float(picture % " + number(forward_levels) + ")";
+    const std::string level = has_level ? "float(level) / 65536.0" : "float(" + level_of("picture") + ")";
     return "vec4 " + prefixed(function.name) + "(int picture, vec2 texcoord" + rest + ") {\n" +
-           choose("isoshade_image", program_.images.size(), "picture / " + number(forward_levels), "vec4(0.0)",
-                  [&](const std::string& image) { return "textureLod(" + image + ", texcoord, " + level + ")"; });
+           choose_image("picture", [&](const std::string& image, const std::string& layer) {
+             const std::string place = layer.empty() ? "texcoord" : "vec3(texcoord, float(" + layer + "))";
+             return "textureLod(" + image + ", " + place + ", " + level + ")";
+           });
   }
 
   std::string host(HostCall call) const {
@@ -76,11 +102,12 @@ class HostText {
       case HostCall::environment:
       case HostCall::irradiance: return line("vec3(0.0)");
       case HostCall::texel:
-        return begin + "\n" + choose("isoshade_image", program_.images.size(), "image / " + number(forward_levels), "vec4(0.0)",
-                                     [](const std::string& sampler) {
-                                       return "texelFetch(" + sampler + ", ivec2(x, y), image % " + number(forward_levels) + ")";
-                                     });
+        return begin + "\n" + choose_image("image", [](const std::string& sampler, const std::string& layer) {
+                 const std::string place = layer.empty() ? "ivec2(x, y)" : "ivec3(x, y, " + layer + ")";
+                 return "texelFetch(" + sampler + ", " + place + ", " + level_of("image") + ")";
+               });
       case HostCall::image_size: return image_size(begin);
+      case HostCall::image_layer: return image_layer(begin);
       case HostCall::time: return line((is_post() ? "isoshade_screen" : "isoshade_view") + std::string(".time"));
       case HostCall::world_from_object:
       case HostCall::object_from_world: return line("isoshade_object." + std::string(asked.name) + "[column].xyz");
@@ -113,8 +140,8 @@ class HostText {
     for (size_t i = 0; i < program_.images.size(); ++i) {
       const std::string name = "isoshade_image" + number(i);
       // Not the size of level `image % 16`: lavapipe takes the level of one pixel for its neighbours.
-      out += "  if (image / " + number(forward_levels) + " == " + number(i) + ") {\n    size = max(textureSize(" + name +
-             ", 0) >> image % " + number(forward_levels) + ", ivec2(1));\n";
+      out += "  if (" + image_of("image") + " == " + number(i) + ") {\n    size = max(textureSize(" + name + ", 0)" +
+             (program_.images[i].layers ? ".xy" : "") + " >> " + level_of("image") + ", ivec2(1));\n";
       // GLSL ES cannot ask: the image has all levels down to 1 x 1.
       if (program_.images[i].mips)
         out += is_es_ ? "    smaller = int(floor(log2(float(max(size.x, size.y)))));\n"
@@ -122,6 +149,16 @@ class HostText {
       out += "  }\n";
     }
     return out + "  return isoshade_ImageSize(size.x, size.y, smaller);\n}\n";
+  }
+
+  std::string image_layer(const std::string& begin) const {
+    std::string out = begin + "\n  int layers = 1;\n";
+    for (size_t i = 0; i < program_.images.size(); ++i)
+      if (program_.images[i].layers)
+        out += "  if (" + image_of("image") + " == " + number(i) + ") layers = textureSize(isoshade_image" + number(i) +
+               ", 0).z;\n";
+    return out + "  return image + clamp(layer, 0, layers - 1) * " + number(forward_levels * program_.images.size()) +
+           ";\n}\n";
   }
 
   const ForwardProgram& program_;

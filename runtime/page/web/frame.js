@@ -28,7 +28,7 @@ class Frame {
     this.hasFloats = gl.getExtension("EXT_color_buffer_float") !== null;
     this.colorFormat = this.hasFloats ? gl.RGBA32F : gl.RGBA8;
     this.programs = data.programs.map((program) => new Program(gl, program));
-    this.textures = data.textures.map((texture) => this.makeImage(texture));
+    this.textures = new Map();
     this.textureOfRecord = new Map(data.textures.map(({ record }, number) => [record, number]));
     this.noImage = makeTexture(gl, gl.RGBA32F, 1, 1);
     this.targets = new Map();  // by the name of what draws into them
@@ -65,19 +65,34 @@ class Frame {
     gl.bindVertexArray(null);
   }
 
-  /// A texture with its mip levels. Bytes become the floats that isoshade reads, by its own tables.
-  makeImage({ levels }) {
-    const { gl, data } = this;
-    const texture = makeTexture(gl, gl.RGBA32F, levels[0].width, levels[0].height, levels.length);
-    levels.forEach(({ first, width, height, table }, level) => {
-      let texels = data.texels.subarray(first, first + 4 * width * height);
-      if (table >= 0) {
-        const bytes = data.texel_bytes.subarray(4 * first, 4 * (first + width * height));
-        texels = Float32Array.from(bytes, (byte, i) => data.texels[(i % 4 === 3 ? 0 : table) + byte]);
-      }
-      gl.texSubImage2D(gl.TEXTURE_2D, level, 0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
-    });
+  /// A texture with its mip levels and, for the target TEXTURE_2D_ARRAY, its layers.
+  makeImage({ layers }, target) {
+    const { gl } = this;
+    const [{ width, height }] = layers[0];
+    const isArray = target === gl.TEXTURE_2D_ARRAY;
+    const texture = makeTexture(gl, gl.RGBA32F, width, height, layers[0].length, isArray ? layers.length : undefined);
+    layers.slice(0, isArray ? undefined : 1).forEach((levels, layer) => levels.forEach((level, number) => {
+      const texels = this.texelsOf(level);
+      if (isArray)
+        gl.texSubImage3D(target, number, 0, 0, layer, level.width, level.height, 1, gl.RGBA, gl.FLOAT, texels);
+      else gl.texSubImage2D(target, number, 0, 0, level.width, level.height, gl.RGBA, gl.FLOAT, texels);
+    }));
     return texture;
+  }
+  /// Bytes become the floats that isoshade reads, by its own tables.
+  texelsOf({ first, width, height, table }) {
+    const { data } = this;
+    if (table < 0) return data.texels.subarray(first, first + 4 * width * height);
+    const bytes = data.texel_bytes.subarray(4 * first, 4 * (first + width * height));
+    return Float32Array.from(bytes, (byte, i) => data.texels[(i % 4 === 3 ? 0 : table) + byte]);
+  }
+  /// The texture of a record, or undefined, made when it is first read as `target`.
+  textureOf(record, target) {
+    const number = this.textureOfRecord.get(record);
+    if (number === undefined) return undefined;
+    const key = `${number} ${target}`;
+    if (!this.textures.has(key)) this.textures.set(key, this.makeImage(this.data.textures[number], target));
+    return this.textures.get(key);
   }
 
   target(name, width, height, hasDepth) {
@@ -137,9 +152,10 @@ class Frame {
   /// Binds to each sampler of a program what `textureOf` gives for its name.
   bindSamplers(program, textureOf) {
     const { gl } = this;
-    program.samplers.forEach(({ name }, unit) => {
+    program.samplers.forEach(({ name, type }, unit) => {
+      const target = type === gl.SAMPLER_2D ? gl.TEXTURE_2D : gl.TEXTURE_2D_ARRAY;
       gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.bindTexture(gl.TEXTURE_2D, textureOf(name.slice(prefix.length)) ?? this.noImage);
+      gl.bindTexture(target, textureOf(name.slice(prefix.length), target) ?? (type === gl.SAMPLER_2D ? this.noImage : null));
     });
   }
 
@@ -220,7 +236,7 @@ class Frame {
       const record = this.drawRecords[d];
       if (this.isOff(draw.enabled, record)) return;
       const program = this.use(draw.program, this.places[d]);
-      this.bindSamplers(program, (name) => this.textures[this.textureOfRecord.get(record[draw.images + numberIn(name)])]);
+      this.bindSamplers(program, (name, target) => this.textureOf(record[draw.images + numberIn(name)], target));
       const cull = this.cullOf(draw, record);
       if (cull === "none") gl.disable(gl.CULL_FACE);
       else gl.enable(gl.CULL_FACE);

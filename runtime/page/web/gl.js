@@ -63,7 +63,7 @@ class Program {
     });
     this.uniforms = uniforms.filter((_, i) => blockOf[i] === -1)
       .map(({ name, type, size }) => ({ name, type, size, location: gl.getUniformLocation(program, name) }));
-    this.samplers = this.uniforms.filter(({ type }) => type === gl.SAMPLER_2D);
+    this.samplers = this.uniforms.filter(({ type }) => type === gl.SAMPLER_2D || type === gl.SAMPLER_2D_ARRAY);
     gl.useProgram(program);
     this.samplers.forEach(({ location }, unit) => gl.uniform1i(location, unit));
   }
@@ -115,16 +115,18 @@ class Slices {
   }
 }
 
-/// A texture that is read texel by texel.
-function makeTexture(gl, format, width, height, levels = 1) {
+/// A texture that is read texel by texel; with `layers` an array.
+function makeTexture(gl, format, width, height, levels = 1, layers = undefined) {
   const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
   if (Math.max(width, height) > most)
     throw new Error(`an image has ${width} x ${height} pixels; this browser has room for ${most} a side`);
+  const target = layers === undefined ? gl.TEXTURE_2D : gl.TEXTURE_2D_ARRAY;
   const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texStorage2D(gl.TEXTURE_2D, levels, format, width, height);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, levels > 1 ? gl.NEAREST_MIPMAP_NEAREST : gl.NEAREST);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  gl.bindTexture(target, texture);
+  if (layers === undefined) gl.texStorage2D(target, levels, format, width, height);
+  else gl.texStorage3D(target, levels, format, width, height, layers);
+  gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, levels > 1 ? gl.NEAREST_MIPMAP_NEAREST : gl.NEAREST);
+  gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
   return texture;
 }
 

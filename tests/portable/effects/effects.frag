@@ -38,6 +38,8 @@ isoshade_ImageSize isoshade_image_size(int image) {
   return isoshade_ImageSize(size.x, size.y, 0);
 }
 
+int isoshade_image_layer(int image, int layer) { return image; }
+
 bool isoshade_has_environment() { return true; }
 vec3 isoshade_environment(vec3 direction, float roughness) { return vec3(0.5 + 0.1 * roughness); }
 vec3 isoshade_irradiance(vec3 direction) { return vec3(0.5) + direction; }
