@@ -7,7 +7,9 @@ them. Needs only Python.
 """
 import base64
 import json
+import math
 import os
+import random
 import struct
 import sys
 import zlib
@@ -140,8 +142,82 @@ def boards(path):
         file.write("\n")
 
 
+TONES = 6
+LEVELS_OF_STROKES = [256, 128, 64, 32]
+
+
+class Sheet:
+    """A square of paper that repeats: 1 white, 0 black. Lines are as many pixels wide on every size of sheet."""
+
+    def __init__(self, size, strokes):
+        self.size = size
+        self.values = [1.0] * (size * size)
+        for stroke in strokes:
+            self.draw(stroke)
+
+    def pixels(self, stroke, reach):
+        """The pixels around a stroke: their places, and how much of the ink each takes."""
+        upright, x, y, length, bend, ink = stroke
+        size = self.size
+        count = max(2, round(length * size))
+        for i in range(count):
+            along = (i + 0.5) / count
+            middle = (y + bend * math.sin(2.2 * along + 9 * bend)) * size
+            pressure = ink * min(1, 7 * along, 7 * (1 - along) + 0.1)
+            for row in range(math.floor(middle - reach), math.ceil(middle + reach) + 1):
+                cover = min(1, max(0, 0.65 + 0.5 - abs(row + 0.5 - middle)))
+                a, b = (round(x * size) + i) % size, row % size
+                yield (a * size + b if upright else b * size + a), cover * pressure
+
+    def draw(self, stroke):
+        """The darker of the paper and the stroke: more strokes never lighten a pixel."""
+        for place, ink in self.pixels(stroke, 1.2):
+            self.values[place] = min(self.values[place], 1 - ink)
+
+    def crowd(self, stroke):
+        """How much ink lies around a stroke that is not drawn yet."""
+        found = [1 - self.values[place] for place, _ in self.pixels(stroke, 2.5)]
+        return sum(found) / len(found)
+
+    def darkness(self):
+        return 1 - sum(self.values) / len(self.values)
+
+
+def hatching(folder):
+    """Tonal art maps after Praun, Hoppe, Webb and Finkelstein 2001, "Real-Time Hatching": six tones of strokes, one
+    below the other, in one file for each mip level. Each tone has the strokes of the lighter one, and each level those
+    of the smaller one. The darker three tones are hatched across, too."""
+    chance = random.Random(1)
+    tones = []
+    for tone in range(TONES):
+        wanted = 0.87 * (tone + 1) / TONES
+        levels = {}
+        smaller = []
+        for size in reversed(LEVELS_OF_STROKES):
+            strokes = list(tones[-1][size]) if tones else []
+            strokes += [stroke for stroke in smaller if stroke not in strokes]
+            sheet = Sheet(size, strokes)
+            while sheet.darkness() < wanted:
+                upright = tone >= TONES // 2 and chance.random() < 0.75
+                made = [
+                    (upright, chance.random(), chance.random(), 0.3 + 0.6 * chance.random(),
+                     0.03 * (chance.random() - 0.5), 0.8 + 0.2 * chance.random())
+                    for _ in range(10)
+                ]
+                best = min(made, key=lambda stroke: sheet.crowd(stroke) - 0.1 * stroke[3])
+                strokes.append(best)
+                sheet.draw(best)
+            levels[size] = smaller = strokes
+        tones.append(levels)
+    for size in LEVELS_OF_STROKES:
+        sheets = [Sheet(size, levels[size]) for levels in tones]
+        png(os.path.join(folder, "hatching_%d.png" % size), size, TONES * size,
+            lambda x, y: [round(255 * sheets[y // size].values[y % size * size + x])], 1)
+
+
 folder = sys.argv[1]
 png(os.path.join(folder, "toon_ramp.png"), 64, 4, toon_ramp, 1)
 png(os.path.join(folder, "uv_grid.png"), 128, 128, uv_grid, 3)
 png(os.path.join(folder, "leaf.png"), 33, 17, leaf, 4)
 boards(os.path.join(folder, "boards.gltf"))
+hatching(folder)

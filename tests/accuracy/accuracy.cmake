@@ -22,10 +22,13 @@ isoshade_test(derivatives_accuracy_test
 
 isoshade_test(pixel_derivatives_test
   SOURCES accuracy/pixel_derivatives_test.cpp
-  LINKS isoshade_render isoshade_cpu isoshade_interpreter
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
+    $<$<BOOL:${ISOSHADE_VULKAN}>:isoshade_vulkan>
   LABEL accuracy
-  TIMEOUT 300)
-target_compile_definitions(pixel_derivatives_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+  TIMEOUT 300
+  DEVICES)
+target_compile_definitions(pixel_derivatives_test PRIVATE
+  ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs" $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
 
 # Pictures, counted in pixels.
 isoshade_test(cartoon_test
@@ -41,6 +44,13 @@ isoshade_test(outline_test
   LABEL accuracy
   TIMEOUT 300)
 target_compile_definitions(outline_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
+isoshade_test(strokes_test
+  SOURCES accuracy/strokes_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(strokes_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
 # On every backend. `stress_test --update` writes docs/stress.md.
 isoshade_test(stress_test
