@@ -11,6 +11,8 @@ done
 for scene in environment_balls cartoon_village fog_valley fog_village transparent; do
   "$isoshade" --quiet render "graphs/scenes/$scene.json" --samples 16 -o "docs/$scene.png"
 done
+# Strokes are as wide as samples.
+"$isoshade" --quiet render graphs/scenes/sketch.json --samples 4 -o docs/sketch.png
 screenshots=$(mktemp -d)
 trap 'rm -rf "$screenshots"' EXIT
 python3 tests/page_test.py "$isoshade" graphs --screenshots "$screenshots"
