@@ -10,6 +10,7 @@
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/targets/targets.h"
+#include "runtime/cli/argument_texts.h"
 
 namespace isoshade::cli {
 
@@ -21,35 +22,12 @@ constexpr const char* footer =
     "The options of `isoshade --help` may come before or after the subcommand.\n"
     "\"-\" is standard input or output. Errors go to standard error.";
 
-bool parse_size(const std::string& text, Size& size) {
-  const size_t x = text.find('x');
-  if (x == std::string::npos || text.size() > 11) return false;
-  const auto number = [](const std::string& digits, int& out) {
-    if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)
-      return false;
-    out = std::stoi(digits);
-    return out >= 1 && out <= 8192;
-  };
-  return number(text.substr(0, x), size.width) && number(text.substr(x + 1), size.height);
-}
-
 const CLI::Validator size_text(
     [](std::string& text) {
-      Size size;
-      return parse_size(text, size) ? std::string()
-                                    : "\"" + text + "\" is not a size: write WxH, from 1x1 to 8192x8192";
+      return parse_size(text) ? std::string()
+                              : "\"" + text + "\" is not a size: write WxH, from 1x1 to 8192x8192";
     },
     "WxH");
-
-std::optional<NamedRange> parse_range(const std::string& text) {
-  const size_t equals = text.find('='), colon = text.find(':', std::min(equals, text.size()));
-  if (equals == 0 || equals == std::string::npos || colon == std::string::npos) return std::nullopt;
-  const auto lo =
-      support::parse_float_in_range(std::string_view(text).substr(equals + 1, colon - equals - 1));
-  const auto hi = support::parse_float_in_range(std::string_view(text).substr(colon + 1));
-  if (!lo || !hi || !(*lo <= *hi)) return std::nullopt;
-  return NamedRange{text.substr(0, equals), *lo, *hi};
-}
 
 const CLI::Validator range_text(
     [](std::string& text) {
@@ -57,6 +35,14 @@ const CLI::Validator range_text(
                                : "\"" + text + "\" is not a range: write NAME=MIN:MAX, for example roughness=0.1:1";
     },
     "NAME=MIN:MAX");
+
+const CLI::Validator varied_text(
+    [](std::string& text) {
+      return parse_varied(text) ? std::string()
+                                : "\"" + text + "\" is not a parameter with values: write NAME=FROM:TO:COUNT, for "
+                                  "example roughness=0.1:1:5, or NAME=VALUE;VALUE;..., at most 64";
+    },
+    "NAME=FROM:TO:COUNT");
 
 /// CLI::Range also accepts text that is not a number.
 const CLI::Validator time_text(
@@ -278,6 +264,30 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   add_lanes(*render_app, render.choice);
   add_choice(*render_app, render.choice);
 
+  SheetArguments sheet;
+  std::string sheet_size;
+  std::vector<std::string> varied;
+  CLI::App* sheet_app = app.add_subcommand("sheet", "Render a scene with several values of one or two parameters, side by side");
+  sheet_app->add_option("SCENE", sheet.scene, "A scene document")->required();
+  sheet_app
+      ->add_option("--vary", varied,
+                   "NAME=FROM:TO:COUNT, or NAME=VALUE;VALUE;..., with a NAME as for --set; once for columns, twice for "
+                   "columns and rows")
+      ->check(varied_text)
+      ->take_all()
+      ->expected(1)
+      ->required();
+  sheet_app->add_option("-o,--output", sheet.output, "FILE.png")->required();
+  sheet_app->add_option("--backend", sheet.backend, "cpu, vulkan or interpreter")
+      ->check(compared_names)
+      ->capture_default_str();
+  sheet_app->add_option("--size", sheet_size, "Size of each picture (default: 240 pixels wide, in the scene's shape)")
+      ->check(size_text);
+  add_precision(*sheet_app, sheet.precision);
+  add_changes(*sheet_app, sheet.changes);
+  add_lanes(*sheet_app, sheet.choice);
+  add_choice(*sheet_app, sheet.choice);
+
   VerifyArguments verify;
   std::vector<std::string> verify_sizes;
   CLI::App* verify_app =
@@ -407,6 +417,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     app.parse(argc, argv);
     if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
       throw CLI::RequiredError("--output");
+    if (varied.size() > 2) throw CLI::ValidationError("--vary", "a sheet has columns and rows; give --vary at most twice");
   } catch (const CLI::ParseError& error) {
     // CLI11 has an exit code for each kind of error; isoshade documents a single one.
     exit = app.exit(error) == 0 ? Exit::success : Exit::failure;
@@ -429,13 +440,13 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     else
       parsed.common.disabled.push_back(warning.substr(3));
   }
-  if (!render_size.empty()) {
-    render.size.emplace();
-    parse_size(render_size, *render.size);
-  }
-  for (const std::string& text : verify_sizes) parse_size(text, verify.sizes.emplace_back());
+  if (!render_size.empty()) render.size = parse_size(render_size);
+  if (!sheet_size.empty()) sheet.size = parse_size(sheet_size);
+  for (const std::string& text : varied) sheet.axes.push_back(*parse_varied(text));
+  for (const std::string& text : verify_sizes) verify.sizes.push_back(*parse_size(text));
   if (compile_app->parsed()) parsed.compile = compile;
   if (render_app->parsed()) parsed.render = render;
+  if (sheet_app->parsed()) parsed.sheet = sheet;
   if (verify_app->parsed()) parsed.verify = verify;
   if (eval_app->parsed()) parsed.eval = eval;
   for (const std::string& range : ranges) check.where.push_back(*parse_range(range));

@@ -71,6 +71,23 @@ struct RenderArguments {
   BackendChoice choice;
 };
 
+/// A parameter of `sheet`, and its values as `--set` takes them.
+struct VariedParameter {
+  std::string name;
+  std::vector<std::string> values;
+};
+
+struct SheetArguments {
+  std::string scene;
+  std::string output;
+  std::vector<VariedParameter> axes;  ///< 1 or 2: along columns, along rows
+  std::string backend = "cpu";
+  std::optional<Size> size;  ///< of each picture
+  SceneChanges changes;
+  functions::Tier precision = functions::Tier::standard;
+  BackendChoice choice;
+};
+
 struct VerifyArguments {
   std::vector<std::string> scenes;
   std::vector<std::string> backends{"cpu", "vulkan"};
@@ -168,6 +185,7 @@ struct Arguments {
   Common common;
   std::optional<CompileArguments> compile;
   std::optional<RenderArguments> render;
+  std::optional<SheetArguments> sheet;
   std::optional<VerifyArguments> verify;
   std::optional<EvalArguments> eval;
   std::optional<CheckArguments> check;

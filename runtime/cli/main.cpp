@@ -94,6 +94,7 @@ int run(int argc, char** argv) {
   if (arguments->common.json) memory_error_as_json = 1;
   if (arguments->compile) return compile(*arguments->compile, arguments->common);
   if (arguments->render) return render(*arguments->render, arguments->common);
+  if (arguments->sheet) return sheet(*arguments->sheet, arguments->common);
   if (arguments->verify) return verify(*arguments->verify, arguments->common);
   if (arguments->eval) return eval(*arguments->eval, arguments->common);
   if (arguments->check) return check_documents(*arguments->check, arguments->common);

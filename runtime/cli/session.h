@@ -54,6 +54,7 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
 
 int compile(const CompileArguments& arguments, const Common& common);
 int render(const RenderArguments& arguments, const Common& common);
+int sheet(const SheetArguments& arguments, const Common& common);
 int verify(const VerifyArguments& arguments, const Common& common);
 int eval(const EvalArguments& arguments, const Common& common);
 int check_documents(const CheckArguments& arguments, const Common& common);

@@ -1,4 +1,8 @@
-isoshade_test(cli_test SOURCES unit/cli_documents_test.cpp unit/cli_process_test.cpp unit/cli_test.cpp TIMEOUT 120 DEVICES)
+isoshade_test(cli_test
+  SOURCES unit/cli_documents_test.cpp unit/cli_process_test.cpp unit/cli_sheet_test.cpp unit/cli_test.cpp
+  LINKS isoshade_scene
+  TIMEOUT 120
+  DEVICES)
 add_dependencies(cli_test isoshade)
 target_compile_definitions(cli_test PRIVATE
   ISOSHADE_COMMAND="$<TARGET_FILE:isoshade>"
