@@ -34,7 +34,8 @@ const std::vector<driver::Shader>& shipped() {
     options.library = &library;
     for (const fs::path& path : documents()) {
       const support::Source source = graph::read_source(path.string(), diagnostics);
-      if (const auto kind = driver::kind_of(source, diagnostics); !kind || kind == graph::DocumentKind::scene) continue;
+      const auto kind = driver::kind_of(source, diagnostics);
+      if (!kind || kind == graph::DocumentKind::scene || kind == graph::DocumentKind::image) continue;
       if (auto shader = driver::compile_shader(source, options, {}, diagnostics)) shaders.push_back(std::move(*shader));
     }
     EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
