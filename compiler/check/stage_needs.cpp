@@ -38,6 +38,7 @@ std::array<bool, stage_need_count> needs_of(const TypedGraph& graph, const Node&
   need(StageNeed::lights) = row.is<nodes::Light>() || row.is<nodes::SumLights>();
   need(StageNeed::derivatives) = row.is<nodes::Derivative>() || may_be_trilinear(graph, node);
   need(StageNeed::environment) = row.is<nodes::Environment>();
+  need(StageNeed::repetition) = row.is<nodes::Repetition>();
   need(StageNeed::time) = row.is<nodes::Time>();
   return needs;
 }

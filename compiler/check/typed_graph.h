@@ -51,6 +51,7 @@ enum class StageNeed : uint8_t {
   images,       ///< textures
   lights,       ///< the lights of the scene
   derivatives,  ///< changes from pixel to pixel
+  repetition,   ///< the number of a repetition of a pass
   // What posts have, too.
   environment,  ///< the environment of the scene
   time

@@ -238,7 +238,7 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
-                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow,
+                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow, pass.repeat,
                              vertex_program(*typed, i, effect, options),
                              pixel_program(*typed, i, effect, options), {},
                              cutout_program(*typed, i, effect, options)});
@@ -375,7 +375,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
             kind = emit::PureKind::shade;
             shader.passes.push_back(
                 {pass.name, pass.state, i, {}, {}, pass.position_space, pass.enabled, pass.double_sided,
-                 pass.blended, pass.casts_shadow, pass.receives_shadow});
+                 pass.blended, pass.casts_shadow, pass.receives_shadow, pass.repeat});
             break;
           case lower::PassPart::position:
             kind = emit::PureKind::move_vertex;

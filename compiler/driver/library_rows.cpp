@@ -39,6 +39,7 @@ std::string doc_of(const check::TypedGraph& function) {
       {StageNeed::surface, "the surface"}, {StageNeed::vertex, "the vertex"},
       {StageNeed::pixel, "the pixel"},     {StageNeed::images, "images"},
       {StageNeed::lights, "the lights"},   {StageNeed::derivatives, "derivatives"},
+      {StageNeed::repetition, "the repetition of the pass"},
       {StageNeed::environment, "the environment"}, {StageNeed::time, "the time"}};
   static_assert(std::size(all) == check::stage_need_count);
   std::vector<std::string_view> read;

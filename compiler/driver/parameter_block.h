@@ -49,6 +49,13 @@ struct ParameterBlock {
   bool cuts_out(std::optional<size_t> cutoff, std::span<const float> record) const {
     return !cutoff || record[word_of(*cutoff)] > 0;
   }
+  /// How often a pass is drawn with this record, and how often at most with any.
+  int repetitions(const interface::Repeat& repeat, std::span<const float> record) const {
+    return repeat.parameter ? static_cast<int>(record[word_of(*repeat.parameter)]) : repeat.count;
+  }
+  int most_repetitions(const interface::Repeat& repeat) const {
+    return repeat.parameter ? static_cast<int>(*fields[*repeat.parameter].max) : repeat.count;
+  }
 };
 
 /// The type of a field of a parameter block.

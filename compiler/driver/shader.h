@@ -22,6 +22,7 @@ struct ShaderPass {
   std::optional<size_t> double_sided;     ///< index of a parameter field; no face is culled if it is not 0
   std::optional<size_t> blended;          ///< index of a parameter field; the pass is opaque if it is 0
   bool casts_shadow = true, receives_shadow = true;
+  interface::Repeat repeat;  ///< its parameter is the index of a parameter field
 };
 
 /// A document that is compiled to be linked.

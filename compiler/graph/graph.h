@@ -156,6 +156,7 @@ struct Pass {
   std::optional<uint32_t> enabled;  ///< in Graph::inputs: the pass is drawn if this parameter is not 0
   std::optional<uint32_t> double_sided;  ///< in Graph::inputs: no face is culled if this parameter is not 0
   std::optional<uint32_t> blended;  ///< in Graph::inputs: the pass is opaque if this parameter is 0
+  interface::Repeat repeat;
   std::optional<Link> cutout;  ///< the pass is drawn where it holds: a boolean, or a float of at least `cutoff`
   std::optional<Link> cutoff;  ///< of a float; 0 and less: drawn everywhere
   bool casts_shadow = true;    ///< whether lights that have shadows draw it into them

@@ -41,6 +41,41 @@ std::optional<uint32_t> GraphBuilder::read_switch(const Json& json, std::string_
   return std::nullopt;
 }
 
+void GraphBuilder::read_repeat(const Json& json, Pass& pass) {
+  constexpr int most = interface::max_repeats;
+  const std::string range = "1 to " + std::to_string(most);
+  if (json.kind == Json::Kind::number) {
+    const int64_t count = json.integral ? document_.to_integer(json) : 0;
+    if (count >= 1 && count <= most)
+      pass.repeat.count = static_cast<int>(count);
+    else
+      diagnostics_.report(json.integral ? Id::out_of_range : Id::wrong_type, document_.span(json),
+                          "\"repeat\" must be a whole number from " + range);
+    return;
+  }
+  if (json.kind != Json::Kind::string) {
+    diagnostics_.report(Id::wrong_type, document_.span(json),
+                        "\"repeat\" must be a whole number from " + range + " or the name of a parameter, not " +
+                            std::string(kind_name(json.kind)));
+    return;
+  }
+  const std::optional<uint32_t> number = read_switch(json, "repeat");
+  if (!number) return;
+  const Input& input = graph_.inputs[*number];
+  if (input.type == Type::boolean) {
+    diagnostics_
+        .report(Id::type_mismatch, document_.span(json), "\"repeat\" must name an integer or float parameter, not a boolean")
+        .note(graph_.span(input.name_place), "the parameter is declared here");
+  } else if (!input.min || !input.max || *input.min < 1 || *input.max > static_cast<float>(most)) {
+    diagnostics_
+        .report(Id::out_of_range, document_.span(json),
+                "\"repeat\" needs a parameter whose \"min\" and \"max\" lie in the range " + range)
+        .note(graph_.span(input.name_place), "the parameter is declared here");
+  } else {
+    pass.repeat.parameter = *number;
+  }
+}
+
 void GraphBuilder::read_cutout(ObjectReader& reader, Pass& pass) {
   const Json* cutout = reader.value("cutout", Need::optional);
   if (cutout != nullptr) pass.cutout = link(*cutout, "cutout");
@@ -84,6 +119,7 @@ void GraphBuilder::read_pass(const Json& json) {
         .report(Id::missing_key, document_.span(*useless), quote(key) + " has no effect without \"blend\"")
         .suggest("add \"blend\", or remove this key");
   }
+  if (const Json* repeat = reader.value("repeat", Need::optional)) read_repeat(*repeat, pass);
   read_cutout(reader, pass);
   // A hull around an object, which shows its back faces as an outline, has no shadow of its own, and light shines through
   // what is blended.

@@ -48,6 +48,8 @@ class GraphBuilder {
   void read_outputs(const Json& outputs);
   void read_passes(const Json& passes);
   void read_pass(const Json& json);
+  /// How often a pass is drawn.
+  void read_repeat(const Json& json, Pass& pass);
   /// Where a pass is drawn: "cutout" and "cutoff".
   void read_cutout(ObjectReader& reader, Pass& pass);
   /// The parameter that a key of a pass or post names ("enabled"), which is switched on where it is not 0.

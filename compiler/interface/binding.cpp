@@ -81,6 +81,11 @@ Binding bind(Screen value) {
 
 Binding bind_time() { return {source::Time{}, {"time", ir::float_type, "frame", true}, distance}; }
 
+Binding bind_repetition(Repetition what, Assumption assumed) {
+  const char* const name = what == Repetition::index ? "pass_index" : "pass_count";
+  return {source::PassRepetition{what}, {name, ir::int_type, "", true}, assumed};
+}
+
 Binding bind_light_count() {
   return {source::LightCount{}, {"light_count", ir::int_type, "", true}, light_count};
 }

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/interface/pass_state.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::interface {
@@ -30,7 +31,7 @@ namespace assume {
 inline constexpr double limit = 1e6;  ///< of what has no limit of its own
 inline constexpr Assumption anywhere{-limit, limit}, direction{-1, 1, true}, distance{0, limit}, fraction{0, 1},
     color{0, 1e3}, texture_coordinate{-1e4, 1e4}, ray{-1e3, 1e3}, image_place{0, max_size}, image_size{1, max_size},
-    light_count{0, max_lights}, texture{-1, limit}, boolean{0, 1};
+    light_count{0, max_lights}, texture{-1, limit}, boolean{0, 1}, pass_index{0, max_repeats - 1}, pass_count{1, max_repeats};
 /// The distance of a depth of 0 is 1 / 0, which becomes the largest distance that there is.
 inline constexpr Assumption depth_divisor{-limit, limit, false, 1e9};
 }  // namespace assume
@@ -61,6 +62,10 @@ inline constexpr size_t screen_value_count = 0
 inline constexpr size_t space_matrix_count = 0
 #include "compiler/interface/values.def"
     ;
+
+/// What a program knows about the repetitions of its pass: the number of the one that is drawn, from 0, and how many there are.
+enum class Repetition : uint8_t { index, count };
+inline constexpr size_t repetition_count = 2;
 
 /// What coordinates are relative to.
 enum class Space : uint8_t {
@@ -131,6 +136,9 @@ struct MatrixColumn {
   uint32_t column;
 };
 struct Time {};
+struct PassRepetition {
+  Repetition what;
+};
 /// An input of a function document, or a parameter of an effect or post; of a matrix, one column.
 struct Input {
   uint32_t input;  ///< in Graph::inputs
@@ -166,7 +174,7 @@ struct TapCount {
 }  // namespace source
 
 using Source =
-    std::variant<source::Attribute, source::MatrixColumn, source::Time, source::Input, source::Image,
+    std::variant<source::Attribute, source::MatrixColumn, source::Time, source::PassRepetition, source::Input, source::Image,
                  source::LightCount, source::HasEnvironment, source::ScreenValue, source::PixelOfImage, source::OffsetInPixel,
                  source::SizeOfImage, source::TapCount>;
 
@@ -190,6 +198,8 @@ Binding bind(SurfaceValue value);
 Binding bind(SpaceMatrix matrix, uint32_t column);
 Binding bind(Screen value);
 Binding bind_time();
+/// `assumed`: of the pass; in a function, which any pass may call, assume::pass_index or pass_count.
+Binding bind_repetition(Repetition what, Assumption assumed);
 Binding bind_light_count();
 Binding bind_has_environment();
 /// `slot_name`: ImageSlot::name.

@@ -79,6 +79,9 @@ Place place_of(const Binding& binding, bool in_function) {
             return Place(place::Host{call_of(s.matrix), static_cast<int>(s.column)});
           },
           [](const source::Time&) { return Place(place::Host{HostCall::time}); },
+          [](const source::PassRepetition& s) {
+            return Place(place::Host{s.what == Repetition::index ? HostCall::pass_index : HostCall::pass_count});
+          },
           [&](const source::Input&) {
             return in_function ? Place(place::Argument{}) : Place(place::Parameter{});
           },

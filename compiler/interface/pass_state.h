@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -61,5 +62,13 @@ struct PassStateRow {
   void (*set)(PassState& state, size_t value);
 };
 std::span<const PassStateRow> pass_states();
+
+inline constexpr int max_repeats = 256;  ///< of a pass
+
+/// How often a pass is drawn, one repetition after the other.
+struct Repeat {
+  int count = 1;                    ///< if no parameter says it
+  std::optional<size_t> parameter;  ///< the index of an input of the document: its value without a fraction
+};
 
 }  // namespace isoshade::interface

@@ -135,6 +135,10 @@ void Body::make_row(const nodes::Row& row, uint32_t index) {
     out[0] = environment_.time;
     return;
   }
+  if (const auto* what = std::get_if<nodes::Repetition>(&row.lowering)) {
+    out[0] = environment_.repetition[static_cast<size_t>(*what)];
+    return;
+  }
   if (const auto* what = std::get_if<nodes::Transform>(&row.lowering)) {
     out[0] = transform(*what, node);
     return;
@@ -268,6 +272,7 @@ ir::ValueId Body::argument(const interface::Binding& binding, const Node& node,
             return environment_.matrices[static_cast<size_t>(s.matrix)][s.column];
           },
           [&](const source::Time&) { return environment_.time; },
+          [&](const source::PassRepetition& s) { return environment_.repetition[static_cast<size_t>(s.what)]; },
           [&](const source::Input& s) {
             if (s.column == 0) input = read(graph_.operands_of(node)[s.input]);
             return input.ids()[s.column];

@@ -23,6 +23,9 @@ struct Needs {
   std::array<bool, interface::surface_value_count> surface{};   ///< by SurfaceValue::index
   std::array<size_t, interface::space_matrix_count> columns{};  ///< of each SpaceMatrix
   bool time = false;
+  std::array<bool, interface::repetition_count> repetition{};  ///< by Repetition
+  std::array<interface::Assumption, interface::repetition_count> repetition_range{interface::assume::pass_index,
+                                                                                  interface::assume::pass_count};
   bool lights = false;    ///< a sum over lights
   bool light_at = false;  ///< what a light gives
   bool has_environment = false;                ///< whether there is an environment
@@ -32,6 +35,10 @@ struct Needs {
   Needs(const check::TypedGraph& graph, std::span<const check::Operand> results);
   /// Adds what a function that one of the nodes calls has as parameters, but for its inputs and images.
   void add_callee(const std::vector<interface::Binding>& bindings);
+  /// The nodes are those of a pass that is repeated so.
+  void draw_in(const graph::Graph& graph, const interface::Repeat& repeat);
+  /// Adds what is the same for a whole draw: the time, the repetition of the pass, whether there is an environment.
+  void add_frame(std::vector<interface::Binding>& bindings) const;
   /// No vertices move: what is seen is the mesh itself.
   void show_mesh();
 };
@@ -53,6 +60,7 @@ struct Environment {
   std::array<ir::ValueId, interface::surface_value_count> surface{};
   std::array<std::array<ir::ValueId, 4>, interface::space_matrix_count> matrices{};
   ir::ValueId time = ir::none;
+  std::array<ir::ValueId, interface::repetition_count> repetition{ir::none, ir::none};
   ir::ValueId light_count = ir::none;
   ir::ValueId has_environment = ir::none;
   const ImageSlots* images = nullptr;

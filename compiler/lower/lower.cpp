@@ -327,8 +327,7 @@ void ModuleLowering::add_surface(const Needs& needs, Bindings& bindings) {
   for (size_t m = 0; m < interface::space_matrix_count; ++m)
     for (uint32_t c = 0; c < needs.columns[m]; ++c)
       bindings.push_back(interface::bind(static_cast<interface::SpaceMatrix>(m), c));
-  if (needs.time) bindings.push_back(interface::bind_time());
-  if (needs.has_environment) bindings.push_back(interface::bind_has_environment());
+  needs.add_frame(bindings);
 }
 
 void ModuleLowering::add_images_and_lights(const TypedGraph& graph, const Needs& needs, Bindings& bindings) {
@@ -356,6 +355,7 @@ interface::Interface ModuleLowering::add_pass(const TypedGraph& graph, size_t pa
   const std::span<const Operand> roots = outputs_of(graph, pass, part);
   support::assert_that(!roots.empty(), "the pass has no such part");
   Needs needs(graph, roots);
+  needs.draw_in(graph.graph, graph.graph.passes[pass].repeat);
   const bool moves = has_part(graph, pass, PassPart::position);
   const std::string name = unique_name(prefix + std::string(function_of(part)));
   declare_picture(graph, needs);
@@ -380,8 +380,7 @@ interface::Interface ModuleLowering::add_post(const TypedGraph& graph) {
   declare_hosts(needs);
 
   Bindings bindings = screen_bindings(graph, needs.screen);
-  if (needs.time) bindings.push_back(interface::bind_time());
-  if (needs.has_environment) bindings.push_back(interface::bind_has_environment());
+  needs.add_frame(bindings);
   add_parameters(graph, needs, bindings);
   for (Binding& binding : tap_bindings(graph, needs.screen)) bindings.push_back(std::move(binding));
   const uint32_t entry =

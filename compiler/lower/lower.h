@@ -52,6 +52,7 @@ struct LowerOptions {
 ///     of which the fourth is the translation
 ///   frame.time       float, uniform; seconds
 ///   frame.has_environment  bool, uniform
+///   pass_index, pass_count  int, uniform; of the repetitions of the pass
 ///   parameters.NAME  uniform; of the effect, in its order
 ///   images.NAME      int, uniform: a texture (sampling.h), or negative for none; of image_slots()
 ///   light_count      int, uniform: where there is a sum over lights

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the body of a function needs from outside, and where it finds that.
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/lower/body.h"
 
@@ -54,6 +55,7 @@ Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
                    [&](const source::Attribute& s) { surface[s.value.index()] = id; },
                    [&](const source::MatrixColumn& s) { matrices[static_cast<size_t>(s.matrix)][s.column] = id; },
                    [&](const source::Time&) { time = id; },
+                   [&](const source::PassRepetition& s) { repetition[static_cast<size_t>(s.what)] = id; },
                    [&](const source::Input& s) { columns[s.input].push_back(id); },
                    [&](const source::Image& s) {
                      image_slots.resize(std::max<size_t>(image_slots.size(), s.slot + 1), ir::none);
@@ -91,6 +93,8 @@ void Needs::add_callee(const std::vector<interface::Binding>& bindings) {
       count = std::max<size_t>(count, column->column + 1);
     }
     time |= std::holds_alternative<source::Time>(binding.source);
+    if (const auto* number = std::get_if<source::PassRepetition>(&binding.source))
+      repetition[static_cast<size_t>(number->what)] = true;
     lights |= std::holds_alternative<source::LightCount>(binding.source);
     has_environment |= std::holds_alternative<source::HasEnvironment>(binding.source);
   }
@@ -118,6 +122,7 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
       }
     }
     time |= node.row->is<nodes::Time>();
+    if (const auto* what = std::get_if<nodes::Repetition>(&node.row->lowering)) repetition[static_cast<size_t>(*what)] = true;
     lights |= node.row->is<nodes::SumLights>();
     light_at |= node.row->is<nodes::Light>();
     if (const auto* what = std::get_if<nodes::Environment>(&node.row->lowering)) {
@@ -127,6 +132,23 @@ Needs::Needs(const check::TypedGraph& graph, std::span<const Operand> results)
     screen.add(graph, *it);
   }
   surface[shown_position.index()] |= light_at;
+}
+
+void Needs::draw_in(const graph::Graph& graph, const interface::Repeat& repeat) {
+  double least = repeat.count, most = repeat.count;
+  if (repeat.parameter) {
+    least = std::floor(*graph.inputs[*repeat.parameter].min);
+    most = std::floor(*graph.inputs[*repeat.parameter].max);
+  }
+  repetition_range = {interface::Assumption{0, most - 1}, interface::Assumption{least, most}};
+}
+
+void Needs::add_frame(std::vector<interface::Binding>& bindings) const {
+  if (time) bindings.push_back(interface::bind_time());
+  for (const auto what : {interface::Repetition::index, interface::Repetition::count})
+    if (const auto i = static_cast<size_t>(what); repetition[i])
+      bindings.push_back(interface::bind_repetition(what, repetition_range[i]));
+  if (has_environment) bindings.push_back(interface::bind_has_environment());
 }
 
 void Needs::show_mesh() {

@@ -68,6 +68,7 @@ class ScreenPoint {
             [&](const source::Attribute&) { return only_effects(); },
             [&](const source::MatrixColumn&) { return only_effects(); },
             [&](const source::Image&) { return only_effects(); },
+            [&](const source::PassRepetition&) { return only_effects(); },
             [&](const source::LightCount&) { return only_effects(); },
             [&](const source::Time&) { return k_.load(FrameBuffer::frame, k_.constant(frame_word::time)).value; },
             [&](const source::HasEnvironment&) { return has_environment(k_, has_environment_); },

@@ -105,6 +105,9 @@ class SurfaceArguments {
             [&](const source::Attribute& s) { return surface_.value(s.value); },
             [&](const source::MatrixColumn& s) { return surface_.column(s.matrix, s.column).value; },
             [&](const source::Time&) { return k_.load(FrameBuffer::frame, k_.constant(frame_word::time)).value; },
+            [&](const source::PassRepetition& s) {
+              return field(s.what == interface::Repetition::index ? object_word::pass_index : object_word::pass_count);
+            },
             [&](const source::Input& s) { return field(column_word(record_, s, parameter.type)); },
             [&](const source::Image& s) { return field(record_.images[s.slot]); },
             [&](const source::LightCount&) { return light_count_; },

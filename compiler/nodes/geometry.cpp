@@ -66,6 +66,16 @@ std::vector<Row> geometry_rows() {
        {{"in", AnyFloat, "the value"}},
        AnyFloat,
        Derivative::width},
+      {"passindex",
+       "Which repetition of the pass is drawn, from 0 to `passcount` - 1; 0 in a pass without \"repeat\".",
+       {},
+       Integer,
+       Repetition::index},
+      {"passcount",
+       "How often the pass is drawn: its \"repeat\", or 1 without one.",
+       {},
+       Integer,
+       Repetition::count},
       {"time", "The \"time\" of the scene, in seconds.", {}, Float, Time{}},
   };
   for (uint32_t i = 0; i < interface::surface_count; i += interface::sets_of(static_cast<Surface>(i)))

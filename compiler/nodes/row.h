@@ -21,6 +21,7 @@ namespace isoshade::nodes {
 
 struct Site;
 
+using interface::Repetition;
 using interface::Screen;
 using interface::Space;
 using interface::Surface;
@@ -139,8 +140,8 @@ enum class Derivative : uint8_t { x, y, width };
 /// Computes the outputs of a Site from its inputs.
 using Custom = void (*)(Site&);
 
-using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Light, SumLights, Environment, Derivative,
-                              Image, Screen, Fetch, WorldPosition, SumTaps, TapIndex, Custom>;
+using Lowering = std::variant<ir::Opcode, Function, Surface, Transform, Time, Repetition, Light, SumLights, Environment,
+                              Derivative, Image, Screen, Fetch, WorldPosition, SumTaps, TapIndex, Custom>;
 
 /// The kinds of documents in which a node is available. A function may use what is available in effects; then only
 /// effects can call it, or for `drawn` nodes also posts (check/stage_needs.h).
@@ -182,7 +183,8 @@ struct Row {
   bool is_summand() const { return is<Light>() || is<TapIndex>(); }
   Availability availability() const {
     if (is<Time>() || is<Environment>()) return Availability::drawn;
-    if (is<Surface>() || is<Transform>() || is<Light>() || is<SumLights>() || is<Derivative>() || is<Image>())
+    if (is<Surface>() || is<Transform>() || is<Repetition>() || is<Light>() || is<SumLights>() || is<Derivative>() ||
+        is<Image>())
       return Availability::effects;
     if (is<Fetch>()) return Availability::pictures;
     const bool screen = is<Screen>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();

@@ -188,6 +188,8 @@ SchemaJson pass_schema() {
                             described(string_schema(), "a parameter: nothing is culled where it is not 0 or false")},
                            {"blended",
                             described(string_schema(), "a parameter: the pass is opaque where it is 0 or false")},
+                           {"repeat", described(any_of({integer_schema(1, interface::max_repeats), string_schema()}),
+                                                "how often the pass is drawn, or the parameter that says it: default 1")},
                            {"cutout", described(reference("link"),
                                                 "drawn where it holds: a boolean, or a float of at least \"cutoff\"")},
                            {"cutoff", described(any_of({reference("link"), number_schema()}),

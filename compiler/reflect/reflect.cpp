@@ -281,6 +281,8 @@ class Reflector {
       if (pass.enabled) made.enabled = shader_.parameters.fields[*pass.enabled].name;
       if (pass.double_sided) made.double_sided = shader_.parameters.fields[*pass.double_sided].name;
       if (pass.blended) made.blended = shader_.parameters.fields[*pass.blended].name;
+      made.repeat = shader_.parameters.most_repetitions(pass.repeat);
+      if (pass.repeat.parameter) made.repeat_parameter = shader_.parameters.fields[*pass.repeat.parameter].name;
       made.cut_out = pass.coverage.has_value();
       made.casts_shadow = pass.casts_shadow;
       made.receives_shadow = pass.receives_shadow;

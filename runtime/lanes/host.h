@@ -127,6 +127,17 @@ concept time = requires(const Host& host) {
   { host.time() } -> ConvertsTo<float>;
 };
 
+/// Which repetition of the pass is drawn, from 0; 0 if the pass is not repeated.
+template <class Host, class F>
+concept pass_index = requires(const Host& host) {
+  { host.pass_index() } -> ConvertsTo<int>;
+};
+/// How many repetitions the pass has; 1 if it is not repeated.
+template <class Host, class F>
+concept pass_count = requires(const Host& host) {
+  { host.pass_count() } -> ConvertsTo<int>;
+};
+
 // Columns of matrices between spaces: 0 to 2 are for vectors, 3 is the translation.
 
 /// Of the matrix from object to world space.
@@ -243,6 +254,16 @@ template <class Host>
   requires gives::time<Host, float>
 ISOSHADE_INLINE float isoshade_time(const Host& host) {
   return host.time();
+}
+template <class Host>
+  requires gives::pass_index<Host, float>
+ISOSHADE_INLINE int isoshade_pass_index(const Host& host) {
+  return host.pass_index();
+}
+template <class Host>
+  requires gives::pass_count<Host, float>
+ISOSHADE_INLINE int isoshade_pass_count(const Host& host) {
+  return host.pass_count();
 }
 template <class Host>
   requires gives::world_from_object<Host, float>

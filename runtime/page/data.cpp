@@ -192,6 +192,7 @@ class Data {
                        {"first", first_index(draw)},
                        {"count", draw.indices.size()},
                        {"enabled", word_of(effect.parameters, origin.pass->enabled)},
+                       {"repeat", word_of(effect.parameters, origin.pass->repeat.parameter)},
                        {"double_sided", word_of(effect.parameters, origin.pass->double_sided)},
                        {"blended", word_of(effect.parameters, origin.pass->blended)},
                        {"mirrored", draw.mirrored}};

@@ -275,6 +275,19 @@ std::optional<ParameterValues> ParameterValues::resolve(const driver::ParameterB
   return Resolver(block, giver, find_texture, diagnostics).resolve();
 }
 
+float ParameterValues::most(size_t word) const {
+  std::optional<float> most;
+  for (const Varying& varying : varying_) {
+    if (varying.first_word != word) continue;
+    for (const Literal& value : repeat_[varying.axis].variations[varying.variation].values) {
+      float number = 0;
+      store(varying.type, varying.names, value, &number);
+      most = std::max(most.value_or(number), number);
+    }
+  }
+  return most.value_or(common_[word]);
+}
+
 std::vector<float> ParameterValues::words(const scene::Instance& instance,
                                           const std::function<int(int)>& record_of) const {
   std::vector<float> words = common_;

@@ -44,6 +44,9 @@ class ParameterValues {
   /// holds lanes::FpGuard.
   std::vector<float> words(const scene::Instance& instance, const std::function<int(int)>& record_of) const;
 
+  /// The greatest number that a word of the record has in any copy; of no image.
+  float most(size_t word) const;
+
   int64_t word_count() const { return static_cast<int64_t>(common_.size()); }
 
  private:

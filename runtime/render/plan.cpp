@@ -160,6 +160,17 @@ bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, 
   return true;
 }
 
+/// Of all passes over a part of one copy, in one view.
+int64_t Planner::most_draws(const driver::Effect& effect, const ParameterValues& values) const {
+  int64_t draws = 0;
+  for (const driver::EffectPass& pass : effect.passes) {
+    const std::optional<size_t> parameter = options_.disabled ? std::nullopt : pass.repeat.parameter;
+    draws += parameter ? static_cast<int64_t>(values.most(effect.parameters.word_of(*parameter)))
+                       : effect.parameters.most_repetitions(pass.repeat);
+  }
+  return draws;
+}
+
 /// Makes the mesh and the parameters of one object after the other, and stops when a limit is exceeded.
 bool Planner::make_objects() {
   struct Count {
@@ -193,11 +204,11 @@ bool Planner::make_objects() {
       if (diagnostics_.full()) return false;
       continue;
     }
-    const int64_t draws = scene::instance_count(object) * static_cast<int64_t>(effect.passes.size());
-    draws_of_views.total += draws * static_cast<int64_t>(mesh.parts.size() * views);
     mesh_of_object_.push_back(*number);
     note_largest_mesh(object, mesh);
     for (size_t part = 0; part < mesh.parts.size(); ++part) {
+      const int64_t draws = scene::instance_count(object) * most_draws(effect, parameters_.back()[part]);
+      draws_of_views.total += draws * static_cast<int64_t>(views);
       vertices.total += draws * mesh.parts[part].vertex_count;
       triangles.total += draws * static_cast<int64_t>(mesh.parts[part].indices.size() / 3);
       words.total += draws * (lower::object_word::parameters + lower::view_word::matrix +
@@ -209,7 +220,7 @@ bool Planner::make_objects() {
           .report(Id::too_large, object.name_where,
                   "with object " + quote(object.name) + " the scene has more than " +
                       std::to_string(count->limit) + " " + std::string(count->what) + " to draw")
-          .suggest("draw fewer copies, or meshes of fewer segments");
+          .suggest("draw fewer copies, fewer repetitions of passes, or meshes of fewer segments");
       return false;
     }
   }

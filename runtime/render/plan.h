@@ -56,7 +56,7 @@ struct Plan {
 
 /// Compiles each effect once, makes each mesh once, and fills the arrays of the frame: one record for each pass over
 /// each part of each copy of each object that a view may see, in the order of the scene, with all parts before the next
-/// pass. Reports effects that do not compile, unknown or unsuitable parameters, and scenes beyond the limits.
+/// repetition of a pass, and all repetitions before the next pass. Reports effects that do not compile, unknown or unsuitable parameters, and scenes beyond the limits.
 std::optional<Plan> plan_frame(const scene::Scene& scene, const PlanOptions& options,
                                support::Diagnostics& diagnostics);
 

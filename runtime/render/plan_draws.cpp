@@ -17,62 +17,84 @@ using scene::Instance;
 using scene::Object;
 using support::quote;
 
+int Planner::repetitions_of(const driver::Effect& effect, const driver::EffectPass& pass,
+                            std::span<const float> parameters) const {
+  return options_.disabled ? effect.parameters.most_repetitions(pass.repeat)
+                           : effect.parameters.repetitions(pass.repeat, parameters);
+}
+
 /// Places one pass after the other, each over all parts.
 void Planner::place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped) {
-  const Object& object = scene_.objects[o];
-  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
-  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
   std::vector<std::vector<float>> parameters;
   for (const ParameterValues& part : parameters_[o])
     parameters.push_back(part.words(copy.instance, [&](int number) { return textures_.record(number); }));
+  for (size_t p = 0; p < skipped.size(); ++p) place_pass(o, p, copy, parameters, skipped[p]);
+}
+
+void Planner::place_pass(size_t o, size_t p, const Copy& copy, std::span<const std::vector<float>> parameters,
+                         PassSkips& skipped) {
+  const Object& object = scene_.objects[o];
+  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+  const driver::EffectPass& pass = effect.passes[p];
+  const std::vector<MeshPart>& parts = plan_.meshes[mesh_of_object_[o]].parts;
   const glm::vec3& scale = object.transform.scale;
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
-  for (size_t p = 0; p < effect.passes.size(); ++p) {
-    const driver::EffectPass& pass = effect.passes[p];
-    const auto may_see = [&](size_t v) {
-      if (is_shadow_map(v) && !(object.casts_shadow && pass.casts_shadow)) return false;
-      return !copy.views[v].outside || pass.moves_vertices;
-    };
-    bool unseen = true;
-    for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v);
-    bool left_out = false;
-    for (size_t part = 0; part < mesh.parts.size(); ++part) {
-      if (!options_.disabled && effect.parameters.is_off(pass.enabled, parameters[part])) {
-        ++skipped[p].disabled;
-      } else if (unseen) {
-        left_out = true;
-      } else {
-        PassPrograms programs = programs_of_effect_[effect_of_object_[o]][p];
-        const bool blended = pass.blend && !effect.parameters.is_off(pass.blended, parameters[part]);
-        if (blended) programs.pixel = programs.blend;
-        backends::Draw draw = make_draw(copy.place, programs, mesh.parts[part], parameters[part]);
-        draw.state = pass.state;
-        draw.blended = blended;
-        if (effect.parameters.is_on(pass.double_sided, parameters[part])) draw.state.cull = interface::Cull::none;
-        draw.mirrored = mirrored;
-        draw.cutout = pass.cutout && effect.parameters.cuts_out(pass.cutoff, parameters[part]);
-        if (pass.cutout && !draw.cutout) ++skipped[p].uncut;
-        plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
-        for (size_t v = 0; v < copy.views.size(); ++v) {
-          if (!may_see(v)) continue;
-          backends::Draw seen = draw;
-          if (is_shadow_map(v)) {
-            seen.state = {};
-            seen.state.cull = interface::Cull::none;
-            seen.blended = false;
-          }
-          place_draw(seen, copy.views[v], v);
+  const auto may_see = [&](size_t v) {
+    if (is_shadow_map(v) && !(object.casts_shadow && pass.casts_shadow)) return false;
+    return !copy.views[v].outside || pass.moves_vertices;
+  };
+  bool unseen = true;
+  for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v);
+
+  std::vector<int> counts;  // of each part; 0 where nothing is drawn
+  bool left_out = false;
+  for (const std::vector<float>& values : parameters) {
+    const bool disabled = !options_.disabled && effect.parameters.is_off(pass.enabled, values);
+    if (disabled) ++skipped.disabled;
+    left_out |= unseen && !disabled;
+    counts.push_back(disabled || unseen ? 0 : repetitions_of(effect, pass, values));
+    if (counts.back() == 0) continue;
+    if (pass.cutout && !effect.parameters.cuts_out(pass.cutoff, values)) ++skipped.uncut;
+    if (counts.back() > 1) ++plan_.stats.repeated;
+  }
+  if (left_out) ++skipped.unseen;
+
+  const int most = *std::ranges::max_element(counts);
+  for (int repetition = 0; repetition < most; ++repetition) {
+    for (size_t part = 0; part < parts.size(); ++part) {
+      if (repetition >= counts[part]) continue;
+      const std::vector<float>& values = parameters[part];
+      PassPrograms programs = programs_of_effect_[effect_of_object_[o]][p];
+      const bool blended = pass.blend && !effect.parameters.is_off(pass.blended, values);
+      if (blended) programs.pixel = programs.blend;
+      backends::Draw draw = make_draw(copy.place, programs, parts[part], {repetition, counts[part]}, values);
+      draw.state = pass.state;
+      draw.blended = blended;
+      if (effect.parameters.is_on(pass.double_sided, values)) draw.state.cull = interface::Cull::none;
+      draw.mirrored = mirrored;
+      draw.cutout = pass.cutout && effect.parameters.cuts_out(pass.cutoff, values);
+      plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
+      const int64_t before = plan_.stats.draws;
+      for (size_t v = 0; v < copy.views.size(); ++v) {
+        if (!may_see(v)) continue;
+        backends::Draw seen = draw;
+        if (is_shadow_map(v)) {
+          seen.state = {};
+          seen.state.cull = interface::Cull::none;
+          seen.blended = false;
         }
+        place_draw(seen, copy.views[v], v);
       }
+      if (counts[part] > 1) plan_.stats.repetitions += plan_.stats.draws - before;
     }
-    if (left_out) ++skipped[p].unseen;
   }
 }
 
 backends::Draw Planner::make_draw(const ObjectTransforms& place, const PassPrograms& programs,
-                                  const MeshPart& part, const std::vector<float>& parameters) {
+                                  const MeshPart& part, Repetition repetition,
+                                  const std::vector<float>& parameters) {
   const size_t first = plan_.frame.objects.size();
-  append_object(place, programs.pixel, parameters, plan_.frame.objects);
+  append_object(place, programs.pixel, repetition, parameters, plan_.frame.objects);
   backends::Draw draw;
   draw.vertex_program = programs.vertex;
   draw.pixel_program = programs.pixel;

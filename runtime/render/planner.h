@@ -46,6 +46,7 @@ class Planner {
   void note_largest_mesh(const scene::Object& object, const StoredMesh& mesh);
   bool resolve_parts(const scene::Object& object, const driver::Effect& effect, const StoredMesh& mesh,
                      const FindTexture& find_texture);
+  int64_t most_draws(const driver::Effect& effect, const ParameterValues& values) const;
   void place_object(size_t o);
   /// Adds a view. The camera and the size of a pixel are those of an image of this size.
   void add_view(const scene::Camera& camera, const scene::View& view, int width, int height, backends::Target target);
@@ -69,9 +70,13 @@ class Planner {
     std::span<Appearance> views;  ///< one for each view
   };
   void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
+  /// Places one pass over a copy, one repetition after the other. `parameters`: of each part.
+  void place_pass(size_t o, size_t pass, const Copy& copy, std::span<const std::vector<float>> parameters, PassSkips& skipped);
+  /// How often a pass is drawn over a part: of a plan for programs that change parameters, as often as it may be.
+  int repetitions_of(const driver::Effect& effect, const driver::EffectPass& pass, std::span<const float> parameters) const;
   /// Appends the record of a draw.
   backends::Draw make_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
-                           const std::vector<float>& parameters);
+                           Repetition repetition, const std::vector<float>& parameters);
   /// Adds the draw to a view, or to `blended_`.
   void place_draw(backends::Draw draw, Appearance& appearance, size_t view);
   void add_views(int width, int height, int side);

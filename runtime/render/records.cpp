@@ -21,8 +21,8 @@ ObjectTransforms place_of(const scene::Object& object, const scene::Instance& in
   return {model, scene::affine_inverse(model), scene::normal_matrix(model)};
 }
 
-void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::span<const float> parameters,
-                   std::vector<float>& objects) {
+void append_object(const ObjectTransforms& place, uint32_t pixel_program, Repetition repetition,
+                   std::span<const float> parameters, std::vector<float>& objects) {
   namespace word = lower::object_word;
   const size_t first = objects.size();
   objects.resize(first + word::parameters);
@@ -31,6 +31,8 @@ void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::s
   store_rows(place.inverse, 3, record + word::inverse);
   store_rows(place.normal, 3, record + word::normal);
   record[word::program] = static_cast<float>(pixel_program);
+  record[word::pass_index] = static_cast<float>(repetition.index);
+  record[word::pass_count] = static_cast<float>(repetition.count);
   objects.insert(objects.end(), parameters.begin(), parameters.end());
 }
 

@@ -22,9 +22,14 @@ struct ObjectTransforms {
 };
 ObjectTransforms place_of(const scene::Object& object, const scene::Instance& instance);
 
+/// Which repetition of a pass is drawn, and how many there are.
+struct Repetition {
+  int index = 0, count = 1;
+};
+
 /// Appends a record of lower::object_word, with the words of its parameters.
-void append_object(const ObjectTransforms& place, uint32_t pixel_program, std::span<const float> parameters,
-                   std::vector<float>& objects);
+void append_object(const ObjectTransforms& place, uint32_t pixel_program, Repetition repetition,
+                   std::span<const float> parameters, std::vector<float>& objects);
 
 /// The words of lower::frame_word. `environment`: its first record, or -1.
 std::vector<float> frame_words(const scene::Scene& scene, int environment);

@@ -24,6 +24,8 @@ std::string text(const PlanStats& stats) {
       stats.copies, stats.draws, stats.lights, stats.meshes, stats.mesh_vertices, stats.vertices,
       stats.triangles, stats.effects, stats.programs, 1e3 * stats.compile_seconds, textures, environment,
       1e3 * stats.plan_seconds);
+  if (stats.repeated > 0)
+    text += fmt::format("repeats:  {} passes over copies in {} draws\n", stats.repeated, stats.repetitions);
   if (stats.posts > 0)
     text += fmt::format("posts:    {}{}\n", stats.posts,
                         stats.sample_posts > 0 ? fmt::format(", {} for each sample", stats.sample_posts) : "");

@@ -19,6 +19,8 @@ struct Skip {
 struct PlanStats {
   int64_t copies = 0;                     ///< of all objects, those skipped too
   int64_t draws = 0;                      ///< passes over parts of copies, of all views
+  int64_t repetitions = 0;                ///< draws of passes that are repeated
+  int64_t repeated = 0;                   ///< passes over parts of copies that are repeated
   int64_t vertices = 0, triangles = 0;    ///< of all draws
   int64_t meshes = 0, mesh_vertices = 0;  ///< stored
   int64_t effects = 0, programs = 0;      ///< compiled

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -47,6 +48,10 @@ class BlockWriter {
     for (const ForwardMember& member : members_)
       if (member.name == name) std::memcpy(&bytes_[static_cast<size_t>(member.offset + at)], values.data(), values.size_bytes());
   }
+  /// A whole number that a record holds as a float.
+  void write_integer(const std::string& name, float value) {
+    write(name, std::array{std::bit_cast<float>(static_cast<int32_t>(value))});
+  }
   /// Four columns, of which `words` has three rows.
   void write_affine(const std::string& name, const float* words) {
     for (int column = 0; column < 4; ++column) {
@@ -88,6 +93,8 @@ inline void fill(const ForwardLayout& layout, const ForwardLayout::Block& block,
     case ForwardBlock::object:
       writer.write_affine("world_from_object", object + object_word::model);
       writer.write_affine("object_from_world", object + object_word::inverse);
+      writer.write_integer("pass_index", object[object_word::pass_index]);
+      writer.write_integer("pass_count", object[object_word::pass_count]);
       break;
     case ForwardBlock::parameters: writer.write_record(object + object_word::parameters); break;
     case ForwardBlock::lights:

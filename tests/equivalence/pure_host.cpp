@@ -17,6 +17,8 @@ constexpr const char* glsl_host = R"(
 int isoshade_light_count() { return 2; }
 bool isoshade_has_environment() { return true; }
 float isoshade_time() { return 1.25; }
+int isoshade_pass_index() { return 2; }
+int isoshade_pass_count() { return 5; }
 vec3 isoshade_world_from_object(int column) { return vec3(column == 0, column == 1, 2.0 * float(column == 2) + 0.5 * float(column == 3)); }
 vec3 isoshade_object_from_world(int column) { return vec3(column == 0, column == 1, 0.5 * float(column == 2) + 0.5 * float(column == 3)); }
 vec3 isoshade_view_from_world(int column) { return vec3(column == 1, column == 0, column >= 2); }
@@ -78,6 +80,8 @@ struct Host {
   int light_count() const { return 2; }
   bool has_environment() const { return true; }
   float time() const { return 1.25f; }
+  int pass_index() const { return 2; }
+  int pass_count() const { return 5; }
   vec3<float> world_from_object(int c) const { return {float(c == 0), float(c == 1), 2.0f * float(c == 2) + 0.5f * float(c == 3)}; }
   vec3<float> object_from_world(int c) const { return {float(c == 0), float(c == 1), 0.5f * float(c == 2) + 0.5f * float(c == 3)}; }
   vec3<float> view_from_world(int c) const { return {float(c == 1), float(c == 0), float(c >= 2)}; }
@@ -229,6 +233,8 @@ ir::ValueId answer(lower::Kernel& k, const interface::place::Host& asked) {
     case light_count: return k.b.constant(2);
     case has_environment: return k.b.constant(true);
     case time: return k.b.constant(1.25f);
+    case pass_index: return k.b.constant(2);
+    case pass_count: return k.b.constant(5);
     case world_from_object: return vector({is(c == 0), is(c == 1), 2.0f * is(c == 2) + 0.5f * is(c == 3)});
     case object_from_world: return vector({is(c == 0), is(c == 1), 0.5f * is(c == 2) + 0.5f * is(c == 3)});
     case view_from_world:

@@ -179,7 +179,7 @@ struct RoofFrame {
       backends::Draw draw;
       draw.pixel_program = pixel_program;
       draw.object = static_cast<int>(plan.frame.objects.size());
-      render::append_object({glm::mat4(1), glm::mat4(1), glm::mat3(1)}, pixel_program, {},
+      render::append_object({glm::mat4(1), glm::mat4(1), glm::mat3(1)}, pixel_program, {}, {},
                             plan.frame.objects);
       draw.projected = render::append_matrix(seen.projection, view.words);
       draw.first_vertex = first_vertex;

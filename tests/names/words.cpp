@@ -38,6 +38,7 @@ constexpr std::string_view forms =
     "true_ result result_0 "
     "result_1 result_2 words_block inputs_block iso_ iso_sin iso_zero iso_x function_shade function_ shade_ "
     "light light_at environment environment_at irradiance_at environment_texel has_environment "
+    "pass_index pass_count "
     "out out_ sin_ sample_linear_clamp sample_level row_results canonical_1 color_at depth_at under "
     "edge_clamp edge_mirror "
     "image_a_at image_a_x material post_process_ wide record px py x0 y0 place inside kernel";

@@ -356,6 +356,8 @@ struct WholeHost {
   template <class F>
   vec3<F> irradiance(vec3<F>) const;
   float time() const;
+  int pass_index() const;
+  int pass_count() const;
   vec3<float> world_from_object(int) const;
   vec3<float> object_from_world(int) const;
   vec3<float> view_from_world(int) const;

@@ -38,6 +38,7 @@ isoshade_test(render_test
     unit/render_parts_test.cpp
     unit/render_plan_test.cpp
     unit/render_posts_test.cpp
+    unit/render_repeat_test.cpp
     unit/render_samples_test.cpp
     unit/render_textures_test.cpp
     unit/render_visibility_test.cpp

@@ -109,6 +109,8 @@ class HostText {
       case HostCall::image_size: return image_size(begin);
       case HostCall::image_layer: return image_layer(begin);
       case HostCall::time: return line((is_post() ? "isoshade_screen" : "isoshade_view") + std::string(".time"));
+      case HostCall::pass_index:
+      case HostCall::pass_count: return line("isoshade_object." + std::string(asked.name));
       case HostCall::world_from_object:
       case HostCall::object_from_world: return line("isoshade_object." + std::string(asked.name) + "[column].xyz");
       case HostCall::view_from_world:

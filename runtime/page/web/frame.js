@@ -123,9 +123,12 @@ class Frame {
       ["", "_right", "_down"].map((end, i) => [name + end, view[name].slice(3 * i, 3 * i + 3)]));
     return new Map([...Object.entries({ ...view, size, time: [time] }), ...vectors]);
   }
-  objectValues(draw) {
+  objectValues(draw, record) {
     const object = unpack(this.data.records, draw.object, this.data.layouts.object);
-    return new Map([["world_from_object", affine(object.model)], ["object_from_world", affine(object.inverse)]]);
+    return new Map(Object.entries({
+      world_from_object: affine(object.model), object_from_world: affine(object.inverse), pass_index: object.pass_index,
+      pass_count: draw.repeat === null ? object.pass_count : [Math.floor(record[draw.repeat])],
+    }));
   }
 
   /// The block has room for more lights than the scene has.
@@ -181,6 +184,12 @@ class Frame {
     }[draw.blend]);
   }
 
+  /// Whether a draw is a repetition of its pass beyond those that a parameter asks for.
+  isBeyond(draw, record) {
+    const [index] = unpack(this.data.records, draw.object, this.data.layouts.object).pass_index;
+    return draw.repeat !== null && index >= Math.floor(record[draw.repeat]);
+  }
+
   /// Whether a pass or post is switched off by a parameter.
   isOff(enabled, record) {
     return enabled !== null && record[enabled] === 0;
@@ -196,7 +205,7 @@ class Frame {
       const record = data.records.slice(first, first + draw.words);
       this.values.apply(draw.owner, record);
       this.fillBlocks(programs[draw.program], this.places[d], {
-        View, Lights, Object: this.objectValues(draw),
+        View, Lights, Object: this.objectValues(draw, record),
         Parameters: this.parameterValues(data.programs[draw.program], record),
       });
       return record;
@@ -234,7 +243,7 @@ class Frame {
     gl.enable(gl.DEPTH_TEST);
     data.draws.forEach((draw, d) => {
       const record = this.drawRecords[d];
-      if (this.isOff(draw.enabled, record)) return;
+      if (this.isOff(draw.enabled, record) || this.isBeyond(draw, record)) return;
       const program = this.use(draw.program, this.places[d]);
       this.bindSamplers(program, (name, target) => this.textureOf(record[draw.images + numberIn(name)], target));
       const cull = this.cullOf(draw, record);

@@ -185,6 +185,8 @@ class Material {
     } else if (block["role"] == "object") {
       set(members, "world_from_object", scene.world_from_object);
       set(members, "object_from_world", glm::inverse(scene.world_from_object));
+      set(members, "pass_index", int32_t{0});  // no pass is repeated
+      set(members, "pass_count", int32_t{1});
     } else if (block["role"] == "lights") {
       const json& light = pair["light"];
       if (scene.lights.size() > light["count"]) throw std::runtime_error("there are too many lights");

@@ -19,6 +19,8 @@ struct Host {
   int light_count() const { return 1; }
   isoshade::Light<float> light(int, vec3<float>) const { return {{0, 0, 1}, vec3<float>(intensity)}; }
   bool has_environment() const { return false; }
+  int pass_index() const { return 0; }
+  int pass_count() const { return 1; }
   vec3<float> environment(vec3<float>, float) const { return vec3<float>(0); }
   vec3<float> irradiance(vec3<float>) const { return vec3<float>(0); }
 };

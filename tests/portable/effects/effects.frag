@@ -43,6 +43,8 @@ int isoshade_image_layer(int image, int layer) { return image; }
 bool isoshade_has_environment() { return true; }
 vec3 isoshade_environment(vec3 direction, float roughness) { return vec3(0.5 + 0.1 * roughness); }
 vec3 isoshade_irradiance(vec3 direction) { return vec3(0.5) + direction; }
+int isoshade_pass_index() { return 2; }
+int isoshade_pass_count() { return 5; }
 
 void main() {
   vec3 view = normalize(camera - position);

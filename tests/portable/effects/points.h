@@ -76,6 +76,9 @@ class Host {
     return direction * vec3<T>(T(0.25f)) + vec3<T>(T(0.5f));
   }
 
+  int pass_index() const { return 2; }
+  int pass_count() const { return 5; }
+
   template <class I>
   vec4<float_of<I>> texel(I image, I x, I y) const {
     const I at = ((image * Images::side + y) * Images::side + x) * 4;
