@@ -56,6 +56,7 @@ struct Target {
 struct View {
   Target target;
   std::vector<float> words;   ///< lower::view_word: the camera, then the matrices of the draws
+  std::vector<float> frame = {};  ///< lower::frame_word, in place of Frame::frame; empty: that
   std::vector<Draw> draws;    ///< in the order in which they are drawn
   /// Earlier views (indices into Frame::views) whose targets its programs read; `nothing` leaves the place of one free.
   std::vector<size_t> reads;

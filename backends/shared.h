@@ -21,7 +21,7 @@ bool for_each_array(const ViewPass& pass, std::span<const float> vertices, const
   const Frame& frame = pass.frame;
   return use(FrameBuffer::vertices, vertices) && use(FrameBuffer::objects, std::span(frame.objects)) &&
          use(FrameBuffer::lights, std::span(frame.lights)) &&
-         use(FrameBuffer::frame, std::span(frame.frame)) &&
+         use(FrameBuffer::frame, std::span(pass.view.frame.empty() ? frame.frame : pass.view.frame)) &&
          use(FrameBuffer::view, std::span(pass.view.words)) && use(FrameBuffer::layers, pass.layers) &&
          use(FrameBuffer::layer_records, pass.layer_records);
 }

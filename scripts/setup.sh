@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   # building
   g++ cmake ninja-build pkg-config
-  nlohmann-json3-dev libfmt-dev libglm-dev libcli11-dev libspng-dev libjpeg-dev libopenexr-dev zlib1g-dev libtinygltf-dev
+  nlohmann-json3-dev libfmt-dev libglm-dev libcli11-dev libspng-dev libjpeg-dev libgif-dev libopenexr-dev zlib1g-dev libtinygltf-dev
   libtbb-dev libssl-dev libmpfr-dev
   glslang-dev spirv-tools spirv-headers libvulkan-dev
   # running: Vulkan on the CPU, and the loader for other devices

@@ -6,6 +6,7 @@
 #include "compiler/check/check.h"
 #include "compiler/check/stage_needs.h"
 #include "compiler/driver/dumps.h"
+#include "compiler/driver/finish.h"
 #include "compiler/driver/shader.h"
 #include "compiler/graph/extend.h"
 #include "compiler/ir/expansion.h"
@@ -44,23 +45,6 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
   if (typed == nullptr) return nullptr;
   if (options.dump) options.dump("typed", [&] { return dump_typed(*typed); });
   return typed;
-}
-
-/// Runs all passes on a lowered program. The reference leaves it as lowered, except for what decides visibility, which
-/// must be the same on every backend.
-void finish(Program& program, uint32_t kernel, const CompileOptions& options,
-            support::Source source = nullptr) {
-  program.entry = kernel;
-  program.source = std::move(source);
-  if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);
-  passes::Entries entries{kernel};
-  const auto dump = [&](std::string_view pass, const ir::Module& after) {
-    options.dump(pass, [&] { return dump_module(after); });
-  };
-  if (options.dump) dump("lower", program.module);
-  passes::run(passes::optimisations(), program.module, entries, program.tier,
-              options.dump ? passes::Dump(dump) : passes::Dump());
-  program.entry = entries[0];
 }
 
 int words_of(graph::Type type) {
@@ -136,7 +120,16 @@ interface::RecordLayout layout_of(const ParameterBlock& block, const std::vector
   return layout;
 }
 interface::RecordLayout layout_of(const Effect& effect) {
-  return layout_of(effect.parameters, {}, lower::object_word::parameters);
+  interface::RecordLayout layout = layout_of(effect.parameters, {}, lower::object_word::parameters);
+  layout.previous = static_cast<int>(lower::object_word::parameters + effect.parameters.word_count());
+  return layout;
+}
+
+bool reads_previous(const Program& program) {
+  return std::ranges::any_of(program.bindings, [](const interface::Binding& binding) {
+    const auto* attribute = std::get_if<interface::source::Attribute>(&binding.source);
+    return attribute != nullptr && attribute->value.attribute == interface::Surface::previous_position;
+  });
 }
 
 /// Lowers a document into a module with the buffers that kernels load from.
@@ -242,8 +235,10 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
                              vertex_program(*typed, i, effect, options),
                              pixel_program(*typed, i, effect, options), {},
                              cutout_program(*typed, i, effect, options)});
-    if (pass.state.blend == interface::Blend::none) continue;
     EffectPass& made = effect.passes.back();
+    effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
+                             (made.cutout && reads_previous(*made.cutout));
+    if (pass.state.blend == interface::Blend::none) continue;
     made.blend = pixel_program(*typed, i, effect, options, true);
     made.reads_scene = std::ranges::any_of(made.blend->bindings, [](const interface::Binding& binding) {
       return std::holds_alternative<interface::source::PixelOfImage>(binding.source);
@@ -261,12 +256,16 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
             {parameters_of(*typed), {}, {}},
             {},
             {},
+            {},
             false,
             false,
             false,
             typed->graph.enabled,
             {}};
-  for (const graph::InputImage& image : typed->graph.images) post.images.push_back(image.name);
+  for (const graph::InputImage& image : typed->graph.images) {
+    if (image.name == graph::motion_image_name) post.motion = post.images.size();
+    post.images.push_back(image.name);
+  }
   lower::Lowered lowered = lower_with_buffers(*typed);
   const interface::Interface& interface = lowered.interface;
   for (size_t i = 0; i <= post.images.size(); ++i)
@@ -421,15 +420,6 @@ emit::PureShader prepared(const Shader& shader, const emit::Target& target) {
 }
 
 std::string text(const Shader& shader, const emit::Target& target) { return target.pure(prepared(shader, target)); }
-
-const Program& depth_program() {
-  static const Program program = [] {
-    Program made{lower::Stage::depth, "depth", "", lower::frame_module(), 0, {}, {}};
-    finish(made, lower::add_depth_kernel(made.module), {});
-    return made;
-  }();
-  return program;
-}
 
 Program finish_eval(ir::Module module, uint32_t function, std::string name, functions::Tier tier) {
   Program program{lower::Stage::eval, std::move(name), "", std::move(module), 0, {}, {}, tier};

@@ -55,6 +55,8 @@ struct Effect {
   std::string document;
   ParameterBlock parameters;  ///< in the object's record, from object_word::parameters
   std::vector<EffectPass> passes;
+  /// Behind the parameters, the object's record has the columns that led to world space at the frame before.
+  bool reads_previous = false;
 };
 
 /// A full-screen effect.
@@ -63,6 +65,8 @@ struct Post {
   std::string document;
   ParameterBlock parameters;        ///< its whole record; without images
   std::vector<std::string> images;  ///< names of further input images
+  /// The one of `images` that is how far things have moved, unless the scene says otherwise.
+  std::optional<size_t> motion;
   std::vector<bool> reads;          ///< whether it reads the image that it processes, then each of `images`
   bool reads_depth = false;
   bool is_pointwise = false;      ///< of images it reads no pixel but the one that it makes, and the size does not matter
@@ -92,6 +96,10 @@ std::optional<Program> compile_function(const support::Source& source, const Com
 
 /// The program of the visibility pass, the same for every scene.
 const Program& depth_program();
+/// The programs that draw how far what is seen has moved (lower::add_motion_kernel) and complete it where nothing is drawn
+/// (lower::add_backdrop_motion_kernel). `reference`: CompileOptions::reference.
+const Program& motion_program(bool reference);
+const Program& backdrop_motion_program(bool reference);
 
 /// Makes an eval program of a function of a module created by frame_module().
 Program finish_eval(ir::Module module, uint32_t function, std::string name,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <set>
 #include <unistd.h>
@@ -41,6 +43,10 @@ std::string_view kind_name(Json::Kind kind) {
 }
 
 float Document::to_float(const Json& number) const {
+  if (number.computed) {
+    const auto rounded = static_cast<float>(number.number);
+    return std::abs(rounded) < std::numeric_limits<float>::min() ? std::copysign(0.0f, rounded) : rounded;
+  }
   // parse_float accepts every JSON number.
   return support::parse_float(text(number)).value_or(0.0f);
 }

@@ -14,12 +14,14 @@ namespace isoshade::graph {
 
 struct Member;
 
-/// One JSON value. `number` is the double nearest to the text; integers are numbers with `integral` set.
+/// One JSON value. `number` is the double nearest to the text; integers are numbers with `integral` set. A value may be
+/// computed from others, such as one between two keys of an animation; its range is then that of one of them.
 struct Json {
   enum class Kind : uint8_t { null, boolean, number, string, array, object };
   Kind kind = Kind::null;
   bool boolean = false;
   bool integral = false;  ///< the number has no fraction or exponent and fits int64
+  bool computed = false;  ///< the number is `number`, and not what its text says; then it is not `integral`
   uint32_t source = 0;    ///< 0: Document::source; n: Document::others[n - 1]
   double number = 0;
   std::string string;
@@ -58,8 +60,8 @@ struct Document {
   std::string_view text(const Json& value) const {
     return std::string_view(source_of(value)->text()).substr(value.begin, value.end - value.begin);
   }
-  /// The text of a number rounded once to float (Json::number would round twice). Denormals flush to zero;
-  /// overflow gives infinity.
+  /// The text of a number rounded once to float (Json::number would round twice), or a computed number. Denormals flush
+  /// to zero; overflow gives infinity.
   float to_float(const Json& number) const;
   /// The exact value of an integral number.
   int64_t to_integer(const Json& number) const;

@@ -167,6 +167,8 @@ struct Pass {
 
 /// The name of a post's output and of the image that it processes.
 inline constexpr std::string_view post_output = "color";
+/// The name of the further image that posts have which use the node of this name: how far things have moved.
+inline constexpr std::string_view motion_image_name = "motion";
 
 /// A further image that a post reads.
 struct InputImage {

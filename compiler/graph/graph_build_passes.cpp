@@ -187,6 +187,10 @@ void GraphBuilder::read_images(const Json& images) {
 
 void GraphBuilder::read_post(ObjectReader& reader) {
   if (const Json* images = reader.array("images", Need::optional)) read_images(*images);
+  const auto motion = std::ranges::find(graph_.nodes, motion_image_name, &Node::type);
+  const bool is_listed = std::ranges::find(graph_.images, motion_image_name, &InputImage::name) != graph_.images.end();
+  if (motion != graph_.nodes.end() && !is_listed)
+    graph_.images.push_back({std::string(motion_image_name), motion->type_place});
   if (const Json* enabled = reader.value("enabled", Need::optional)) graph_.enabled = read_switch(*enabled, "enabled");
   for (const Output& output : graph_.outputs) {
     if (output.name == post_output) continue;

@@ -248,6 +248,7 @@ struct Interface {
 /// Where the words of a document's record begin in `objects`: of each input (a matrix column by column; -1 for what has no
 /// words), each image slot, and each sum over taps.
 struct RecordLayout {
+  int previous = -1;  ///< the columns that lead from object to world space at the frame before, as object_word::model
   std::vector<int> inputs, images;
   std::vector<std::pair<uint32_t, int>> taps;  ///< node, word
 };

@@ -334,6 +334,12 @@ void Body::make_fetch(const Node& node) {
     out[0] = fetch_color(b_, image, offset(what, ports), filter);
     return;
   }
+  if (what == nodes::Fetch::motion) {
+    const ReadImage& image = environment_.screen.images[motion_image(graph_)];
+    const ir::ValueId read = fetch_color(b_, image, offset(what, ports), {edge, false, false}).id();
+    out[0] = b_.construct(std::array{b_.extract(read, 0), b_.extract(read, 1)});
+    return;
+  }
   out[0] = fetch_depth(b_, environment_.screen.images[depth_image], offset(what, ports), edge);
   if (environment_.screen[interface::Screen::depth_numerator] != ir::none) out[1] = distance_of(b_, environment_.screen, out[0].id());
   out[2] = b_.op(ir::Opcode::feq, {out[0].id(), b_.constant(0.0f)});

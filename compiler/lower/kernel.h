@@ -107,6 +107,10 @@ int column_word(const interface::RecordLayout& record, const interface::source::
 /// A value of the type in `objects`: floats, also for booleans (0, 1) and integers.
 ir::ValueId load_field(Kernel& k, ir::Type type, Int record, int offset);
 
+/// How far a point has moved, in pixels: `from_middle` is where it is, -1 to 1 over the picture, y up; `w` and `change` are
+/// its w in clip space, and how much x, y and w have changed there. `half_size`: of the picture, y negative.
+Vec2 moved_pixels(Kernel& k, Vec2 from_middle, Float w, Vec3 change, Vec2 half_size);
+
 inline ir::Parameter int_parameter(std::string name) { return {std::move(name), ir::int_type, "", false}; }
 inline ir::Parameter uniform_int(std::string name) { return {std::move(name), ir::int_type, "", true}; }
 

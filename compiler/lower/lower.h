@@ -44,7 +44,7 @@ struct LowerOptions {
 /// is an input has a parameter only where it is read, and one for each decoding.
 ///
 /// A pass becomes `shade` -> (color: vec4) with these parameters, as far as they are used:
-///   surface.position vec3, .normal vec3, .texcoord vec2, .view_direction vec3, .tangent vec3,
+///   surface.position vec3, .previous_position vec3, .normal vec3, .texcoord vec2, .view_direction vec3, .tangent vec3,
 ///     .bitangent vec3, .color vec4, .outline_normal vec3, .pixel_size float, .front_facing bool, and where the pass moves
 ///     vertices .shown_position vec3 for what lights are asked about; directions have length 1. In
 ///     world space; in others .position_object, .normal_view ...

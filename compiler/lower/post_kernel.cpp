@@ -187,6 +187,31 @@ std::function<ir::ValueId(const interface::Binding&)> screen_arguments(Kernel& k
   };
 }
 
+uint32_t add_backdrop_motion_kernel(ir::Module& module) {
+  Kernel k(module, "post", {int_parameter("x"), uniform_int("y")}, {{"color", ir::vector_type(4)}});
+  const auto screen = screen_arguments(k);
+  const Vec3 ray(k.b, screen(interface::bind(Screen::view_ray)));
+  const Vec2 coordinate(k.b, screen(interface::bind(Screen::coordinate)));
+  const Vec2 size(k.b, screen(interface::bind(Screen::size)));
+  // Of x, y and w.
+  const auto in_clip_space = [&](int first) {
+    const auto row = [&](int i) { return dot(k.load3(FrameBuffer::objects, k.constant(0), first + 3 * i), ray); };
+    return Vec3(row(0), row(1), row(2));
+  };
+  const Vec3 now = k.named("now", in_clip_space(0)), before = k.named("before", in_clip_space(9));
+  const Vec2 from_middle(coordinate[0] * Float(2.0f) - Float(1.0f), Float(1.0f) - coordinate[1] * Float(2.0f));
+  const Vec2 half_size(size[0] * Float(0.5f), size[1] * Float(-0.5f));
+  const Vec2 moved = k.named("moved", moved_pixels(k, from_middle, now[2], now - before, half_size));
+  const Int first = image_size(k, image_record::color, image_word::first);
+  const Int width = image_size(k, image_record::color, image_word::width);
+  const Int place = k.named("place", k.integer(1) * width + k.integer(0));
+  const Vec4 drawn = k.named("drawn", k.load4(FrameBuffer::layers, first + shift_left(place, Int(2)), 0));
+  const Bool is_drawn = drawn[3] > Float(0.0f);
+  const auto along = [&](int axis) { return select(is_drawn, drawn[axis], moved[axis]); };
+  k.b.finish(std::array{Vec4(along(0), along(1), Float(0.0f), Float(1.0f)).value});
+  return k.index;
+}
+
 void define_reads(ir::Module& module, const interface::Interface& interface) {
   for (const interface::HostFunction& read : interface.host)
     if (read.host == interface::Host::depth || read.host == interface::Host::image)

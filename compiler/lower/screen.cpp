@@ -104,9 +104,13 @@ void ScreenNeeds::add(const check::TypedGraph& graph, uint32_t index) {
   };
   if (const auto* value = std::get_if<nodes::Screen>(&node.row->lowering)) need(*value);
   if (const auto* what = std::get_if<nodes::Fetch>(&node.row->lowering)) {
-    if (*what == nodes::Fetch::color)
-      fetch(*what, images[post_image(ports[nodes::fetch_port::image].index)], ports[nodes::fetch_port::filter].index == 1);
-    if (*what == nodes::Fetch::depth) fetch(*what, images[depth_image], false);
+    switch (*what) {
+      case nodes::Fetch::color:
+        fetch(*what, images[post_image(ports[nodes::fetch_port::image].index)], ports[nodes::fetch_port::filter].index == 1);
+        break;
+      case nodes::Fetch::depth: fetch(*what, images[depth_image], false); break;
+      case nodes::Fetch::motion: fetch(*what, images[motion_image(graph)], false); break;
+    }
   }
   if (node.row->is<nodes::WorldPosition>()) {
     images[depth_image].read = true;
@@ -129,6 +133,13 @@ void ScreenNeeds::add(const check::TypedGraph& graph, const check::Operand& oper
   if (what != nullptr && *what == nodes::Fetch::depth && operand.output == linear)
     for (const Screen value : {Screen::depth_numerator, Screen::depth_denominator})
       values[static_cast<size_t>(value)] = true;
+}
+
+interface::ImageNumber motion_image(const check::TypedGraph& graph) {
+  const auto& images = graph.graph.images;
+  const auto found = std::ranges::find(images, graph::motion_image_name, &graph::InputImage::name);
+  support::assert_that(found != images.end(), "a graph that reads the motion lacks its image");
+  return post_image(1 + static_cast<size_t>(found - images.begin()));
 }
 
 std::vector<TapSum> tap_sums(const check::TypedGraph& graph) {

@@ -57,6 +57,9 @@ constexpr interface::ImageNumber post_image(size_t number) {
   return static_cast<interface::ImageNumber>(image_record::color + number);
 }
 
+/// The image that the node `motion` reads.
+interface::ImageNumber motion_image(const check::TypedGraph& graph);
+
 /// Declares the functions that read images, without bodies; `host` receives them.
 void declare_reads(ir::Module& module, interface::Interface& host, const check::TypedGraph& graph,
                    const ScreenNeeds& needs);
@@ -84,7 +87,7 @@ struct FetchOffset {
   ir::ValueId shift = ir::none;            ///< vec2, further, in widths and heights of the image
 };
 
-/// What nodes::Fetch::color and ::depth and nodes::WorldPosition give.
+/// What nodes::Fetch::color, ::motion and ::depth and nodes::WorldPosition give.
 nodes::Value fetch_color(ir::Builder& b, const ReadImage& image, const FetchOffset& offset, const ColorFilter& filter);
 /// The depth as it is stored.
 ir::ValueId fetch_depth(ir::Builder& b, const ReadImage& depth, const FetchOffset& offset, nodes::Edge edge);

@@ -262,7 +262,7 @@ uint32_t add_moving_vertex_kernel(ir::Module& module, const interface::Interface
   Kernel k(module, "vertex", {int_parameter("vertex"), uniform_int("object"), uniform_int("projected")},
            {{"clip", ir::vector_type(4)}});
   const Int object = k.integer(1);
-  SurfacePoint surface(k, object, attributes_of_vertex(k, k.integer(0)));
+  SurfacePoint surface(k, object, attributes_of_vertex(k, k.integer(0)), {}, record.previous);
   SurfaceArguments arguments(k, surface, object, record, ir::none);
   Vec3 position(k.b, k.b.call(interface.entry, arguments.of(interface))[0]);
   k.named("position", position);
@@ -308,7 +308,7 @@ uint32_t add_cutout_kernel(ir::Module& module, const interface::Interface& inter
            {{"drawn", ir::bool_type}, {"depth", ir::float_type}});
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
-                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
+                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)), record.previous);
   SurfaceArguments arguments(k, surface, object, record, ir::none);
   const ir::ValueId drawn = k.named("drawn", k.b.call(interface.entry, arguments.of(interface))[0]);
   k.b.finish(std::array{drawn, depth_of_pixel(k).value});
@@ -322,7 +322,7 @@ ir::ValueId color_of_pixel(Kernel& k, const interface::Interface& interface, con
                            std::optional<bool> has_environment) {
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
-                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)));
+                       seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)), record.previous);
   SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4), has_environment);
   return k.b.call(interface.entry, arguments.of(interface))[0];
 }
@@ -373,6 +373,43 @@ uint32_t add_blend_kernel(ir::Module& module, const interface::Interface& interf
   const Vec4 source = k.named("source", Vec4(k.b, color_of_pixel(k, interface, record, lights.environment)));
   const Vec4 color = k.named("color", blended(blend, source, k.vector4(5)));
   k.b.finish(std::array{color.value, depth_of_pixel(k).value});
+  return k.index;
+}
+
+Vec2 moved_pixels(Kernel& k, Vec2 from_middle, Float w, Vec3 change, Vec2 half_size) {
+  const Float w_before = k.named("w_before", w - change[2]);
+  const Bool was_in_front = w_before > Float(0.0f);
+  const auto along = [&](int axis) {
+    const Float moved = (change[axis] - from_middle[axis] * change[2]) / select(was_in_front, w_before, Float(1.0f));
+    const Float pixels = max(min(moved * half_size[axis], Float(farthest_motion)), Float(-farthest_motion));
+    return select(was_in_front, pixels, Float(0.0f));
+  };
+  return Vec2(along(0), along(1));
+}
+
+uint32_t add_motion_kernel(ir::Module& module) {
+  add_edges(module);
+  Kernel k(module, "pixel", pixel_parameters(), {{"color", ir::vector_type(4)}});
+  const Int x = k.integer(0), y = k.integer(1), triangle = k.integer(2);
+  const Attributes attributes = attributes_of_pixel(k, x, y, triangle);
+  const Vec3 change(k.b, attributes(3, vertex_word::corner_normals));
+  k.named("change", change.value);
+  const Vec3 edges(k.b, k.call("edges_at", {x.value, y.value, triangle.value})[0]);
+  const Int record = triangle * Int(triangle_word::stride);
+  const auto inverse_w = [&](int i) {
+    return from_bits_normal(k.load_int(FrameBuffer::triangles, record + Int(triangle_word::inverse_w + i)));
+  };
+  const Float area = (edges[0] + edges[1]) + edges[2];
+  const Float w = k.named("w", area / ((edges[0] * inverse_w(0) + edges[1] * inverse_w(1)) + edges[2] * inverse_w(2)));
+  const auto size = [&](int word) { return to_float(k.load_int(FrameBuffer::layer_records, k.constant(0), word)); };
+  const Vec2 half_size =
+      k.named("half_size", Vec2(size(image_word::width) * Float(0.5f), size(image_word::height) * Float(-0.5f)));
+  const auto from_middle = [&](Int pixel, int axis) {
+    return (to_float(pixel) + Float(0.5f) - abs(half_size[axis])) / half_size[axis];
+  };
+  const Vec2 moved = k.named(
+      "moved", moved_pixels(k, Vec2(from_middle(x, 0), from_middle(y, 1)), w, change, half_size));
+  k.b.finish(std::array{Vec4(moved[0], moved[1], Float(0.0f), Float(1.0f)).value});
   return k.index;
 }
 

@@ -76,6 +76,19 @@ uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interf
 uint32_t add_blend_kernel(ir::Module& module, const interface::Interface& interface,
                           const interface::RecordLayout& record, LightKinds lights, interface::Blend blend);
 
+/// What moves farther counts as this far, in pixels.
+inline constexpr float farthest_motion = 16384.0f;
+
+/// Adds `pixel`: how far what is seen has moved since the frame before, in pixels of the target, x to the right and y down;
+/// then 0 and 1. The vertices have in place of their corner normals, which nothing reads once vertices have their places,
+/// how much x, y and w in clip space have changed. What was behind the eye has not moved.
+uint32_t add_motion_kernel(ir::Module& module);
+
+/// Adds `post`, which completes such an image, its `color`: where alpha is 0, nothing is drawn, and the backdrop moves as the
+/// camera turns. The record has the rows x, y and w of the matrices from directions in world space to clip space of the
+/// camera, and then of the camera before.
+uint32_t add_backdrop_motion_kernel(ir::Module& module);
+
 /// Adds `eval` around `function`: its arguments are the words of record `row` of `inputs`, in order.
 uint32_t add_eval_kernel(ir::Module& module, uint32_t function);
 

@@ -158,6 +158,7 @@ std::array<Vec3, 3> SurfacePoint::linear(SpaceMatrix matrix) {
 ir::ValueId SurfacePoint::value(interface::SurfaceValue value) {
   switch (value.attribute) {
     case Surface::position: return position_in(value.space).value;
+    case Surface::previous_position: return previous_position().value;
     case Surface::normal: return normal_in(value.space, local_normal()).value;
     case Surface::texcoord: return attributes_(2, vertex_word::texcoord);
     case Surface::texcoord1: return attributes_(2, vertex_word::texcoord1);
@@ -193,6 +194,12 @@ Vec3 SurfacePoint::position() {
         k_.named("position", (weighted(linear(SpaceMatrix::world_from_object), local) + origin).value);
   }
   return Vec3(k_.b, position_);
+}
+
+Vec3 SurfacePoint::previous_position() {
+  if (previous_ < 0) return position();
+  const auto column = [&](int i) { return k_.load3(FrameBuffer::objects, object_, previous_ + 3 * i); };
+  return weighted<Vec3>({column(0), column(1), column(2)}, local_position()) + column(3);
 }
 
 Vec3 SurfacePoint::to_view(Vec3 point) {

@@ -33,9 +33,10 @@ Seen seen_at_pixel(Kernel& kernel, Int x, Int y, Int triangle);
 
 class SurfacePoint {
  public:
-  /// Of the object whose record begins at `object`.
-  SurfacePoint(Kernel& kernel, Int object, Attributes attributes, Seen seen = {})
-      : k_(kernel), object_(object), attributes_(std::move(attributes)), seen_(std::move(seen)) {}
+  /// Of the object whose record begins at `object`. `previous`: RecordLayout::previous, or -1 where nothing is known of the
+  /// frame before: then nothing has moved.
+  SurfacePoint(Kernel& kernel, Int object, Attributes attributes, Seen seen = {}, int previous = -1)
+      : k_(kernel), object_(object), attributes_(std::move(attributes)), seen_(std::move(seen)), previous_(previous) {}
 
   ir::ValueId value(interface::SurfaceValue value);
   Vec3 column(interface::SpaceMatrix matrix, uint32_t number);
@@ -57,6 +58,7 @@ class SurfacePoint {
   std::array<Vec3, 3> linear(interface::SpaceMatrix matrix);
 
   Vec3 position();
+  Vec3 previous_position();
   Vec3 position_in(interface::Space space);
   Float pixel_size();
   // Of any length, in object space.
@@ -73,6 +75,7 @@ class SurfacePoint {
   Int object_;
   Attributes attributes_;
   Seen seen_;
+  int previous_;
   ir::ValueId local_position_ = ir::none;
   ir::ValueId local_normal_ = ir::none;
   ir::ValueId local_outline_normal_ = ir::none;

@@ -43,6 +43,7 @@ std::string types_text(TypeSet types) {
 std::string surface_text(SurfaceValue value) {
   constexpr std::string_view names[] = {"position",
                                         "position that is seen",
+                                        "position at the frame before",
                                         "normal",
                                         "texture coordinates",
                                         "second texture coordinates",

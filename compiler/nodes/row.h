@@ -102,11 +102,11 @@ enum class Environment : uint8_t { radiance, irradiance };
 /// Sums its input over the lights.
 struct SumLights {};
 
-/// Reads an image of the post chain, or the scene's depth, at an offset from the pixel. In an effect: the color or the
-/// depth of what is opaque.
-enum class Fetch : uint8_t { color, depth };
+/// Reads an image of the post chain, the scene's depth, or what moved, at an offset from the pixel. In an effect: the color
+/// or the depth of what is opaque.
+enum class Fetch : uint8_t { color, depth, motion };
 
-/// The ports of the rows `scenecolor` and `scenedepth`.
+/// The ports of the rows `scenecolor`, `scenedepth` and `motion`.
 namespace fetch_port {
 inline constexpr size_t image = 0, filter = 4, nonfinite = 5;  ///< of scenecolor alone
 constexpr size_t offset_x(Fetch what) { return what == Fetch::color ? 1 : 0; }
@@ -186,7 +186,8 @@ struct Row {
     if (is<Surface>() || is<Transform>() || is<Repetition>() || is<Light>() || is<SumLights>() || is<Derivative>() ||
         is<Image>())
       return Availability::effects;
-    if (is<Fetch>()) return Availability::pictures;
+    if (const auto* what = std::get_if<Fetch>(&lowering))
+      return *what == Fetch::motion ? Availability::posts : Availability::pictures;
     const bool screen = is<Screen>() || is<WorldPosition>() || is<SumTaps>() || is<TapIndex>();
     return screen ? Availability::posts : Availability::anywhere;
   }

@@ -56,6 +56,14 @@ std::vector<Row> screen_rows() {
        {offset_x, offset_y, edge, shift},
        {{"out", Float}, {"linear", Float}, {"issky", Boolean}},
        Fetch::depth},
+      {"motion",
+       "How far what the pixel shows has moved since the frame before, in pixels: x to the right, y down, at most 16384 each "
+       "way. Where the scene draws nothing, it is how the backdrop moves as the camera turns (0 for an orthographic camera); "
+       "of what was behind the camera it is 0. Drawn with one sample a pixel; what is blended counts only where it writes "
+       "depth.",
+       {offset_x, offset_y, edge, shift},
+       Vector2,
+       Fetch::motion},
       {"worldposition",
        "The position of the surface that the pixel shows. To subtract another point without cancellation far from the "
        "origin, use the space \"camera\" and subtract the point from `cameraposition`.",

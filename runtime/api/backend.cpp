@@ -58,7 +58,6 @@ bool apply(const RenderOptions& options, scene::Scene& scene, Diagnostics& diagn
     diagnostics.report(support::Id::out_of_range, "a pixel has 1, 4 or 16 samples");
     return false;
   }
-  if (options.time) scene.time = *options.time;
   if (options.samples != 0) {
     scene.samples = options.samples;
     scene.samples_where = {};
@@ -69,7 +68,7 @@ bool apply(const RenderOptions& options, scene::Scene& scene, Diagnostics& diagn
 /// Draws the scene of `source` with a backend that no other thread uses meanwhile.
 bool draw(const support::Source& source, const RenderOptions& options, check::Library& library,
           backends::Backend& backend, const std::string& cache, Image& result, Diagnostics& diagnostics) {
-  auto scene = scene::load_scene(source, options.settings, library.files(), diagnostics);
+  auto scene = scene::load_scene(source, options.settings, library.files(), diagnostics, options.time);
   if (!scene || !apply(options, *scene, diagnostics)) return false;
   render::PlanOptions plan_options;
   plan_options.width = options.width;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cli/argument_texts.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
@@ -20,7 +21,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 std::optional<int> parse_count(const std::string& digits, int most) {
-  if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)
+  if (digits.empty() || digits.size() > 6 || digits.find_first_not_of("0123456789") != std::string::npos)
     return std::nullopt;
   const int count = std::stoi(digits);
   return count >= 1 && count <= most ? std::optional(count) : std::nullopt;
@@ -87,6 +88,49 @@ std::optional<VariedParameter> parse_varied(const std::string& text) {
     if (value.empty()) return std::nullopt;
   if (steps.size() != 1 || varied.values.size() > static_cast<size_t>(most)) return std::nullopt;
   return varied;
+}
+
+std::optional<FrameTimes> parse_frames(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ':');
+  if (parts.size() != 3) return std::nullopt;
+  const auto time = [](const std::string& part) {
+    const auto number = support::parse_float_in_range(part);
+    return number && *number >= -1e9f && *number <= 1e9f ? number : std::nullopt;
+  };
+  const auto from = time(parts[0]), to = time(parts[1]);
+  const auto count = parse_count(parts[2], 999'999);
+  return from && to && count && *from <= *to ? std::optional(FrameTimes{*from, *to, *count}) : std::nullopt;
+}
+
+std::optional<NumberedPath> NumberedPath::parse(const std::string& text) {
+  NumberedPath path;
+  bool has_field = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    std::string& part = has_field ? path.after_ : path.before_;
+    if (text[i] != '%') {
+      part += text[i];
+      continue;
+    }
+    if (i + 1 < text.size() && text[i + 1] == '%') {
+      part += '%';
+      ++i;
+      continue;
+    }
+    size_t end = i + 1;
+    while (end < text.size() && text[end] >= '0' && text[end] <= '9') ++end;
+    const std::string digits = text.substr(i + 1, end - i - 1);
+    if (has_field || end == text.size() || text[end] != 'd' || digits.size() > 3) return std::nullopt;
+    has_field = true;
+    path.fill_ = digits.starts_with('0') ? '0' : ' ';
+    path.width_ = digits.empty() ? 0 : static_cast<size_t>(std::stoi(digits));
+    i = end;
+  }
+  return has_field ? std::optional(path) : std::nullopt;
+}
+
+std::string NumberedPath::of(int number) const {
+  const std::string digits = std::to_string(number);
+  return before_ + std::string(width_ - std::min(width_, digits.size()), fill_) + digits + after_;
 }
 
 }  // namespace isoshade::cli

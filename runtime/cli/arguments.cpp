@@ -53,6 +53,15 @@ const CLI::Validator time_text(
     },
     "SECONDS");
 
+const CLI::Validator frames_text(
+    [](std::string& text) {
+      return parse_frames(text) ? std::string()
+                                : "\"" + text +
+                                      "\" does not tell the frames: write FIRST:LAST:COUNT, two times in seconds and how "
+                                      "many frames, for example 0:2:48";
+    },
+    "FIRST:LAST:COUNT");
+
 const CLI::Validator limit_text(
     [](std::string& text) {
       const auto limit = support::parse_float_in_range(text);
@@ -243,11 +252,13 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   RenderArguments render;
   std::string render_size;
+  std::string render_frames;
   CLI::App* render_app = app.add_subcommand("render", "Render a scene to an image");
   render_app->add_option("SCENE", render.scene, "A scene document")->required();
   render_app
       ->add_option("-o,--output", render.output,
-                   "FILE.png (encoded, 8 bits) or FILE.exr (linear floats, with depth)")
+                   "FILE.png (encoded, 8 bits) or FILE.exr (linear floats, with depth). With --frames a name with a field "
+                   "for the number, frame_%04d.png, or one FILE.apng or FILE.gif")
       ->required();
   render_app
       ->add_option(
@@ -261,6 +272,14 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   add_fail_on_nan(*render_app, render.fail_on_nan);
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
+  CLI::Option* frames_option =
+      render_app
+          ->add_option("--frames", render_frames,
+                       "Render an animation: COUNT frames at equal steps of time, the first and the last included")
+          ->check(frames_text)
+          ->excludes(render_app->get_option("--time"));
+  render_app->add_flag("--turntable", render.turntable, "Turn the camera once about its target over the frames")
+      ->needs(frames_option);
   add_lanes(*render_app, render.choice);
   add_choice(*render_app, render.choice);
 
@@ -441,6 +460,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       parsed.common.disabled.push_back(warning.substr(3));
   }
   if (!render_size.empty()) render.size = parse_size(render_size);
+  if (!render_frames.empty()) render.frames = parse_frames(render_frames);
   if (!sheet_size.empty()) sheet.size = parse_size(sheet_size);
   for (const std::string& text : varied) sheet.axes.push_back(*parse_varied(text));
   for (const std::string& text : verify_sizes) verify.sizes.push_back(*parse_size(text));

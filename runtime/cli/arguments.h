@@ -59,11 +59,19 @@ struct CompileArguments {
   std::string dump_after;
 };
 
+/// Times of pictures: `count` of them from `first` to `last`, both included.
+struct FrameTimes {
+  float first = 0, last = 0;
+  int count = 1;
+};
+
 struct RenderArguments {
   std::string scene;
   std::string output;
   std::string backend = "cpu";
   std::optional<Size> size;
+  std::optional<FrameTimes> frames;
+  bool turntable = false;  ///< the camera turns once about its target over the frames
   SceneChanges changes;
   bool stats = false;
   bool fail_on_nan = false;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // isoshade render: renders a scene to an image file.
-#include "runtime/render/render.h"
+#include "runtime/cli/frames.h"
 
 #include <cstdio>
 
-#include "runtime/cli/session.h"
 #include "runtime/scene/image_file.h"
 #include "runtime/scene/load.h"
 #include "runtime/scene/mesh_formats.h"
@@ -46,10 +45,9 @@ std::optional<scene::Scene> load_scene(const std::string& path, const SceneChang
                                        const Common& common, support::Diagnostics& diagnostics) {
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return std::nullopt;
-  auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics);
+  auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics, changes.time);
   if (!scene) return std::nullopt;
   if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
-  if (changes.time) scene->time = *changes.time;
   if (changes.samples) {
     scene->samples = *changes.samples;
     scene->samples_where = {};
@@ -63,28 +61,14 @@ namespace {
 int render_to_file(const RenderArguments& arguments, const Common& common,
                    support::Diagnostics& diagnostics) {
   if (!scene::check_image_path(arguments.output, diagnostics)) return failure;
-  auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
+  const auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
   if (!scene) return failure;
-  check::Library library = make_library(common);
-  render::PlanOptions options;
-  if (arguments.size) {
-    options.width = arguments.size->width;
-    options.height = arguments.size->height;
-  }
-  options.compiler.library = &library;
-  options.compiler.reference = arguments.backend == "reference";
-  options.compiler.tier = arguments.precision;
-  const auto plan = render::plan_frame(*scene, options, diagnostics);
+  SceneRenderer renderer(arguments, common);
+  const auto plan = renderer.plan(*scene, diagnostics);
   if (!plan || !may_write(arguments.output, diagnostics)) return failure;
-  const auto backend = make_backend(arguments.backend, arguments.choice, common, diagnostics);
-  if (backend == nullptr) return failure;
-  progress(common, "rendering on " + backend->description());
   backends::Image image;
   render::DrawStats stats;
-  if (!render::render(*plan, *backend, image, stats, diagnostics)) return failure;
-  if (arguments.stats)
-    std::fputs((backend->description() + "\n" + render::text(plan->stats) + render::text(stats)).c_str(),
-               stderr);
+  if (!renderer.draw(*plan, image, stats, diagnostics)) return failure;
   const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
   if (!scene::write_image(arguments.output, view, scene->output.encoding, scene->output.exposure,
                           diagnostics))
@@ -97,9 +81,38 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
 
 }  // namespace
 
+SceneRenderer::SceneRenderer(const RenderArguments& arguments, const Common& common)
+    : arguments_(arguments), common_(common), library_(make_library(common)) {}
+
+std::optional<render::Plan> SceneRenderer::plan(const scene::Scene& scene, support::Diagnostics& diagnostics) {
+  render::PlanOptions options;
+  if (arguments_.size) {
+    options.width = arguments_.size->width;
+    options.height = arguments_.size->height;
+  }
+  options.compiler.library = &library_;
+  options.compiler.reference = arguments_.backend == "reference";
+  options.compiler.tier = arguments_.precision;
+  return render::plan_frame(scene, options, diagnostics);
+}
+
+bool SceneRenderer::draw(const render::Plan& plan, backends::Image& image, render::DrawStats& stats,
+                         support::Diagnostics& diagnostics) {
+  if (backend_ == nullptr) {
+    backend_ = make_backend(arguments_.backend, arguments_.choice, common_, diagnostics);
+    if (backend_ == nullptr) return false;
+    progress(common_, "rendering on " + backend_->description());
+  }
+  if (!render::render(plan, *backend_, image, stats, diagnostics)) return false;
+  if (arguments_.stats)
+    std::fputs((backend_->description() + "\n" + render::text(plan.stats) + render::text(stats)).c_str(), stderr);
+  return true;
+}
+
 int render(const RenderArguments& arguments, const Common& common) {
   support::Diagnostics diagnostics = make_diagnostics(common);
-  const int result = render_to_file(arguments, common, diagnostics);
+  const int result = arguments.frames ? render_frames(arguments, common, diagnostics)
+                                      : render_to_file(arguments, common, diagnostics);
   return flush(diagnostics, common) ? failure : result;
 }
 

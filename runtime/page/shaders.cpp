@@ -83,6 +83,11 @@ class Compiler {
 
 std::optional<Shaders> compile_shaders(const render::Plan& plan, const PageOptions& options,
                                        support::Diagnostics& diagnostics) {
+  if (plan.motion) {
+    diagnostics.report(support::Id::unsupported, "a post reads the motion since the frame before, which a page does not draw")
+        .suggest("leave the post out, or draw the scene with `isoshade render`");
+    return std::nullopt;
+  }
   Compiler compiler(options, diagnostics);
   Shaders& shaders = compiler.shaders();
   for (const driver::Effect& effect : plan.effects) {

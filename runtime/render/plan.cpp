@@ -146,18 +146,19 @@ void Planner::note_largest_mesh(const Object& object, const StoredMesh& mesh) {
       "the mesh of " + quote(object.name) + ": " + std::to_string(count) + " vertices", object.mesh_where};
 }
 
-/// Resolves the parameters of the next object for each part of its mesh.
-bool Planner::resolve_parts(const Object& object, const driver::Effect& effect, const StoredMesh& mesh,
-                            const FindTexture& find_texture) {
-  std::vector<ParameterValues>& parameters = parameters_.emplace_back();
+/// Resolves the parameters of an object for each part of its mesh.
+std::optional<std::vector<ParameterValues>> Planner::resolve_parts(const Object& object, const driver::Effect& effect,
+                                                                   const StoredMesh& mesh,
+                                                                   const FindTexture& find_texture) {
+  std::vector<ParameterValues> parameters;
   for (const MeshPart& part : mesh.parts) {
     const scene::Material* material = part.material ? &*part.material : nullptr;
     const ParameterGiver giver{object.name, object.parameters, object.repeat, material, object.mesh_where};
     auto resolved = ParameterValues::resolve(effect.parameters, giver, find_texture, diagnostics_);
-    if (!resolved) return false;  // further parts would report the same again
+    if (!resolved) return std::nullopt;  // further parts would report the same again
     parameters.push_back(*std::move(resolved));
   }
-  return true;
+  return parameters;
 }
 
 /// Of all passes over a part of one copy, in one view.
@@ -198,9 +199,15 @@ bool Planner::make_objects() {
     // After an error the rest is only checked for further errors.
     const auto number = good ? find_mesh(object) : std::nullopt;
     const StoredMesh& mesh = number ? plan_.meshes[*number] : no_mesh;
-    const bool resolved = resolve_parts(object, effect, mesh, find_texture);
-    good = good && number.has_value() && resolved;
-    if (!good) {
+    auto resolved = resolve_parts(object, effect, mesh, find_texture);
+    good = good && number.has_value() && resolved.has_value();
+    parameters_.push_back(std::move(resolved).value_or(std::vector<ParameterValues>()));
+    if (good && !before_.objects.empty()) {
+      auto earlier = resolve_parts(before(o), effect, mesh, find_texture);
+      good = earlier.has_value();
+      parameters_before_.push_back(std::move(earlier).value_or(std::vector<ParameterValues>()));
+    }
+    if (!good || !number) {
       if (diagnostics_.full()) return false;
       continue;
     }
@@ -249,6 +256,7 @@ std::optional<Plan> Planner::plan() {
   const bool effects = compile_effects();
   if (!compile_posts() || !effects) return std::nullopt;
   plan_.stats.compile_seconds = clock.lap();
+  if (scene_.before != nullptr && scene_.before->objects.size() == scene_.objects.size()) before_ = *scene_.before;
   if (!make_objects()) return std::nullopt;
   textures_.store(plan_.frame);
   const std::optional<int> environment = add_environment();
@@ -262,11 +270,14 @@ std::optional<Plan> Planner::plan() {
     const lanes::FpGuard guard;
     frame.frame = frame_words(scene_, *environment);
     add_views(width, height, side);
+    begin_motion(width, height);
     for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
     append_blended();
+    finish_motion();
     auto posts = plan_posts(scene_, posts_, width, height, options_.skip, plan_.stats.skips, diagnostics_);
     if (!posts) return std::nullopt;
     plan_.posts = *std::move(posts);
+    if (plan_.motion && !plan_.posts.reads_motion()) plan_.motion.reset();
   }
   frame.light_count = static_cast<int>(scene_.lights.size());
 

@@ -37,6 +37,15 @@ struct RecordOrigin {
   const driver::EffectPass* pass;
 };
 
+/// How far what the picture shows has moved since the frame before. Both views have the same draws in the same order:
+/// the picture's that write depth.
+struct MotionPlan {
+  backends::View before;        ///< places the vertices where they were
+  backends::View now;           ///< draws the motion
+  std::vector<float> backdrop;  ///< the record of driver::backdrop_motion_program
+  const driver::Program* complete = nullptr;  ///< that program
+};
+
 /// A frame and everything that it points to. It is made once; any number of backends draw it. It can be moved: what the
 /// frame points to keeps its address.
 struct Plan {
@@ -46,6 +55,7 @@ struct Plan {
   int samples = 1;        ///< in each pixel of the picture: 1, 4 or 16
   backends::Frame frame;  ///< the target of the picture has the size in samples, see render/samples.h
   std::vector<RecordOrigin> origins;  ///< of all records of frame.objects, in their order
+  std::optional<MotionPlan> motion;  ///< if a post reads it
   PostChain posts;
   PlanStats stats;
 

@@ -67,7 +67,9 @@ void Planner::place_pass(size_t o, size_t p, const Copy& copy, std::span<const s
       PassPrograms programs = programs_of_effect_[effect_of_object_[o]][p];
       const bool blended = pass.blend && !effect.parameters.is_off(pass.blended, values);
       if (blended) programs.pixel = programs.blend;
-      backends::Draw draw = make_draw(copy.place, programs, parts[part], {repetition, counts[part]}, values);
+      std::vector<float> words = values;
+      if (effect.reads_previous) append_columns(place_of(before(o), copy.instance).model, words);
+      backends::Draw draw = make_draw(copy.place, programs, parts[part], {repetition, counts[part]}, words);
       draw.state = pass.state;
       draw.blended = blended;
       if (effect.parameters.is_on(pass.double_sided, values)) draw.state.cull = interface::Cull::none;
@@ -84,6 +86,11 @@ void Planner::place_pass(size_t o, size_t p, const Copy& copy, std::span<const s
           seen.blended = false;
         }
         place_draw(seen, copy.views[v], v);
+        const bool writes_depth = !blended || pass.state.depth_write == interface::DepthWrite::on;
+        if (plan_.motion && v + 1 == copy.views.size() && writes_depth) {
+          seen.projected = copy.views[v].matrix;
+          place_motion(o, copy, part, seen, copy.views[v]);
+        }
       }
       if (counts[part] > 1) plan_.stats.repetitions += plan_.stats.draws - before;
     }

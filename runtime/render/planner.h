@@ -44,8 +44,8 @@ class Planner {
   bool make_objects();
   std::optional<size_t> find_mesh(const scene::Object& object);
   void note_largest_mesh(const scene::Object& object, const StoredMesh& mesh);
-  bool resolve_parts(const scene::Object& object, const driver::Effect& effect, const StoredMesh& mesh,
-                     const FindTexture& find_texture);
+  std::optional<std::vector<ParameterValues>> resolve_parts(const scene::Object& object, const driver::Effect& effect,
+                                                            const StoredMesh& mesh, const FindTexture& find_texture);
   int64_t most_draws(const driver::Effect& effect, const ParameterValues& values) const;
   void place_object(size_t o);
   /// Adds a view. The camera and the size of a pixel are those of an image of this size.
@@ -83,6 +83,16 @@ class Planner {
   /// Adds the draws that are blended to each view, behind all others.
   void append_blended();
 
+  // How far things have moved (plan_motion.cpp), if a post reads that.
+  /// The same object at the frame before.
+  const scene::Object& before(size_t o) const { return before_.objects.empty() ? scene_.objects[o] : before_.objects[o]; }
+  void begin_motion(int width, int height);
+  /// A program that draws motion, with the cut-out of a pixel program.
+  uint32_t motion_program(uint32_t pixel);
+  /// Adds a draw of the picture to both views.
+  void place_motion(size_t o, const Copy& copy, size_t part, const backends::Draw& draw, const Appearance& appearance);
+  void finish_motion();
+
   const scene::Scene& scene_;
   const PlanOptions& options_;
   support::Diagnostics& diagnostics_;
@@ -99,6 +109,15 @@ class Planner {
   std::vector<std::vector<PassPrograms>> programs_of_effect_;
   std::map<std::string, uint32_t> program_by_text_;
   std::vector<std::vector<ParameterValues>> parameters_;  ///< of each object, for each part of its mesh
+  scene::Scene before_;                                   ///< the frame before; without objects if none has changed
+  std::vector<std::vector<ParameterValues>> parameters_before_;  ///< empty if none has changed
+  struct MovedDraw {
+    float nearness;  ///< of what is blended; the rest is drawn first
+    backends::Draw now, before;
+  };
+  std::vector<MovedDraw> moved_, moved_blended_;
+  glm::mat4 projection_before_{1};
+  std::map<uint32_t, uint32_t> motion_programs_;  ///< by the program of the cut-out
   MeshStore meshes_;
   uint32_t most_vertices_ = 0;  ///< of a mesh
   std::vector<size_t> mesh_of_object_;

@@ -70,6 +70,7 @@ bool ChainPlanner::find_sources(size_t p, Planned& planned) {
   const driver::Post& document = *documents_[p];
   bool good = true;
   planned.sources.assign(1 + document.images.size(), scene::no_image);
+  if (document.motion) planned.sources[1 + *document.motion] = scene::motion_image;
   planned.sources[0] = p == 0 ? scene::scene_image : static_cast<int>(p) - 1;
   std::vector<std::string_view> names{graph::post_output};
   names.insert(names.end(), document.images.begin(), document.images.end());
@@ -109,7 +110,8 @@ bool ChainPlanner::read_post(size_t p) {
       ParameterValues::resolve(document.parameters, {post.name, post.parameters}, {}, diagnostics_);
   if (!values || !has_sources) return false;
   planned.record = values->words({}, {});
-  if (!skip_ || !document.parameters.is_off(document.enabled, planned.record)) return true;
+  const bool has_image = planned.sources[0] != scene::motion_image;  // one that it could pass on
+  if (!skip_ || !has_image || !document.parameters.is_off(document.enabled, planned.record)) return true;
   planned.runs = false;
   const std::string& parameter = document.parameters.fields[*document.enabled].name;
   skips_.push_back({"post " + post.name, parameter + " is 0"});
@@ -117,7 +119,7 @@ bool ChainPlanner::read_post(size_t p) {
 }
 
 int ChainPlanner::passed_on(int image) const {
-  while (image != scene::scene_image && !planned_[static_cast<size_t>(image)].runs)
+  while (image >= 0 && !planned_[static_cast<size_t>(image)].runs)
     image = planned_[static_cast<size_t>(image)].sources[0];
   return image;
 }
@@ -126,7 +128,7 @@ int ChainPlanner::passed_on(int image) const {
 void ChainPlanner::drop_unread() {
   std::vector<bool> read(planned_.size());
   const auto mark = [&](int image) {
-    if (const int real = passed_on(image); real != scene::scene_image) read[static_cast<size_t>(real)] = true;
+    if (const int real = passed_on(image); real >= 0) read[static_cast<size_t>(real)] = true;
   };
   mark(static_cast<int>(planned_.size()) - 1);
   for (size_t p = planned_.size(); p-- > 0;) {
@@ -198,6 +200,7 @@ std::optional<PostChain> ChainPlanner::plan() {
   std::vector<int> number(planned_.size());
   const auto number_of = [&](int image) {
     const int real = passed_on(image);
+    if (real == scene::motion_image) return PostStep::motion;
     return real == scene::scene_image ? 0 : number[static_cast<size_t>(real)];
   };
   chain.last_reader.push_back(PostChain::none);
@@ -214,7 +217,7 @@ std::optional<PostChain> ChainPlanner::plan() {
     for (size_t i = 0; i < planned_[p].sources.size(); ++i) {
       const bool reads = documents_[p]->reads[i];
       step.sources.push_back(reads ? number_of(planned_[p].sources[i]) : PostStep::not_read);
-      if (reads) chain.last_reader[static_cast<size_t>(step.sources.back())] = this_step;
+      if (reads && step.sources.back() != PostStep::motion) chain.last_reader[static_cast<size_t>(step.sources.back())] = this_step;
     }
     chain.steps.push_back(std::move(step));
     chain.last_reader.push_back(PostChain::none);
@@ -238,13 +241,14 @@ void note_non_finite(const PostStep& step, const std::vector<Layer>& layers, Lay
   report.result = find_non_finite(made.rgba, made.width);
   made.finite = report.result.count == 0;
   const bool read_finite = std::ranges::all_of(step.sources, [&](int source) {
-    return source == PostStep::not_read || layers[static_cast<size_t>(source)].finite;
+    return source < 0 || layers[static_cast<size_t>(source)].finite;
   });
   if (!made.finite && read_finite) report.posts.push_back({step.post_number, report.result});
 }
 
 /// The images that a step reads.
-Layers layers_of(const PostStep& step, const std::vector<Layer>& images, const backends::Image& image) {
+Layers layers_of(const PostStep& step, const std::vector<Layer>& images, const backends::Image& image,
+                 const backends::Image& motion) {
   Layers layers(step.width, step.height);
   if (step.post->reads_depth)
     layers.add(image.depth, image.width, image.height);
@@ -257,6 +261,8 @@ Layers layers_of(const PostStep& step, const std::vector<Layer>& images, const b
       layers.add_unread();
     } else if (same < i) {
       layers.add_again(lower::image_record::color + same);
+    } else if (source == PostStep::motion) {
+      layers.add(motion.rgba, motion.width, motion.height);
     } else {
       const Layer& read = images[static_cast<size_t>(source)];
       layers.add(read.rgba, read.width, read.height);
@@ -321,8 +327,8 @@ bool run_sample_posts(const PostChain& chain, const backends::Frame& frame, int 
   return true;
 }
 
-bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, backends::Backend& backend,
-               backends::Image& image, DrawStats& stats, Diagnostics& diagnostics) {
+bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, const backends::Image& motion,
+               backends::Backend& backend, backends::Image& image, DrawStats& stats, Diagnostics& diagnostics) {
   if (first == chain.steps.size()) return true;
   std::vector<Layer> layers(1 + chain.steps.size());
   layers[first] = {image.width, image.height, std::move(image.rgba), stats.non_finite.result.count == 0};
@@ -334,7 +340,7 @@ bool run_posts(const PostChain& chain, size_t first, const backends::Frame& fram
     made.height = step.height;
     stats.kept_images = std::max(stats.kept_images, ++kept);
     {
-      const Layers arrays = layers_of(step, layers, image);
+      const Layers arrays = layers_of(step, layers, image, motion);
       const backends::ScreenPass pass = pass_of(step, frame, arrays);
       if (!backend.post(pass, made.rgba, diagnostics)) return false;
     }

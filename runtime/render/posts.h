@@ -2,6 +2,7 @@
 // The post chain: which posts process which images, and how long each image is kept.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct PostStep {
   /// The image that it processes, then those that its document lists; not_read if the program does not read it.
   std::vector<int> sources;
   size_t post_number = 0;  ///< in Scene::posts
-  static constexpr int not_read = -1;
+  static constexpr int not_read = -1, motion = -2;  ///< motion: how far things have moved, which is not numbered
 };
 
 /// The posts that run for a scene, in order.
@@ -32,6 +33,12 @@ struct PostChain {
   /// the depth, if all of them look at no pixel but their own, and nothing else reads what they make.
   size_t sample_steps = 0;
   static constexpr int none = -1;
+
+  bool reads_motion() const {
+    return std::ranges::any_of(steps, [](const PostStep& step) {
+      return std::ranges::find(step.sources, PostStep::motion) != step.sources.end();
+    });
+  }
 
   /// Whether no step after this one needs an earlier image.
   bool is_done(size_t image, size_t step) const {
@@ -55,8 +62,9 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
 bool run_sample_posts(const PostChain& chain, const backends::Frame& frame, int first_row, backends::Backend& backend,
                       backends::Image& samples, DrawStats& stats, support::Diagnostics& diagnostics);
 
-/// Runs the chain over the image of the frame, from step `first` on. Does not change the depth.
-bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, backends::Backend& backend,
-               backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
+/// Runs the chain over the image of the frame, from step `first` on. Does not change the depth. `motion` has pixels if a step
+/// reads it.
+bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, const backends::Image& motion,
+               backends::Backend& backend, backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::render

@@ -36,6 +36,11 @@ void append_object(const ObjectTransforms& place, uint32_t pixel_program, Repeti
   objects.insert(objects.end(), parameters.begin(), parameters.end());
 }
 
+void append_columns(const glm::mat4& model, std::vector<float>& words) {
+  words.resize(words.size() + 12);
+  store_rows(model, 3, &words[words.size() - 12]);
+}
+
 std::vector<float> frame_words(const scene::Scene& scene, int environment) {
   std::vector<float> words(lower::frame_word::count);
   words[lower::frame_word::time] = scene::canonical(scene.time);

@@ -31,6 +31,9 @@ struct Repetition {
 void append_object(const ObjectTransforms& place, uint32_t pixel_program, Repetition repetition,
                    std::span<const float> parameters, std::vector<float>& objects);
 
+/// Appends four columns of 3, as object_word::model.
+void append_columns(const glm::mat4& model, std::vector<float>& words);
+
 /// The words of lower::frame_word. `environment`: its first record, or -1.
 std::vector<float> frame_words(const scene::Scene& scene, int environment);
 

@@ -2,11 +2,13 @@
 #include "runtime/render/render.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/memory.h"
+#include "runtime/lanes/float_rules.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/records.h"
@@ -31,6 +33,7 @@ uint64_t image_bytes(const Plan& plan) {
     if (is_picture && !plan.posts.steps.empty())
       sum += pixels(view.target.width / side, view.target.height / side) * color;
   }
+  if (plan.motion) sum += 2 * pixels(plan.motion->now.target.width, plan.motion->now.target.height) * color;
   uint64_t of_posts = 0;
   for (const PostStep& step : plan.posts.steps)
     of_posts = std::max(of_posts, pixels(step.width, step.height) * color);
@@ -55,7 +58,9 @@ class FrameRenderer {
       if (!draw_view(v, v + 1 == frame_.views.size() ? image : targets_[v])) return false;
       release_unread(v);
     }
-    if (!run_posts(plan_.posts, sample_steps(), frame_, backend_, image, stats_, diagnostics_)) return false;
+    backends::Image motion;
+    if (plan_.motion && !draw_motion(*plan_.motion, motion)) return false;
+    if (!run_posts(plan_.posts, sample_steps(), frame_, motion, backend_, image, stats_, diagnostics_)) return false;
     stats_.post_seconds = lap();
     return true;
   }
@@ -121,6 +126,66 @@ class FrameRenderer {
       return false;
     stats_.draw_seconds += lap();
     return true;
+  }
+
+  /// Draws the motion with one sample a pixel.
+  bool draw_motion(const MotionPlan& motion, backends::Image& image) {
+    const backends::View& view = motion.now;
+    const auto [width, height] = std::pair(view.target.width, view.target.height);
+    const Layers layers(width, height);
+    const backends::ViewPass before{frame_, motion.before, layers.floats, layers.records};
+    const backends::ViewPass now{frame_, view, layers.floats, layers.records};
+    std::vector<std::vector<float>> clip_before, clip;
+    if (!backend_.transform(before, clip_before, diagnostics_) || !backend_.transform(now, clip, diagnostics_))
+      return false;
+    vertices_.clear();
+    std::vector<uint32_t> first_vertices;
+    for (size_t d = 0; d < view.draws.size(); ++d) {
+      first_vertices.push_back(static_cast<uint32_t>(vertices_.size() / lower::vertex_word::stride));
+      append_moved(view.draws[d], clip[d], clip_before[d]);
+    }
+    triangles_.clear();
+    for (size_t d = 0; d < view.draws.size(); ++d) {
+      const backends::Draw& draw = view.draws[d];
+      raster::clip_and_snap({clip[d], draw.indices, first_vertices[d], draw.state, draw.object, draw.mirrored,
+                             draw.cutout, false, {}},
+                            width, height, vertices_, triangles_);
+    }
+    backends::Image drawn;
+    if (!backend_.draw(now, vertices_, triangles_, drawn, diagnostics_)) return false;
+    Layers images(width, height);
+    images.add_unread(width, height);
+    images.add(drawn.rgba, width, height);
+    const backends::ScreenPass pass{.program = motion.complete,
+                                    .width = width,
+                                    .height = height,
+                                    .frame = frame_.frame,
+                                    .view = std::span(view.words).first(lower::view_word::camera_words),
+                                    .record = motion.backdrop,
+                                    .layers = images.floats,
+                                    .layer_records = images.records};
+    image.resize(width, height);
+    return backend_.post(pass, image.rgba, diagnostics_);
+  }
+
+  /// Appends the vertices of a draw with how far they have moved, see lower::add_motion_kernel.
+  void append_moved(const backends::Draw& draw, std::span<const float> now, std::span<const float> before) {
+    namespace word = lower::vertex_word;
+    const lanes::FpGuard guard;
+    const auto first = frame_.vertices.begin() + static_cast<ptrdiff_t>(draw.first_vertex) * word::stride;
+    const size_t begin = vertices_.size();
+    vertices_.insert(vertices_.end(), first, first + static_cast<ptrdiff_t>(draw.vertex_count) * word::stride);
+    for (size_t i = 0; i < draw.vertex_count; ++i) {
+      float change[3];
+      bool is_known = true;
+      for (size_t c = 0; c < 3; ++c) {
+        const size_t from = 4 * i + (c == 2 ? 3 : c);  // x, y, w
+        change[c] = now[from] - before[from];
+        is_known = is_known && std::isfinite(change[c]);
+      }
+      for (size_t c = 0; c < 3; ++c)
+        vertices_[begin + i * word::stride + word::corner_normals + c] = is_known ? change[c] : 0.0f;
+    }
   }
 
   /// Frees the targets that no view after `v` reads.

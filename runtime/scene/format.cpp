@@ -87,6 +87,8 @@ struct ValueText {
   std::string operator()(const Literals&) const { return "list of values"; }
   std::string operator()(const MapOfLiterals&) const { return "object: name to value"; }
   std::string operator()(const MapOfNames&) const { return "object: name to name"; }
+  std::string operator()(const Keyframes&) const { return "list of [number, value]"; }
+  std::string operator()(const MapOfPaths& t) const { return "object: path to " + title(t.object); }
   std::string operator()(const ObjectOf& t) const { return title(t.object); }
   std::string operator()(const MapOf& t) const {
     const std::string most = t.most == no_limit ? "" : ", at most " + std::to_string(t.most);
@@ -161,7 +163,7 @@ std::vector<std::string_view> object_keys_of_scene() {
 std::vector<std::string_view> plain_keys_of_scene() {
   const auto is_plain = []<class T>(const T&) {
     return !(std::is_same_v<T, Name> || std::is_same_v<T, Path> || std::is_same_v<T, ObjectOf> ||
-             std::is_same_v<T, MapOf> || std::is_same_v<T, ListOf>);
+             std::is_same_v<T, MapOf> || std::is_same_v<T, MapOfPaths> || std::is_same_v<T, ListOf>);
   };
   std::vector<std::string_view> keys;
   for (const KeyRow* row : keys_of(Object::scene))

@@ -104,6 +104,10 @@ struct Literal {};  ///< of any type that a parameter may have
 struct Literals {};
 struct MapOfLiterals {};
 struct MapOfNames {};
+struct Keyframes {};  ///< times and values: [[0, 1], [2, 5]]
+struct MapOfPaths {   ///< by paths to values of the scene
+  Object object;
+};
 struct ObjectOf {
   Object object;
 };
@@ -117,7 +121,8 @@ struct ListOf {
 };
 using Type =
     std::variant<Boolean, Integer, Number, Numbers<2>, Numbers<3>, Numbers<4>, Size, Samples, Scale, Rotation,
-                 Choice, Name, Path, Literal, Literals, MapOfLiterals, MapOfNames, ObjectOf, MapOf, ListOf>;
+                 Choice, Name, Path, Literal, Literals, MapOfLiterals, MapOfNames, Keyframes, MapOfPaths, ObjectOf,
+                 MapOf, ListOf>;
 
 inline constexpr bool required = true, optional = false;
 

@@ -29,6 +29,13 @@ SchemaJson integer(const Range& range) {
   return nodes::integer_schema(static_cast<int64_t>(range.low), static_cast<int64_t>(range.high));
 }
 
+/// An object whose keys are paths of two or more names.
+SchemaJson by_path(SchemaJson value) {
+  return {{"type", "object"},
+          {"propertyNames", {{"pattern", "^[A-Za-z0-9_]+(\\.[A-Za-z0-9_]+)*$"}}},
+          {"additionalProperties", std::move(value)}};
+}
+
 /// One overload for each type: one that is missing does not compile.
 struct TypeSchema {
   SchemaJson operator()(const Boolean&) const { return nodes::boolean_schema(); }
@@ -57,6 +64,14 @@ struct TypeSchema {
   }
   SchemaJson operator()(const MapOfLiterals&) const { return nodes::map_schema(nodes::reference("literal")); }
   SchemaJson operator()(const MapOfNames&) const { return nodes::map_schema(nodes::reference("id")); }
+  SchemaJson operator()(const Keyframes&) const {
+    const SchemaJson key{{"type", "array"},
+                         {"items", SchemaJson::array({number(coordinates), nodes::reference("literal")})},
+                         {"minItems", 2},
+                         {"maxItems", 2}};
+    return {{"type", "array"}, {"items", key}, {"minItems", 1}};
+  }
+  SchemaJson operator()(const MapOfPaths& type) const { return by_path(definition(type.object)); }
   SchemaJson operator()(const ObjectOf& type) const { return definition(type.object); }
   SchemaJson operator()(const MapOf& type) const {
     SchemaJson schema = nodes::map_schema(definition(type.object));
@@ -134,6 +149,8 @@ SchemaJson changes_of(Object object) {
     if (const auto* part = std::get_if<ObjectOf>(&key->type)) schema = changes_of(part->object);
     if (const auto* map = std::get_if<MapOf>(&key->type))
       schema = nodes::map_schema(nodes::any_of({changes_of(map->object), null_schema}));
+    if (const auto* map = std::get_if<MapOfPaths>(&key->type))
+      schema = by_path(nodes::any_of({changes_of(map->object), null_schema}));
     if (std::holds_alternative<MapOfLiterals>(key->type))
       schema = nodes::map_schema(nodes::any_of({nodes::reference("literal"), null_schema}));
     keys.push_back({key->name, nodes::any_of({std::move(schema), null_schema})});

@@ -12,10 +12,11 @@
 
 namespace isoshade::scene {
 
-/// Parses a scene with what it extends (graph::load_document), and applies the settings to the result. Reports what is
-/// wrong.
+/// Parses a scene with what it extends (graph::load_document), as it is at a time, in seconds (animate), and applies the
+/// settings to the result. Without `time` it is the scene's own. Reports what is wrong.
 std::optional<Scene> load_scene(const support::Source& source, const std::vector<std::string>& settings,
-                                const graph::FileRule& files, support::Diagnostics& diagnostics);
+                                const graph::FileRule& files, support::Diagnostics& diagnostics,
+                                std::optional<float> time = {});
 
 /// Writes values into a scene document, one setting after the other:
 ///

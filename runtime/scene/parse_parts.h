@@ -79,6 +79,8 @@ class Reader : private ObjectReader {
   const graph::Json* read(const KeyOf<Literals>& key) { return array(key.name, need(key)); }
   const graph::Json* read(const KeyOf<MapOfLiterals>& key) { return object(key.name, need(key)); }
   const graph::Json* read(const KeyOf<MapOfNames>& key) { return object(key.name, need(key)); }
+  const graph::Json* read(const KeyOf<Keyframes>& key) { return array(key.name, need(key)); }
+  const graph::Json* read(const KeyOf<MapOfPaths>& key) { return object(key.name, need(key)); }
   const graph::Json* read(const KeyOf<MapOf>& key) { return object(key.name, need(key)); }
   const graph::Json* read(const KeyOf<ListOf>& key) { return array(key.name, need(key)); }
   const graph::Json* read(const KeyOf<ObjectOf>& key) {
@@ -139,6 +141,14 @@ std::vector<Parameter> parse_parameters(const graph::Document& document, const g
 /// A string ("sphere") or an object ({"type": "sphere", "radius": 2}).
 MeshShape parse_mesh(const graph::Document& document, const graph::Json& json,
                      support::Diagnostics& diagnostics);
+/// How a value moves, before its keys are looked at.
+struct ReadAnimation {
+  const graph::Json* keys = nullptr;  ///< null after an error
+  Ease ease = Ease::linear;
+  Loop loop = Loop::once;
+};
+ReadAnimation parse_animation(const graph::Document& document, const graph::Member& member,
+                              support::Diagnostics& diagnostics);
 inline glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 }  // namespace isoshade::scene

@@ -20,7 +20,8 @@ namespace {
 int find_image(const std::vector<Post>& before, const std::string& name) {
   for (size_t i = 0; i < before.size(); ++i)
     if (before[i].name == name) return static_cast<int>(i);
-  return name == scene_image_name ? scene_image : no_image;
+  if (name == scene_image_name) return scene_image;
+  return name == motion_image_name ? motion_image : no_image;
 }
 
 void parse_inputs(const Document& document, const Json& json, const std::vector<Post>& before, Post& post,
@@ -35,13 +36,13 @@ void parse_inputs(const Document& document, const Json& json, const std::vector<
     }
     const int image = find_image(before, member.value.string);
     if (image == no_image) {
-      std::vector<std::string_view> names{scene_image_name};
+      std::vector<std::string_view> names{scene_image_name, motion_image_name};
       for (const Post& other : before) names.push_back(other.name);
       diagnostics
           .report_unknown(Id::unknown_image, where,
                           "no post before " + quote(post.name) + " is called " + quote(member.value.string),
                           member.value.string, names)
-          .note("a post reads the images of posts before it, and \"scene\"");
+          .note("a post reads the images of posts before it, \"scene\" and \"motion\"");
       continue;
     }
     post.inputs.push_back({member.key, image, document.key_span(member), where});

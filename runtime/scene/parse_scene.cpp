@@ -139,6 +139,8 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   SceneReader reader(document, document.root, "a scene", diagnostics);
   reader.skip_document_keys();
   reader.skip(format::scene::extends);
+  if (const Json* animations = reader.read(format::scene::animate))
+    for (const Member& member : animations->members) parse_animation(document, member, diagnostics);
 
   Scene scene;
   scene.source = document.source;
@@ -150,6 +152,7 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
   scene.samples = parse_samples(reader, diagnostics);
   scene.samples_where = reader.where(format::scene::samples);
   scene.time = reader.read(format::scene::time);
+  scene.frames_per_second = reader.read(format::scene::frames_per_second);
   if (const Json* camera = reader.read(format::scene::camera))
     scene.camera = parse_camera(document, *camera, diagnostics);
   if (const Json* lights = reader.read(format::scene::lights))

@@ -70,6 +70,15 @@ glm::mat3 rotation_of(const Transform& transform) {
 
 }  // namespace
 
+Camera turned(const Camera& camera, int64_t part, int64_t whole) {
+  const SinCos angle = sin_cos_of_turn(part, whole);
+  const glm::vec3 axis = normalize(camera.up), arm = camera.position - camera.target;
+  const glm::vec3 along = axis * (dot(axis, arm) * (1 - angle.cos));
+  Camera turned = camera;
+  turned.position = camera.target + (arm * angle.cos + cross(axis, arm) * angle.sin + along);
+  return turned;
+}
+
 View make_view(const Camera& camera, int width, int height) {
   const auto [right, up, back] = axes_of(camera);
   const float aspect = static_cast<float>(width) / static_cast<float>(height);

@@ -25,6 +25,9 @@ struct View {
 };
 View make_view(const Camera& camera, int width, int height);
 
+/// The camera after a part of a full turn about its target, around its `up`; counter-clockwise seen from above.
+Camera turned(const Camera& camera, int64_t part, int64_t whole);
+
 /// Writes what posts read of the camera into an array of lower::view_word.
 void store_camera(const Camera& camera, int width, int height, std::span<float> view);
 

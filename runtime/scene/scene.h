@@ -7,6 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -140,13 +141,13 @@ struct Object {
 };
 
 /// Values in place of the number of a post.
-inline constexpr int scene_image = -1, no_image = -2;
-/// The name by which posts refer to the rendered image.
-inline constexpr std::string_view scene_image_name = "scene";
+inline constexpr int scene_image = -1, no_image = -2, motion_image = -3;
+/// The names by which posts refer to the rendered image, and to how far things have moved since the frame before.
+inline constexpr std::string_view scene_image_name = "scene", motion_image_name = graph::motion_image_name;
 inline constexpr size_t max_posts = 64;
 
 /// An image that a post reads: its name in the post's document ("color" is the image that it processes), and its source:
-/// the number of an earlier post of the scene, or scene_image.
+/// the number of an earlier post of the scene, scene_image or motion_image.
 struct PostInput {
   std::string image;
   int source = scene_image;
@@ -175,6 +176,14 @@ enum class Sort : uint8_t {
 };
 inline constexpr std::string_view sort_names[] = {"none", "back_to_front"};
 
+/// How a value moves from one key of an animation to the next.
+enum class Ease : uint8_t { linear, smooth, step };
+inline constexpr std::string_view ease_names[] = {"linear", "smooth", "step"};
+/// What an animation does after its last key.
+enum class Loop : uint8_t { once, repeat, ping_pong };
+inline constexpr std::string_view loop_names[] = {"once", "repeat", "ping_pong"};
+
+inline constexpr float default_frames_per_second = 24;
 inline constexpr std::array<int, 2> default_size{640, 360};
 inline constexpr std::array<float, 4> default_background{0, 0, 0, 1};
 
@@ -186,6 +195,7 @@ struct Scene {
   int samples = 1;              ///< per pixel: 1, 4 or 16
   support::Span samples_where;  ///< nowhere if the document does not state it
   float time = 0;               ///< the value of the node `time`, in seconds
+  float frames_per_second = default_frames_per_second;
   Camera camera;
   std::vector<Light> lights;
   std::optional<Environment> environment;
@@ -194,6 +204,8 @@ struct Scene {
   Sort sort = Sort::none;   ///< of what is blended
   std::vector<Post> posts;  ///< in the order in which they run
   Output output;
+  /// The scene at the frame before, with the same objects, if that is another one than this scene at another `time`.
+  std::shared_ptr<Scene> before;
 };
 
 /// The scene of a document in the format of format.def. Reports everything that is wrong with it. What the document

@@ -1,5 +1,6 @@
 isoshade_test(cli_test
-  SOURCES unit/cli_documents_test.cpp unit/cli_process_test.cpp unit/cli_sheet_test.cpp unit/cli_test.cpp
+  SOURCES unit/cli_documents_test.cpp unit/cli_frames_test.cpp unit/cli_process_test.cpp unit/cli_sheet_test.cpp
+          unit/cli_test.cpp
   LINKS isoshade_scene
   TIMEOUT 120
   DEVICES)

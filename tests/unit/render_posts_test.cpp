@@ -157,7 +157,7 @@ TEST_F(PostsTest, UnusedImagesAreReleased) {
   backends::Image image;
   image.resize(512, 512);
   MeasuringBackend backend;
-  ASSERT_TRUE(render::run_posts(made->posts, 0, made->frame, backend, image, stats_, diagnostics_));
+  ASSERT_TRUE(render::run_posts(made->posts, 0, made->frame, {}, backend, image, stats_, diagnostics_));
   ASSERT_EQ(backend.bytes.size(), 32u);
   // An image has 4 MiB. Under the address sanitizer, which has a heap of its own, all are alike.
   const auto [least, most] = std::ranges::minmax(backend.bytes);

@@ -1,5 +1,7 @@
 isoshade_test(scene_test
   SOURCES
+    unit/scene_animate_test.cpp
+    unit/scene_animation_file_test.cpp
     unit/scene_environment_test.cpp
     unit/scene_exr_test.cpp
     unit/scene_format_test.cpp
@@ -17,7 +19,7 @@ isoshade_test(scene_test
     unit/scene_placement_test.cpp
     unit/scene_settings_test.cpp
     unit/scene_texture_test.cpp
-  LINKS isoshade_scene OpenEXR::OpenEXR PkgConfig::jpeg)
+  LINKS isoshade_scene OpenEXR::OpenEXR PkgConfig::jpeg GIF::GIF)
 target_compile_definitions(scene_test PRIVATE ISOSHADE_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")
 
 isoshade_test(compare_test

@@ -50,6 +50,8 @@ struct Sample {
   std::string operator()(const format::Literals&) const { return "[1]"; }
   std::string operator()(const format::MapOfLiterals&) const { return "{}"; }
   std::string operator()(const format::MapOfNames&) const { return "{}"; }
+  std::string operator()(const format::Keyframes&) const { return "[[0, 1]]"; }
+  std::string operator()(const format::MapOfPaths&) const { return "{}"; }
   std::string operator()(const format::ObjectOf& type) const { return object_json(type.object, 0, "", ""); }
   std::string operator()(const format::MapOf&) const { return "{}"; }
   std::string operator()(const format::ListOf& type) const {
@@ -85,10 +87,12 @@ std::string scene_with(Object object, const std::string& json) {
       for (const KeyRow* key : format::keys_of(outer.object, format::of(form))) {
         const auto* one = std::get_if<format::ObjectOf>(&key->type);
         const auto* map = std::get_if<format::MapOf>(&key->type);
+        const auto* paths = std::get_if<format::MapOfPaths>(&key->type);
         const auto* list = std::get_if<format::ListOf>(&key->type);
         std::string value;
         if (one != nullptr && one->object == object) value = json;
         if (map != nullptr && map->object == object) value = "{\"a\": " + json + "}";
+        if (paths != nullptr && paths->object == object) value = "{\"camera.near\": " + json + "}";
         if (list != nullptr && list->object == object)
           value = numbers(std::max<size_t>(1, list->least), json);
         if (!value.empty())

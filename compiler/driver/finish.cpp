@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The passes over a program, and the programs that no document asks for.
+#include "compiler/driver/finish.h"
+
+#include <array>
+
+#include "compiler/driver/dumps.h"
+#include "compiler/passes/passes.h"
+#include "compiler/passes/pipeline.h"
+
+namespace isoshade::driver {
+
+void finish(Program& program, uint32_t kernel, const CompileOptions& options,
+            support::Source source) {
+  program.entry = kernel;
+  program.source = std::move(source);
+  if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);
+  passes::Entries entries{kernel};
+  const auto dump = [&](std::string_view pass, const ir::Module& after) {
+    options.dump(pass, [&] { return dump_module(after); });
+  };
+  if (options.dump) dump("lower", program.module);
+  passes::run(passes::optimisations(), program.module, entries, program.tier,
+              options.dump ? passes::Dump(dump) : passes::Dump());
+  program.entry = entries[0];
+}
+
+const Program& depth_program() {
+  static const Program program = [] {
+    Program made{lower::Stage::depth, "depth", "", lower::frame_module(), 0, {}, {}};
+    finish(made, lower::add_depth_kernel(made.module), {});
+    return made;
+  }();
+  return program;
+}
+
+namespace {
+
+/// A program that no document asks for, in both forms.
+template <class Add>
+std::array<Program, 2> both_forms(Stage stage, std::string_view name, const Add& add) {
+  std::array<Program, 2> both;
+  for (const bool reference : {false, true}) {
+    Program& made = both[reference ? 1 : 0];
+    made = {stage, std::string(name), "", lower::frame_module(), 0, {}, {}};
+    CompileOptions options;
+    options.reference = reference;
+    finish(made, add(made.module), options);
+  }
+  return both;
+}
+
+}  // namespace
+
+const Program& motion_program(bool reference) {
+  static const std::array programs = both_forms(Stage::pixel, "motion", lower::add_motion_kernel);
+  return programs[reference ? 1 : 0];
+}
+
+const Program& backdrop_motion_program(bool reference) {
+  static const std::array programs = both_forms(Stage::post, "backdrop_motion", lower::add_backdrop_motion_kernel);
+  return programs[reference ? 1 : 0];
+}
+
+}  // namespace isoshade::driver

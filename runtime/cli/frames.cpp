@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cli/frames.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <unistd.h>
+
+#include "compiler/support/visible.h"
+#include "runtime/cli/argument_texts.h"
+#include "runtime/lanes/float_rules.h"
+#include "runtime/scene/animation_file.h"
+#include "runtime/scene/image_file.h"
+#include "runtime/scene/output_file.h"
+#include "runtime/scene/placement.h"
+
+namespace isoshade::cli {
+namespace {
+
+using support::Diagnostics;
+
+/// How far it is, on a terminal, in one line that is written again and again.
+class ProgressBar {
+ public:
+  ProgressBar(const Common& common, int count) : shown_(!common.quiet && isatty(STDERR_FILENO) == 1), count_(count) {}
+  ~ProgressBar() { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void show(int done) const {
+    if (!shown_) return;
+    constexpr int width = 30;
+    const int filled = width * done / count_;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const double left = done > 0 ? seconds / done * (count_ - done) : 0;
+    std::fprintf(stderr, "\r[%s%s] %d of %d frames, %.0f s left \x1b[K", std::string(static_cast<size_t>(filled), '#').c_str(),
+                 std::string(static_cast<size_t>(width - filled), ' ').c_str(), done, count_, left);
+  }
+  void clear() const {
+    if (shown_) std::fputs("\r\x1b[K", stderr);
+  }
+
+ private:
+  bool shown_;
+  int count_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Adds the diagnostics of a frame that no frame before has had.
+void append_new(Diagnostics& all, const Diagnostics& frame) {
+  for (const support::Diagnostic& one : frame.all()) {
+    const auto is_same = [&](const support::Diagnostic& other) {
+      return other.id == one.id && other.message == one.message && other.where.begin == one.where.begin;
+    };
+    if (std::ranges::none_of(all.all(), is_same)) all.all().push_back(one);
+  }
+}
+
+class FrameSequence {
+ public:
+  FrameSequence(const RenderArguments& arguments, const Common& common, Diagnostics& diagnostics)
+      : arguments_(arguments),
+        common_(common),
+        all_(diagnostics),
+        times_(*arguments.frames),
+        format_(scene::animation_format_of(arguments.output)),
+        numbered_(NumberedPath::parse(arguments.output)),
+        renderer_(arguments, common) {}
+
+  int run() {
+    if (!check_output()) return failure;
+    const ProgressBar bar(common_, times_.count);
+    int result = success;
+    for (int i = 0; i < times_.count; ++i) {
+      bar.show(i);
+      Diagnostics diagnostics = make_diagnostics(common_);
+      result = std::max(result, render(i, diagnostics));
+      append_new(all_, diagnostics);
+      if (result == failure || diagnostics.has_errors()) return failure;
+    }
+    if (file_ && !scene::write_file(arguments_.output, file_->finish(), all_)) return failure;
+    if (result == different) std::fputs(not_finite_text, stderr);
+    return result;
+  }
+
+ private:
+  bool check_output() {
+    if (format_) return true;
+    if (numbered_) return scene::check_image_path(numbered_->of(0), all_);
+    all_.report(support::Id::unwritable_file,
+                support::quote(arguments_.output) + " does not tell the names of the frames")
+        .note("the name needs exactly one field for the number, %d or %04d; a percent sign is written %%")
+        .suggest("write frame_%04d.png, or FILE.apng or FILE.gif for one file");
+    return false;
+  }
+
+  std::string path_of(int frame) const { return format_ ? arguments_.output : numbered_->of(frame); }
+
+  float time_of(int frame) const {
+    const double first = static_cast<double>(times_.first), last = static_cast<double>(times_.last);
+    if (times_.count == 1) return times_.first;
+    return static_cast<float>(first + (last - first) * frame / (times_.count - 1));
+  }
+
+  /// Turns the camera of the frame, and that of the frame before as the frame before is turned.
+  void turn(scene::Scene& scene, int frame) const {
+    if (scene.before == nullptr) {
+      scene.before = std::make_shared<scene::Scene>(scene);
+      const double before = static_cast<double>(scene.time) - 1 / static_cast<double>(scene.frames_per_second);
+      scene.before->time = static_cast<float>(before);
+    }
+    const lanes::FpGuard guard;
+    scene.camera = scene::turned(scene.camera, frame, times_.count);
+    scene.before->camera =
+        scene::turned(scene.before->camera, (frame + times_.count - 1) % times_.count, times_.count);
+  }
+
+  int render(int frame, Diagnostics& diagnostics) {
+    SceneChanges changes = arguments_.changes;
+    changes.time = time_of(frame);
+    auto scene = load_scene(arguments_.scene, changes, common_, diagnostics);
+    if (!scene) return failure;
+    if (arguments_.turntable) turn(*scene, frame);
+    const auto plan = renderer_.plan(*scene, diagnostics);
+    if (!plan || !may_write(path_of(frame), diagnostics)) return failure;
+    backends::Image image;
+    render::DrawStats stats;
+    if (!renderer_.draw(*plan, image, stats, diagnostics) || !write(frame, *scene, image, diagnostics)) return failure;
+    render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
+    return arguments_.fail_on_nan && !stats.non_finite.none() ? different : success;
+  }
+
+  bool write(int frame, const scene::Scene& scene, const backends::Image& image, Diagnostics& diagnostics) {
+    const scene::Output& output = scene.output;
+    if (!format_)
+      return scene::write_image(path_of(frame), {image.width, image.height, image.rgba, image.depth}, output.encoding,
+                                output.exposure, diagnostics);
+    if (!file_) {
+      // In real time; a single picture has no next one.
+      const double length = static_cast<double>(times_.last) - static_cast<double>(times_.first);
+      const double seconds = length > 0 ? length / (times_.count - 1) : 1 / static_cast<double>(scene.frames_per_second);
+      file_.emplace(*format_, image.width, image.height, seconds);
+    }
+    file_->add(scene::encode(image.rgba, output.encoding, output.exposure));
+    return true;
+  }
+
+  const RenderArguments& arguments_;
+  const Common& common_;
+  Diagnostics& all_;
+  FrameTimes times_;
+  std::optional<scene::AnimationFormat> format_;
+  std::optional<NumberedPath> numbered_;
+  SceneRenderer renderer_;
+  std::optional<scene::AnimationFile> file_;
+};
+
+}  // namespace
+
+int render_frames(const RenderArguments& arguments, const Common& common, Diagnostics& diagnostics) {
+  return FrameSequence(arguments, common, diagnostics).run();
+}
+
+}  // namespace isoshade::cli
