@@ -8,7 +8,7 @@ isoshade=build/release/isoshade
 for pattern in ivy planks shingles stones; do
   "$isoshade" --quiet render "graphs/textures/${pattern}_tile.json" -o "graphs/textures/$pattern.png"
 done
-for scene in environment_balls cartoon_village fog_valley fog_village transparent depth_of_field stylised_highlights fur; do
+for scene in environment_balls cartoon_village fog_valley fog_village transparent depth_of_field stylised_highlights fur motion_blur; do
   "$isoshade" --quiet render "graphs/scenes/$scene.json" --samples 16 -o "docs/$scene.png"
 done
 # Strokes are as wide as samples.

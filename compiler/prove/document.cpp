@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "compiler/lower/lower.h"
+#include "compiler/lower/screen.h"
+#include "compiler/lower/stages.h"
 
 namespace isoshade::prove {
 namespace {
@@ -51,6 +53,17 @@ std::vector<Given> answer_of(interface::Host host) {
   return {};
 }
 
+/// Whether it reads how far things have moved.
+bool is_motion(const TypedGraph& graph, const interface::HostFunction& host) {
+  if (host.host != interface::Host::image || host.image < lower::post_image(1)) return false;
+  const size_t image = host.image - lower::post_image(1);
+  return image < graph.graph.images.size() && graph.graph.images[image].name == graph::motion_image_name;
+}
+Given motion_answer() {
+  constexpr auto farthest = static_cast<double>(lower::farthest_motion);
+  return {"motion", -farthest, farthest};
+}
+
 Given given_of(const TypedGraph& graph, const interface::Binding& binding) {
   const ir::Parameter& parameter = binding.parameter;
   const interface::Assumption& assumed = binding.assumed;
@@ -79,6 +92,7 @@ std::optional<std::vector<Subject>> subjects_of(const TypedGraph& graph, support
     for (const interface::Binding& binding : lowered.interface.bindings) givens.push_back(given_of(graph, binding));
     const auto outside = [&](uint32_t function) {
       const interface::HostFunction* host = lowered.interface.find(function);
+      if (host != nullptr && is_motion(graph, *host)) return std::vector{motion_answer()};
       return host != nullptr ? answer_of(host->host) : std::vector<Given>();
     };
     auto tape = make_tape(lowered.module, lowered.interface.entry, givens, outside, tier);
