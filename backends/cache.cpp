@@ -49,6 +49,11 @@ class File {
            (facts.st_mode & (S_IWGRP | S_IWOTH)) == 0;
   }
 
+  uint64_t size() const {
+    struct stat facts;
+    return fstat(descriptor_, &facts) == 0 ? static_cast<uint64_t>(facts.st_size) : 0;
+  }
+
   bool read_all(std::string& text) const {
     text.clear();
     char part[65536];
@@ -262,6 +267,11 @@ std::optional<std::string> Cache::read(const std::string& name) const {
   const std::string path = folder_ + "/" + name;
   const File file(path, O_RDONLY);
   if (!file.is_open() || !file.is_own()) return std::nullopt;
+  if (file.size() > CacheLimit{}.bytes) {
+    // No cache keeps an entry of this size, so it is damaged. Reading it could take all memory.
+    unlink(path.c_str());
+    return std::nullopt;
+  }
   std::string text;
   if (!file.read_all(text) || text.size() <= seal_bytes) return std::nullopt;
   const std::string seal = text.substr(text.size() - seal_bytes);

@@ -48,7 +48,8 @@ class Cache {
   const std::string& folder() const { return folder_; }
   CacheContents contents() const;
 
-  /// The path of the entry; nothing if it is missing or damaged. The next store() replaces a damaged entry.
+  /// The path of the entry; nothing if it is missing or damaged. The next store() replaces a damaged entry; one larger
+  /// than the whole cache may be is deleted at once.
   std::optional<std::string> find(const std::string& name) const;
   /// The contents of the entry, likewise.
   std::optional<std::string> read(const std::string& name) const;

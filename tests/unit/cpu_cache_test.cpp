@@ -62,6 +62,18 @@ TEST(Cache, IgnoresTruncatedAndModifiedEntries) {
   EXPECT_TRUE(holds(*cache, "entry", "some contents"));
 }
 
+TEST(Cache, DeletesEntriesLargerThanTheWholeCacheWithoutReadingThem) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder.path(), diagnostics);
+  ASSERT_TRUE(store(*cache, "entry", "some contents", diagnostics));
+  std::filesystem::resize_file(folder / "entry", CacheLimit{}.bytes + 1);  // sparse: it takes no room on the disk
+  EXPECT_FALSE(cache->find("entry"));
+  EXPECT_EQ(count_files(folder.path()), 0);
+  EXPECT_TRUE(store(*cache, "entry", "some contents", diagnostics));
+  EXPECT_TRUE(holds(*cache, "entry", "some contents"));
+}
+
 TEST(Cache, IgnoresEntriesUnderAnotherName) {
   const TestFolder folder;
   Diagnostics diagnostics;
