@@ -231,6 +231,16 @@ TEST(Proof, BoundsSumsOverAnyNumberOfLights) {
   EXPECT_FALSE(checked(effect("c / color3(dot(n, l))")).proof.unproved.empty());
 }
 
+TEST(Proof, StandardMaterialIsFiniteForBaseColorsOutsideOfTheirRange) {
+  const Checked c = checked(R"({"isoshade": 1, "effect": "e",
+    "parameters": {"metallic": {"type": "float", "value": 1, "min": 0, "max": 1}},
+    "nodes": {"n": {"type": "normal"}, "spots": {"type": "noise3d"},
+      "base": {"type": "mix", "bg": [0.8, 0.8, 0.8], "fg": [0.3, 0.1, 0.05], "mix": "spots"},
+      "lit": {"type": "material/standard", "normal": "n", "base_color": "base", "metallic": "metallic"}},
+    "passes": [{"name": "p", "color": "lit"}]})");
+  EXPECT_TRUE(c.proof.unproved.empty()) << c.messages;
+}
+
 TEST(Proof, SeparatesErrorsOfBranchesTippedByRounding) {
   const Checked c = checked(function_of(x_and_y, code("x * 0.1 > y * 0.3 ? 1 + y : 0")));
   ASSERT_EQ(c.proof.tipped.size(), 1u);
