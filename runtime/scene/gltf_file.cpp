@@ -67,8 +67,8 @@ bool keep_image(tinygltf::Image* image, int index, std::string*, std::string*, i
 }
 
 /// tinygltf may throw: it accesses vectors with at().
-bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tinygltf::Model& model,
-                Refusal& refusal) {
+bool load_model(const std::string& bytes, const graph::Document& document, Files& files, ImageBytes& images,
+                tinygltf::Model& model, Refusal& refusal) {
   std::string errors, warnings;
   bool good = false;
   try {
@@ -86,7 +86,7 @@ bool load_model(const std::string& bytes, Files& files, ImageBytes& images, tiny
     good = false;
   }
   while (!errors.empty() && (errors.back() == '\n' || errors.back() == ' ')) errors.pop_back();
-  if (!good) refusal.refuse(errors.empty() ? "it is not a glTF" : errors);
+  if (!good && check_buffers(document, refusal)) refusal.refuse(errors.empty() ? "it is not a glTF" : errors);
   return good;
 }
 
@@ -118,7 +118,7 @@ std::optional<Model> load_gltf(const std::string& path, const support::Span& whe
     const lanes::FpGuard guard;
     tinygltf::Model model;
     ImageBytes images{path, files.folder, {}, 0};
-    if (check_json(*document, refusal) && load_model(*bytes, files, images, model, refusal))
+    if (check_json(*document, refusal) && load_model(*bytes, *document, files, images, model, refusal))
       result = build_gltf(model, refusal);
     if (result) {
       warn_ignored(*document, path, where, diagnostics);

@@ -39,20 +39,54 @@ bool check_index(const graph::Document& document, const Json& value, Refusal& re
                         ", not an integer from 0 to 2147483647");
 }
 
-/// The keys whose values are numbers: tinygltf ignores values of other types.
-bool is_quantity(std::string_view key) {
-  static constexpr std::string_view keys[] = {"baseColorFactor", "emissiveFactor",  "matrix",
-                                              "metallicFactor",  "roughnessFactor", "rotation",
-                                              "scale",           "strength",        "translation"};
-  return std::ranges::find(keys, key) != std::end(keys);
+/// A key whose value is a number, or numbers. tinygltf ignores values of other types and lengths.
+struct Quantity {
+  std::string_view key;
+  size_t count = 0;        ///< of an array
+  bool is_number = true;   ///< whether it may be a single number
+};
+const Quantity* quantity_of(std::string_view key) {
+  static constexpr Quantity quantities[] = {
+      {"alphaCutoff"},     {"baseColorFactor", 4, false}, {"emissiveFactor", 3, false}, {"matrix", 16, false},
+      {"metallicFactor"},  {"rotation", 4, false},        {"roughnessFactor"},
+      {"scale", 3},  // of a node, or of a normal texture
+      {"strength"},        {"translation", 3, false}};
+  const auto* found = std::ranges::find(quantities, key, &Quantity::key);
+  return found == std::end(quantities) ? nullptr : found;
 }
 
-bool check_quantity(const graph::Document& document, const Json& value, Refusal& refusal) {
-  const Json* wrong = value.kind == Json::Kind::number || value.kind == Json::Kind::array ? nullptr : &value;
-  for (const Json& item : value.items)
-    if (item.kind != Json::Kind::number) wrong = &item;
-  return wrong == nullptr || refusal.refuse(graph::pointer_at(document, wrong->begin) + " is " +
-                                            std::string(graph::kind_name(wrong->kind)) + ", not a number");
+bool check_quantity(const graph::Document& document, const Json& value, const Quantity& quantity, Refusal& refusal) {
+  const auto refuse = [&](const Json& wrong, const std::string& what) {
+    return refusal.refuse(graph::pointer_at(document, wrong.begin) + " is " + what);
+  };
+  const auto is_no_number = [&](const Json& wrong) {
+    return refuse(wrong, std::string(graph::kind_name(wrong.kind)) + ", not a number");
+  };
+  if (value.kind == Json::Kind::array) {
+    for (const Json& item : value.items)
+      if (item.kind != Json::Kind::number) return is_no_number(item);
+    if (quantity.count == 0) return is_no_number(value);
+    return value.items.size() == quantity.count ||
+           refuse(value, "an array of " + std::to_string(value.items.size()) + " numbers, not " +
+                             std::to_string(quantity.count));
+  }
+  if (value.kind != Json::Kind::number) return is_no_number(value);
+  return quantity.is_number ||
+         refuse(value, "a number, not an array of " + std::to_string(quantity.count) + " numbers");
+}
+
+/// Checks a key of a material that is neither an index nor a number.
+bool check_word(const graph::Document& document, std::string_view key, const Json& value, Refusal& refusal) {
+  static constexpr std::string_view modes[] = {"OPAQUE", "MASK", "BLEND"};
+  const auto refuse = [&](const std::string& wanted) {
+    const bool is_string = value.kind == Json::Kind::string;
+    return refusal.refuse(graph::pointer_at(document, value.begin) + " is " +
+                          (is_string ? quote(value.string) : std::string(graph::kind_name(value.kind))) + ", not " +
+                          wanted);
+  };
+  if (key == "doubleSided" && value.kind != Json::Kind::boolean) return refuse("true or false");
+  const bool is_mode = value.kind == Json::Kind::string && std::ranges::find(modes, value.string) != std::end(modes);
+  return key != "alphaMode" || is_mode || refuse("\"OPAQUE\", \"MASK\" or \"BLEND\"");
 }
 
 bool check_limited(const graph::Document& document, const Json& value, Refusal& refusal) {
@@ -90,7 +124,9 @@ bool check_indices(const graph::Document& document, const Json& value, bool attr
     }
     const bool nested = member.kind == Json::Kind::object || member.kind == Json::Kind::array;
     if ((attributes || is_index(key)) && !nested && !check_index(document, member, refusal)) return false;
-    if (is_quantity(key) && !check_quantity(document, member, refusal)) return false;
+    const Quantity* quantity = quantity_of(key);
+    if (quantity != nullptr && !check_quantity(document, member, *quantity, refusal)) return false;
+    if (!check_word(document, key, member, refusal)) return false;
     if (key.ends_with("Texture") && member.kind == Json::Kind::object && member.find("index") == nullptr)
       return refusal.refuse(graph::pointer_at(document, member.begin) + " has no index");
     for (const Json& item : member.items)
@@ -114,11 +150,14 @@ bool check_version(const Json& root, Refusal& refusal) {
   return refusal.refuse("it requires glTF " + quote(least->string) + ", and isoshade reads 2.0");
 }
 
-bool decodes(const std::string& uri) {
+/// Whether a URI is no data URI, or one that tinygltf can decode; with a `length`, to so many bytes.
+bool decodes(const std::string& uri, size_t length = 0) {
+  if (!uri.starts_with("data:")) return true;
   std::vector<unsigned char> bytes;
   std::string type;
-  return !tinygltf::IsDataURI(uri) || tinygltf::DecodeDataURI(&bytes, type, uri, 0, false);
+  return tinygltf::IsDataURI(uri) && tinygltf::DecodeDataURI(&bytes, type, uri, length, length != 0);
 }
+constexpr std::string_view undecodable = "its data URI cannot be decoded";
 
 /// Checks that each image has a source: otherwise tinygltf would refuse the whole file.
 bool check_images(const Json& root, Refusal& refusal) {
@@ -132,7 +171,7 @@ bool check_images(const Json& root, Refusal& refusal) {
     else if (uri != nullptr && (uri->kind != Json::Kind::string || uri->string.empty()))
       reason = "its \"uri\" is not a string, or is empty";
     else if (uri != nullptr && !decodes(uri->string))
-      reason = "its data URI cannot be decoded";
+      reason = undecodable;
     if (!reason.empty())
       return refusal.refuse(support::Id::bad_image, "the image " + std::to_string(i), std::string(reason));
   }
@@ -155,6 +194,18 @@ std::optional<std::string> json_of(const std::string& bytes, Refusal& refusal) {
     return std::nullopt;
   }
   return bytes.substr(header, word_at(bytes, 12));
+}
+
+bool check_buffers(const graph::Document& document, Refusal& refusal) {
+  const Json* buffers = document.root.find("buffers");
+  if (buffers == nullptr) return true;
+  for (size_t i = 0; i < buffers->items.size(); ++i) {
+    const Json *uri = buffers->items[i].find("uri"), *length = buffers->items[i].find("byteLength");
+    if (uri == nullptr || length == nullptr || decodes(uri->string, static_cast<size_t>(length->number))) continue;
+    return refusal.refuse(support::Id::bad_mesh, "the buffer " + std::to_string(i),
+                          std::string(undecodable) + " to " + std::to_string(static_cast<size_t>(length->number)) + " bytes");
+  }
+  return true;
 }
 
 bool check_json(const graph::Document& document, Refusal& refusal) {

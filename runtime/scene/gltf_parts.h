@@ -58,6 +58,10 @@ inline bool is_read_extension(std::string_view name) {
 /// of the wrong type.
 bool check_json(const graph::Document& document, Refusal& refusal);
 
+/// Checks the data URIs of buffers, of a text that check_json accepts, where tinygltf has refused it: it would print all of
+/// a URI.
+bool check_buffers(const graph::Document& document, Refusal& refusal);
+
 /// Warns once about each feature and extension that the file uses and isoshade does not read. `where` names the file.
 void warn_ignored(const graph::Document& document, const std::string& path, const support::Span& where,
                   support::Diagnostics& diagnostics);

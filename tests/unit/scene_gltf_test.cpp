@@ -229,6 +229,31 @@ TEST_F(Gltf, RefusesQuantitiesThatAreNotNumbers) {
   EXPECT_TRUE(refuses_json(R"([0.5, 0.25, 1, 1])", R"([0.5, null, 1, 1])", "/baseColorFactor/1 is null"));
   EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"mesh": 0, "translation": ["1", 0, 0]}])",
                            "/nodes/0/translation/0 is a string"));
+  EXPECT_TRUE(refuses_json("[0.5, 0.25, 1, 1]", "[0.5, 0.25, 1]", "/baseColorFactor is an array of 3 numbers, not 4"));
+  EXPECT_TRUE(refuses_json("[0.5, 0.25, 1, 1]", "1", "/baseColorFactor is a number, not an array of 4 numbers"));
+  EXPECT_TRUE(refuses_json("0.75", "[0.75]", "/metallicFactor is an array, not a number"));
+  EXPECT_TRUE(refuses_json(R"([{"mesh": 0}])", R"([{"mesh": 0, "scale": [1, 1]}])",
+                           "/nodes/0/scale is an array of 2 numbers, not 3"));
+}
+
+TEST_F(Gltf, RefusesAlphaModesAndSidesThatAreNone) {
+  const std::string material = R"("materials": [{)";
+  EXPECT_TRUE(refuses_json(material, material + R"("alphaMode": "blend", )",
+                           "/materials/0/alphaMode is \"blend\", not \"OPAQUE\", \"MASK\" or \"BLEND\""));
+  EXPECT_TRUE(refuses_json(material, material + R"("alphaMode": 1, )", "/materials/0/alphaMode is a number, not"));
+  EXPECT_TRUE(refuses_json(material, material + R"("alphaMode": "MASK", "alphaCutoff": "x", )",
+                           "/materials/0/alphaCutoff is a string, not a number"));
+  EXPECT_TRUE(refuses_json(material, material + R"("doubleSided": 1, )", "/doubleSided is a number, not true or false"));
+}
+
+TEST_F(Gltf, NamesBuffersWhoseDataUriCannotBeDecodedWithoutPrintingIt) {
+  const std::string rest(5000, 'A');
+  for (const std::string uri : {"data:;base64," + rest, "data:application/octet-stream;base64," + rest}) {
+    EXPECT_TRUE(refuses(square_json(all_attributes, one_node, R"("uri": ")" + uri + R"(", )"),
+                        "cannot read the buffer 0 of ", "m.gltf"));
+    EXPECT_NE(diagnostics_.text().find("its data URI cannot be decoded to 156 bytes"), std::string::npos);
+    EXPECT_LT(diagnostics_.text().size(), 500u);
+  }
 }
 
 TEST_F(Gltf, RejectsOtherVersions) {
