@@ -64,9 +64,10 @@ class Loader {
       diagnostics_.report(Id::recursion, where, "the " + name + " extends itself through " + quote(path));
       return std::nullopt;
     }
-    if (chain_.size() > max_bases) {
+    // The chain lacks the base.
+    if (chain_.size() + 1 > max_chain) {
       diagnostics_.report(Id::too_large, where,
-                          "more than " + std::to_string(max_bases) + " " + name + "s extend each other");
+                          "more than " + std::to_string(max_chain) + " " + name + "s extend each other");
       return std::nullopt;
     }
     if (!may_read(path, where, files_, diagnostics_)) return std::nullopt;

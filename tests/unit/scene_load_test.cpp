@@ -111,7 +111,7 @@ TEST_F(LoadScene, RefusesToExtendOtherDocuments) {
   write("scenes/effect.json", R"({"isoshade": 1, "effect": "e"})");
   write("scenes/self.json", R"({"isoshade": 1, "scene": "s", "extends": "top.json"})");
   write("outside.json", R"({"isoshade": 1, "scene": "s"})");
-  EXPECT_EQ(error(R"("extends": 1)"), "wrong-type: \"extends\" is the path of a scene");
+  EXPECT_EQ(error(R"("extends": 1)"), "wrong-type: \"extends\" must be the path of a scene, not a number");
   EXPECT_NE(error(R"("extends": "effect.json")").find("wrong-kind: "), std::string::npos);
   EXPECT_NE(error(R"("extends": "none.json")").find("missing-file: "), std::string::npos);
   EXPECT_NE(error(R"("extends": "base")").find("unreadable-file: "), std::string::npos);
@@ -139,12 +139,16 @@ TEST_F(LoadScene, SuggestsExtendsForMisspelledKeys) {
   EXPECT_NE(diagnostics_.text().find("did you mean \"extends\"?"), std::string::npos) << diagnostics_.text();
 }
 
-TEST_F(LoadScene, RefusesTooManyLevels) {
-  for (size_t i = 0; i < 2 * graph::max_bases; ++i) {
+TEST_F(LoadScene, AllowsChainsOfSixteenScenes) {
+  // The scene of each number ends a chain of so many.
+  write("scenes/s2.json", R"({"isoshade": 1, "scene": "s", "extends": "base/base.json"})");
+  for (size_t i = 3; i <= graph::max_chain; ++i) {
     write("scenes/s" + std::to_string(i) + ".json",
-          R"({"isoshade": 1, "scene": "s", "extends": "s)" + std::to_string(i + 1) + R"(.json"})");
+          R"({"isoshade": 1, "scene": "s", "extends": "s)" + std::to_string(i - 1) + R"(.json"})");
   }
-  EXPECT_EQ(error(R"("extends": "s0.json")"), "too-large: more than 16 scenes extend each other");
+  const auto on = [](size_t last) { return R"("extends": "s)" + std::to_string(last) + R"(.json")"; };
+  EXPECT_EQ(error(on(graph::max_chain - 1)), "");
+  EXPECT_EQ(error(on(graph::max_chain)), "too-large: more than 16 scenes extend each other");
 }
 
 }  // namespace
