@@ -133,6 +133,17 @@ void check_pixels(Work& work, std::span<const Operand> outputs, const std::strin
   }
 }
 
+void check_cutouts(Work& work) {
+  std::vector<Operand> cutouts, cutoffs;
+  for (size_t i = 0; i < work.graph().passes.size(); ++i) {
+    const std::span<const Operand> cutout = work.typed.cutout_of(i);
+    if (!cutout.empty()) cutouts.push_back(cutout[0]);
+    if (cutout.size() > 1) cutoffs.push_back(cutout[1]);
+  }
+  check_pixels(work, cutouts, "cutout", false);
+  check_pixels(work, cutoffs, "cutoff", false);
+}
+
 bool reads_picture(const Node& node) { return node.row != nullptr && node.row->is<nodes::Fetch>(); }
 
 /// Reports nodes of a pass that read the picture where there is none: only a pass that is always blended is drawn over
@@ -176,7 +187,10 @@ void check_pictures(Work& work) {
     const graph::Pass& pass = work.graph().passes[i];
     const Operand* position = typed.position_of(i);
     check_pictures(work, {position, position != nullptr ? size_t{1} : 0}, "position", pass, reported);
-    check_pictures(work, typed.cutout_of(i), "cutout", pass, reported);
+    const std::span<const Operand> cutout = typed.cutout_of(i);
+    const size_t first = std::min(cutout.size(), size_t{1});  // behind it stands the cutoff
+    check_pictures(work, cutout.first(first), "cutout", pass, reported);
+    check_pictures(work, cutout.subspan(first), "cutoff", pass, reported);
     check_pictures(work, typed.values().subspan(i, 1), "color", pass, reported);
   }
 }
@@ -417,7 +431,7 @@ void check_usage(Work& work) {
   if (work.graph().kind == graph::DocumentKind::effect) {
     check_positions(work);
     check_pixels(work, work.typed.values(), "color", true);
-    check_pixels(work, work.typed.cutouts(), "cutout", false);
+    check_cutouts(work);
     check_pictures(work);
     check_derivatives_of_pictures(work);
   }

@@ -45,7 +45,16 @@ class Loader {
     chain_.push_back(canonical_path(source->path()));
     const support::Span named_where = document->span(*extends);
     if (extends->kind != Json::Kind::string) {
-      diagnostics_.report(Id::wrong_type, named_where, "\"extends\" is the path of " + with_article(*kind));
+      diagnostics_
+          .report(Id::wrong_type, named_where,
+                  "\"extends\" must be the path of " + with_article(*kind) + ", not " + std::string(kind_name(extends->kind)))
+          .suggest("write the path of the base, or remove this key");
+      return std::nullopt;
+    }
+    if (extends->string.empty()) {
+      diagnostics_
+          .report(Id::missing_file, named_where, "\"extends\" must be the path of " + with_article(*kind) + ", but is empty")
+          .suggest("write the path of the base, or remove this key");
       return std::nullopt;
     }
     auto base = load_base(path_beside(source->path(), extends->string), *kind, named_where);

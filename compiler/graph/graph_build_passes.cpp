@@ -85,8 +85,11 @@ void GraphBuilder::read_cutout(ObjectReader& reader, Pass& pass) {
     diagnostics_
         .report(Id::missing_key, document_.span(*cutoff), "\"cutoff\" has no effect without \"cutout\"")
         .suggest("add \"cutout\", or remove this key");
-  } else if (cutoff->kind != Json::Kind::number) {
+  } else if (cutoff->kind == Json::Kind::string || cutoff->kind == Json::Kind::object) {
     pass.cutoff = link(*cutoff, "cutoff");
+  } else if (cutoff->kind != Json::Kind::number) {
+    diagnostics_.report(Id::wrong_type, document_.span(*cutoff),
+                        "\"cutoff\" must be a number or a link, not " + std::string(kind_name(cutoff->kind)));
   } else if (auto value = parse_literal(document_, *cutoff, "cutoff", diagnostics_)) {
     pass.cutoff = constant(*std::move(value), "cutoff", Type::floating, place_of(*cutoff));
   }
@@ -114,10 +117,12 @@ void GraphBuilder::read_pass(const Json& json) {
     if (const Json* named = reader.value(key, Need::optional)) *parameter = read_switch(*named, key);
   for (const std::string_view key : {"blended", "depth_write"}) {
     const Json* useless = json.find(key);
-    if (useless == nullptr || json.find("blend") != nullptr) continue;
+    if (useless == nullptr || pass.state.blend != interface::Blend::none) continue;
+    const bool is_none = json.find("blend") != nullptr;
     diagnostics_
-        .report(Id::missing_key, document_.span(*useless), quote(key) + " has no effect without \"blend\"")
-        .suggest("add \"blend\", or remove this key");
+        .report(Id::missing_key, document_.span(*useless),
+                quote(key) + " has no effect " + (is_none ? "where \"blend\" is \"none\"" : "without \"blend\""))
+        .suggest(is_none ? "choose another \"blend\", or remove this key" : "add \"blend\", or remove this key");
   }
   if (const Json* repeat = reader.value("repeat", Need::optional)) read_repeat(*repeat, pass);
   read_cutout(reader, pass);

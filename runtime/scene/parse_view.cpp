@@ -42,6 +42,14 @@ Shadow parse_shadow(const Document& document, const Json& json, Diagnostics& dia
   return shadow;
 }
 
+/// Reports a direction that is zero, or as float so short that it is.
+void check_direction(const glm::vec3& direction, const std::string& what, const support::Span& where,
+                     Diagnostics& diagnostics) {
+  if (direction != glm::vec3(0)) return;
+  diagnostics.report(Id::degenerate, where, "\"direction\" of " + what + " is zero, or too short to have a direction")
+      .suggest("write a vector of about length 1, such as [0, -1, 0]");
+}
+
 Sun parse_sun(const Document& document, const Json& json, Diagnostics& diagnostics) {
   namespace key = format::sun;
   Sun sun;
@@ -50,8 +58,7 @@ Sun parse_sun(const Document& document, const Json& json, Diagnostics& diagnosti
   sun.color = to_vec3(reader.read(key::color));
   sun.intensity = reader.read(key::intensity);
   sun.size = reader.read(key::size);
-  if (reader.finish() && sun.direction == glm::vec3(0))
-    diagnostics.report(Id::degenerate, document.span(json), "\"direction\" of the sun is zero");
+  if (reader.finish()) check_direction(sun.direction, "the sun", reader.where(key::direction), diagnostics);
   return sun;
 }
 
@@ -82,7 +89,11 @@ Environment parse_environment(const Document& document, const Json& json, Diagno
     diagnostics.report(Id::unknown_key, reader.where(key::sky), "the environment has both a \"file\" and a \"sky\"")
         .suggest("remove one of them; in a scene that extends another one, write \"file\": null or \"sky\": null");
   }
-  if (!has_sky || reader.has(key::file)) {
+  if (!has_sky && !reader.has(key::file)) {
+    diagnostics.report(Id::missing_key, document.span(json), "the environment needs a \"file\" or a \"sky\"")
+        .suggest("for a clear sky: \"sky\": {}");
+  }
+  if (reader.has(key::file)) {
     environment.file = reader.read(key::file);
     environment.file_where = reader.where(key::file);
   }
@@ -133,12 +144,13 @@ Light parse_light(const Document& document, const Member& member, Diagnostics& d
     light.inner_angle = reader.read(key::inner_angle);
     light.outer_angle = reader.read(key::outer_angle);
   }
-  if (const Json* shadow = reader.read(key::shadow)) light.shadow = parse_shadow(document, *shadow, diagnostics);
-  if (!reader.finish()) return light;
-  if (light.direction == glm::vec3(0)) {
-    diagnostics.report(Id::degenerate, document.span(member.value),
-                       "\"direction\" of light " + support::quote(member.key) + " is zero");
+  if (const Json* shadow = reader.read(key::shadow)) {
+    light.shadow = parse_shadow(document, *shadow, diagnostics);
+    const Json* size = shadow->find(format::shadow::size.name);
+    light.shadow_where = document.span(size != nullptr ? *size : *shadow);
   }
+  if (!reader.finish()) return light;
+  check_direction(light.direction, "light " + support::quote(member.key), reader.where(key::direction), diagnostics);
   if (light.kind == LightKind::spot && !(light.outer_angle > light.inner_angle)) {
     diagnostics.report(
         Id::out_of_range, document.span(member.value),

@@ -69,6 +69,7 @@ struct Light {
   float outer_angle =
       default_outer_angle;  ///< spot: degrees from the axis where the light ends; greater than inner_angle
   std::optional<Shadow> shadow;
+  support::Span shadow_where;  ///< the size of the shadow, or all of it if it names none
 };
 
 /// A disc in the sky.

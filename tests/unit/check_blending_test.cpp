@@ -20,7 +20,7 @@ std::string messages_of(const std::string& pass, const std::string& nodes = "", 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(CheckBlending, TakesEachWayToBlend) {
-  for (const std::string blend : {"none", "over", "add", "multiply", "premultiplied"})
+  for (const std::string blend : {"over", "add", "multiply", "premultiplied"})
     EXPECT_FALSE(has(messages_of(R"("color": "tint", "depth_write": "on", "blend": ")" + blend + '"'), "error")) << blend;
   const std::string unknown = messages_of(R"("color": "tint", "blend": "multiplied")");
   EXPECT_TRUE(has(unknown, "error")) << unknown;
@@ -31,6 +31,8 @@ TEST(CheckBlending, RejectsKeysWithoutEffect) {
   for (const std::string key : {R"("blended": "clear")", R"("depth_write": "on")"}) {
     const std::string found = messages_of(R"("color": "tint", )" + key);
     EXPECT_TRUE(has(found, "has no effect without \"blend\"")) << found;
+    const std::string none = messages_of(R"("color": "tint", "blend": "none", )" + key);
+    EXPECT_TRUE(has(none, "has no effect where \"blend\" is \"none\"")) << none;
   }
   EXPECT_TRUE(has(messages_of(R"("color": "tint", "blend": "over", "blended": "tint")"),
                   "must name a boolean, integer or float parameter, not a color4"));

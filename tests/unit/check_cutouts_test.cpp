@@ -45,6 +45,9 @@ TEST(CheckCutouts, RejectLightsAndCornersOfVertices) {
                                       R"(, "l": {"type": "lightdirection"}, "shade": {"type": "sum_lights", "in": "l"})");
   EXPECT_TRUE(has(lit, "error[misplaced-node]: the \"cutout\" of a pass cannot depend on \"sum_lights\"")) << lit;
   EXPECT_TRUE(has(lit, "it decides what is seen, and lights exist only for what is seen")) << lit;
+  const std::string level = messages_of(R"("cutout": "uv.x", "cutoff": "shade.x")",
+                                        R"(, "l": {"type": "lightdirection"}, "shade": {"type": "sum_lights", "in": "l"})");
+  EXPECT_TRUE(has(level, "the \"cutoff\" of a pass cannot depend on \"sum_lights\"")) << level;
   const std::string corner = messages_of(R"("cutout": "c.x")", R"(, "c": {"type": "cornernormal1"})");
   EXPECT_TRUE(has(corner, "the \"cutout\" of a pass cannot depend on \"cornernormal1\"")) << corner;
 }

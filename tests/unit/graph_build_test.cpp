@@ -322,6 +322,8 @@ TEST(Build, RejectsInvalidPasses) {
       "unknown-choice: \"position_space\" of a pass must be one of world, object, view, not \"clip\" | \"clip\"");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cutoff": 0.5})")),
             "missing-key: \"cutoff\" has no effect without \"cutout\" | 0.5 | add \"cutout\", or remove this key");
+  EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cutout": "x", "cutoff": true})")),
+            "wrong-type: \"cutoff\" must be a number or a link, not a boolean | true");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "cutout": 0.5})")),
             "wrong-type: \"cutout\" must be a link, not a number | 0.5");
   EXPECT_EQ(first(with_pass(R"({"name": "b", "color": "x", "double_sided": true})")),

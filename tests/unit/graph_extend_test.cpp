@@ -118,7 +118,9 @@ TEST_F(ExtendEffect, RejectsWhatIsNoBase) {
   add("mine/scene.json", R"({"isoshade": 1, "scene": "s"})");
   add("mine/self.json", R"({"isoshade": 1, "effect": "s", "extends": "top.json"})");
   add("outside.json", base);
-  EXPECT_EQ(error(R"("extends": 1)"), "wrong-type: \"extends\" is the path of an effect");
+  EXPECT_EQ(error(R"("extends": 1)"), "wrong-type: \"extends\" must be the path of an effect, not a number");
+  EXPECT_EQ(error(R"("extends": null)"), "wrong-type: \"extends\" must be the path of an effect, not null");
+  EXPECT_EQ(error(R"("extends": "")"), "missing-file: \"extends\" must be the path of an effect, but is empty");
   EXPECT_EQ(error(R"("extends": "scene.json")"),
             "wrong-kind: \"mine/scene.json\" is not an effect, but a document of the kind scene");
   EXPECT_NE(error(R"("extends": "none.json")").find("missing-file: "), std::string::npos);
@@ -132,8 +134,10 @@ TEST_F(ExtendEffect, AllowsChainsOfSixteenEffects) {
   add("mine/e1.json", base);
   for (size_t i = 2; i <= max_chain; ++i)
     add("mine/e" + std::to_string(i) + ".json",
-        R"({"isoshade": 1, "effect": "e", "extends": "e)" + std::to_string(i + 1) + R"(.json"})");
-  EXPECT_EQ(error(R"("extends": "e0.json")"), "too-large: more than 16 effects extend each other");
+        R"({"isoshade": 1, "effect": "e", "extends": "e)" + std::to_string(i - 1) + R"(.json"})");
+  const auto on = [](size_t last) { return R"("extends": "e)" + std::to_string(last) + R"(.json")"; };
+  EXPECT_EQ(error(on(max_chain - 1)), "");
+  EXPECT_EQ(error(on(max_chain)), "too-large: more than 16 effects extend each other");
 }
 
 TEST_F(ExtendEffect, PostsAndFunctionsDoNotExtend) {

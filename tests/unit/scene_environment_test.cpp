@@ -29,11 +29,12 @@ TEST(SceneEnvironment, MistakesAreReported) {
     const auto parsed = parse_members("\"environment\": " + environment);
     EXPECT_TRUE(parsed.fails_with(part)) << environment << ": " << parsed.first_error();
   };
-  fails("{}", "missing-key");
+  fails("{}", "missing-key: the environment needs a \"file\" or a \"sky\"");
   fails(R"({"file": "a.hdr", "sky": {}})", "both a \"file\" and a \"sky\"");
   fails(R"({"file": "a.hdr", "rotation": 3})", "unknown-key");
   fails(R"({"sky": {"sun": {}}})", "missing-key");
   fails(R"({"sky": {"sun": {"direction": [0, 0, 0]}}})", "degenerate");
+  fails(R"({"sky": {"sun": {"direction": [1e-300, 0, 0]}}})", "\"direction\" of the sun is zero, or too short");
   fails(R"({"sky": {"colour": [0, 0, 0]}})", "unknown-key");
   fails(R"({"file": "a.hdr", "intensity": -1})", "out-of-range");
   fails(R"({"file": 3})", "wrong-type");

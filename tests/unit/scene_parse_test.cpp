@@ -201,6 +201,10 @@ TEST(ParseScene, RefusesScalesAndDirectionsOfZero) {
   EXPECT_TRUE(transform(R"("rotate": [1e9, 0, 0])").fails_with("out-of-range"));
   EXPECT_TRUE(parse_members(R"("lights": {"l": {"type": "directional", "direction": [0, 0, 0]}})")
                   .fails_with("degenerate"));
+  const auto tiny = parse_members(R"("lights": {"l": {"type": "directional", "direction": [1e-300, 0, 0]}})");
+  EXPECT_TRUE(tiny.fails_with("\"direction\" of light \"l\" is zero, or too short to have a direction"));
+  const support::Span where = tiny.diagnostics.all().at(0).where;
+  EXPECT_EQ(where.file->text().substr(where.begin, where.end - where.begin), "[1e-300, 0, 0]");
   EXPECT_TRUE(parse_members(R"("lights": {"l": {"type": "spot", "direction": [0, 0, 1], "position": [0, 0, 0],
                                                 "inner_angle": 30, "outer_angle": 30}})")
                   .fails_with("outer_angle"));
