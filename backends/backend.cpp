@@ -8,6 +8,8 @@ namespace {
 
 using lower::FrameBuffer;
 
+constexpr std::string_view smaller_image = "make a smaller image with --size";
+
 struct Contents {
   std::string_view what;
   std::string_view way_out;
@@ -15,7 +17,6 @@ struct Contents {
 };
 
 Contents contents_of(FrameBuffer array) {
-  constexpr std::string_view smaller_image = "make a smaller image with --size";
   switch (array) {
     case FrameBuffer::vertices:
       return {"the vertices of all meshes", "use meshes of fewer vertices", &Frame::largest_mesh};
@@ -31,7 +32,7 @@ Contents contents_of(FrameBuffer array) {
     case FrameBuffer::texel_bytes:
       return {"the textures of 8 bits a number", "use smaller images", &Frame::largest_in_texel_bytes};
     case FrameBuffer::inputs: return {"the table's inputs", "evaluate fewer rows at a time"};
-    case FrameBuffer::layers: return {"the images that a program reads", smaller_image};
+    case FrameBuffer::layers: return {"the images that a program reads", smaller_image, &Frame::largest_shadow};
     case FrameBuffer::frame:
     case FrameBuffer::textures:
     case FrameBuffer::layer_records: break;
@@ -73,7 +74,8 @@ void report_too_large(FrameBuffer array, size_t bytes, const ArrayLimit& limit, 
                          std::string(contents.what) + " take " + std::to_string(bytes) + " bytes; " +
                              std::string(limit.taker) + " takes at most " + std::to_string(limit.bytes));
   if (largest != nullptr && !largest->what.empty()) report.note("the largest is " + largest->what);
-  report.suggest(std::string(contents.way_out) + (limit.is_cpu ? "" : "; or draw it with --backend cpu"));
+  const bool is_shadow = frame != nullptr && largest == &frame->largest_shadow && !largest->what.empty();
+  report.suggest(std::string(is_shadow ? smaller_shadow : contents.way_out) + (limit.is_cpu ? "" : "; or draw it with --backend cpu"));
 }
 
 }  // namespace isoshade::backends

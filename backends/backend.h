@@ -94,6 +94,7 @@ struct Frame {
   int light_count = 0;
   std::vector<View> views;  ///< in the order in which they are drawn; the last one draws the picture
   Largest largest_in_texels, largest_in_texel_bytes, largest_mesh;
+  Largest largest_shadow;  ///< empty if shadow maps take less room than what else a view reads
 
   const View& picture() const { return views.back(); }
 };

@@ -74,6 +74,9 @@ struct ArrayLimit {
 void report_too_large(lower::FrameBuffer array, size_t bytes, const ArrayLimit& limit, const Frame* frame,
                       support::Diagnostics& diagnostics);
 
+/// What the user can do where shadow maps take most of the room.
+inline constexpr std::string_view smaller_shadow = "make the \"size\" of its shadow smaller";
+
 /// Adds its lifetime in seconds to a sum.
 class Timed {
  public:

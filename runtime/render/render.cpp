@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "backends/shared.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/memory.h"
@@ -19,15 +20,20 @@ namespace {
 
 /// The least memory that the images of a frame take: the targets, and the images that posts keep, beside the arrays
 /// that a post reads. Drawing takes more, which only the backend knows.
-uint64_t image_bytes(const Plan& plan) {
+struct ImageBytes {
+  uint64_t all = 0;
+  uint64_t shadows = 0;  ///< those of shadow maps
+};
+ImageBytes image_bytes(const Plan& plan) {
   constexpr uint64_t color = 4 * sizeof(float), depth = sizeof(float);
   const auto pixels = [](int width, int height) {
     return static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   };
-  uint64_t sum = 0;
+  uint64_t sum = 0, shadows = 0;
   for (const backends::View& view : plan.frame.views) {
     const bool is_picture = &view == &plan.frame.picture();
     const int side = is_picture ? samples_each_way(plan.samples) : 1;
+    if (!view.target.has_color) shadows += pixels(view.target.width, view.target.height) * depth;
     sum += pixels(view.target.width / side, view.target.height / side) *
            (view.target.has_color ? color + depth : depth);
     if (is_picture && !plan.posts.steps.empty())
@@ -37,7 +43,23 @@ uint64_t image_bytes(const Plan& plan) {
   uint64_t of_posts = 0;
   for (const PostStep& step : plan.posts.steps)
     of_posts = std::max(of_posts, pixels(step.width, step.height) * color);
-  return sum + of_posts;
+  return {sum + of_posts, shadows};
+}
+
+/// Whether the images fit into memory; otherwise reports what takes most of it.
+bool check_images(const Plan& plan, support::Diagnostics& diagnostics) {
+  const ImageBytes bytes = image_bytes(plan);
+  const backends::Largest& shadow = plan.frame.largest_shadow;
+  if (bytes.shadows <= bytes.all / 2 || shadow.what.empty())
+    return support::check_memory(bytes.all, "the image", "choose a smaller --size, or fewer posts", diagnostics);
+  const std::string what = "the image, of which shadow maps are the largest part,";
+  if (support::check_memory(bytes.all, what, std::string(backends::smaller_shadow), diagnostics)) return true;
+  if (!diagnostics.full()) {
+    support::Diagnostic& report = diagnostics.all().back();
+    report.where = shadow.where;
+    report.note("the largest is " + shadow.what);
+  }
+  return false;
 }
 
 /// Draws a plan with one backend.
@@ -218,9 +240,7 @@ class FrameRenderer {
 
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics) {
-  if (!support::check_memory(image_bytes(plan), "the image", "choose a smaller --size, or fewer posts",
-                             diagnostics))
-    return false;
+  if (!check_images(plan, diagnostics)) return false;
   stats = {};
   stats.samples = plan.samples;
   return FrameRenderer(plan, backend, stats, diagnostics).run(image);

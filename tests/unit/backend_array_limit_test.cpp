@@ -40,6 +40,20 @@ TEST(ArrayLimit, ErrorNamesTheLargestItemAndItsReference) {
   EXPECT_EQ(floats.find("the largest is"), std::string::npos) << floats;
 }
 
+TEST(ArrayLimit, ErrorNamesTheShadowThatTakesTheRoom) {
+  const auto source = std::make_shared<support::SourceFile>("scene.json", "{\"size\": 4096}\n");
+  Frame frame;
+  const std::string images = report(lower::FrameBuffer::layers, small_device, &frame);
+  EXPECT_NE(images.find("make a smaller image with --size"), std::string::npos) << images;
+  frame.largest_shadow = {"the shadow of light \"lamp\", 6 maps of 4096 x 4096 pixels", {source, 9, 13}};
+  const std::string shadows = report(lower::FrameBuffer::layers, small_device, &frame);
+  EXPECT_NE(shadows.find("scene.json:1:10: error[device-limit]"), std::string::npos) << shadows;
+  EXPECT_NE(shadows.find("the largest is the shadow of light \"lamp\""), std::string::npos) << shadows;
+  EXPECT_NE(shadows.find("make the \"size\" of its shadow smaller; or draw it with --backend cpu"), std::string::npos)
+      << shadows;
+  EXPECT_EQ(shadows.find("--size"), std::string::npos) << shadows;
+}
+
 TEST(ArrayLimit, ErrorOnTheCpuDoesNotSuggestTheCpu) {
   const std::string text = report(lower::FrameBuffer::texels, {"the cpu backend", 1000, true}, nullptr);
   EXPECT_EQ(text.find("--backend"), std::string::npos) << text;
