@@ -231,13 +231,17 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
-                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow, pass.repeat,
+                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow,
+                             pass.casts_blended_shadow, pass.receives_shadow, pass.repeat,
                              vertex_program(*typed, i, effect, options),
                              pixel_program(*typed, i, effect, options), {},
                              cutout_program(*typed, i, effect, options)});
     EffectPass& made = effect.passes.back();
     effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
                              (made.cutout && reads_previous(*made.cutout));
+    made.receives_shadow &= std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
+      return std::holds_alternative<interface::source::LightCount>(binding.source);
+    });
     if (pass.state.blend == interface::Blend::none) continue;
     made.blend = pixel_program(*typed, i, effect, options, true);
     made.reads_scene = std::ranges::any_of(made.blend->bindings, [](const interface::Binding& binding) {

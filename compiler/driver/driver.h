@@ -42,8 +42,9 @@ struct EffectPass {
   std::optional<size_t> double_sided;  ///< index of a parameter field; no face is culled if it is not 0
   std::optional<size_t> blended;       ///< index of a parameter field; the pass is opaque if it is 0
   std::optional<size_t> cutoff;        ///< index of a parameter field; there is no cut-out if it is 0 or less
-  bool casts_shadow = true;
-  interface::Repeat repeat;            ///< its parameter is the index of a parameter field
+  bool casts_shadow = true, casts_blended_shadow = false;  ///< the second: where it is blended
+  bool receives_shadow = true;  ///< its color depends on lights, and on whether anything stands before them
+  interface::Repeat repeat;     ///< its parameter is the index of a parameter field
   Program vertex;
   Program pixel;                  ///< of Stage::pixel, where the pass is opaque
   std::optional<Program> blend;   ///< of Stage::blend, where it is blended; there is none if `state` does not blend

@@ -160,6 +160,7 @@ struct Pass {
   std::optional<Link> cutout;  ///< the pass is drawn where it holds: a boolean, or a float of at least `cutoff`
   std::optional<Link> cutoff;  ///< of a float; 0 and less: drawn everywhere
   bool casts_shadow = true;    ///< whether lights that have shadows draw it into them
+  bool casts_blended_shadow = false;  ///< whether they do so where it is blended, too
   bool receives_shadow = true;
   Link color;                  ///< surface output
   TextRange place;

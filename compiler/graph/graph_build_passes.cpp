@@ -128,8 +128,9 @@ void GraphBuilder::read_pass(const Json& json) {
   read_cutout(reader, pass);
   // A hull around an object, which shows its back faces as an outline, has no shadow of its own, and light shines through
   // what is blended.
-  const bool is_solid = pass.state.cull != interface::Cull::front && pass.state.blend == interface::Blend::none;
-  pass.casts_shadow = reader.boolean("casts_shadow", is_solid);
+  const bool may_be_opaque = pass.state.blend == interface::Blend::none || pass.blended;
+  pass.casts_shadow = reader.boolean("casts_shadow", pass.state.cull != interface::Cull::front && may_be_opaque);
+  pass.casts_blended_shadow = pass.casts_shadow && json.find("casts_shadow") != nullptr;
   pass.receives_shadow = reader.boolean("receives_shadow", true);
   if (const Json* color = reader.value("color")) {
     if (std::optional<Link> found = this->color(*color)) pass.color = std::move(*found);

@@ -196,7 +196,8 @@ SchemaJson pass_schema() {
                                                 "of a float \"cutout\": default 0.5; 0: drawn everywhere")},
                            {"casts_shadow", described(boolean_schema(),
                                                       "whether lights with shadows see it: default true, but false for "
-                                                      "a pass that culls front faces, as outlines do")},
+                                                      "a pass that culls front faces, as outlines do, and where "
+                                                      "the pass is blended")},
                            {"receives_shadow", described(boolean_schema(), "whether shadows fall on it: default true")},
                            {"color", color_schema(), true}});
   return object_schema(keys);

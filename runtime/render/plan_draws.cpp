@@ -39,16 +39,19 @@ void Planner::place_pass(size_t o, size_t p, const Copy& copy, std::span<const s
   const std::vector<MeshPart>& parts = plan_.meshes[mesh_of_object_[o]].parts;
   const glm::vec3& scale = object.transform.scale;
   const bool mirrored = ((scale.x < 0) != (scale.y < 0)) != (scale.z < 0);
-  const auto may_see = [&](size_t v) {
-    if (is_shadow_map(v) && !(object.casts_shadow && pass.casts_shadow)) return false;
-    return !copy.views[v].outside || pass.moves_vertices;
+  const auto is_blended = [&](const std::vector<float>& values) {
+    return pass.blend && !effect.parameters.is_off(pass.blended, values);
   };
-  bool unseen = true;
-  for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v);
+  const auto may_see = [&](size_t v, bool blended) {
+    const bool casts = object.casts_shadow && (blended ? pass.casts_blended_shadow : pass.casts_shadow);
+    return (casts || !is_shadow_map(v)) && (!copy.views[v].outside || pass.moves_vertices);
+  };
 
   std::vector<int> counts;  // of each part; 0 where nothing is drawn
   bool left_out = false;
   for (const std::vector<float>& values : parameters) {
+    bool unseen = true;
+    for (size_t v = 0; v < copy.views.size(); ++v) unseen = unseen && !may_see(v, is_blended(values));
     const bool disabled = !options_.disabled && effect.parameters.is_off(pass.enabled, values);
     if (disabled) ++skipped.disabled;
     left_out |= unseen && !disabled;
@@ -65,7 +68,7 @@ void Planner::place_pass(size_t o, size_t p, const Copy& copy, std::span<const s
       if (repetition >= counts[part]) continue;
       const std::vector<float>& values = parameters[part];
       PassPrograms programs = programs_of_effect_[effect_of_object_[o]][p];
-      const bool blended = pass.blend && !effect.parameters.is_off(pass.blended, values);
+      const bool blended = is_blended(values);
       if (blended) programs.pixel = programs.blend;
       std::vector<float> words = values;
       if (effect.reads_previous) append_columns(place_of(before(o), copy.instance).model, words);
@@ -78,7 +81,7 @@ void Planner::place_pass(size_t o, size_t p, const Copy& copy, std::span<const s
       plan_.origins.push_back({draw.object, static_cast<uint32_t>(o), &pass});
       const int64_t before = plan_.stats.draws;
       for (size_t v = 0; v < copy.views.size(); ++v) {
-        if (!may_see(v)) continue;
+        if (!may_see(v, blended)) continue;
         backends::Draw seen = draw;
         if (is_shadow_map(v)) {
           seen.state = {};
@@ -160,7 +163,7 @@ void Planner::add_view(const scene::Camera& camera, const scene::View& view, int
 }
 
 std::vector<Hull> Planner::find_hulls(const scene::View& picture) const {
-  // Of a mesh whose passes move vertices; an author who moves them further leaves their shadows incomplete.
+  // Of a mesh whose passes move vertices; shadows may miss a surface that an author moves further.
   constexpr float moved = 0.5f;
   std::vector<Hull> hulls;
   for (size_t o = 0; o < scene_.objects.size(); ++o) {
@@ -169,16 +172,33 @@ std::vector<Hull> Planner::find_hulls(const scene::View& picture) const {
     const std::vector<driver::EffectPass>& passes = plan_.effects[effect_of_object_[o]].passes;
     const bool casts = object.casts_shadow && std::ranges::any_of(passes, &driver::EffectPass::casts_shadow);
     const bool moves = std::ranges::any_of(passes, &driver::EffectPass::moves_vertices);
+    const bool moves_what_casts = casts && std::ranges::any_of(passes, [](const driver::EffectPass& pass) {
+      return pass.casts_shadow && pass.moves_vertices;
+    });
+    const bool receives = object.receives_shadow && std::ranges::any_of(passes, &driver::EffectPass::receives_shadow);
     const int64_t count = scene::instance_count(object);
     for (int64_t i = 0; i < count; ++i) {
       const glm::mat4 model = scene::model_matrix(object, scene::instance(object, i));
       const glm::mat4 projected = scene::multiply(picture.projection, model);
       const bool is_seen = moves || !outside_view(mesh.low, mesh.high, projected, scene::max_size, scene::max_size);
-      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts,
-                       object.receives_shadow && is_seen});
+      hulls.push_back({corners_of(mesh.low, mesh.high, moves ? moved : 0.0f, model), casts, moves_what_casts,
+                       object.receives_shadow && is_seen, receives && is_seen, moves});
     }
   }
   return hulls;
+}
+
+void Planner::note_largest_shadow(const scene::Light& light, size_t maps) {
+  if (maps == 0) return;
+  const auto side = static_cast<uint64_t>(light.shadow->size);
+  const uint64_t texels = maps * side * side;
+  shadow_texels_ += texels;
+  if (texels <= most_shadow_texels_) return;
+  most_shadow_texels_ = texels;
+  const std::string size = std::to_string(side);
+  plan_.frame.largest_shadow = {"the shadow of light " + quote(light.name) + ", " + std::to_string(maps) +
+                                    (maps == 1 ? " map of " : " maps of ") + size + " x " + size + " pixels",
+                                light.shadow_where};
 }
 
 void Planner::add_lights(const scene::View& picture) {
@@ -188,8 +208,13 @@ void Planner::add_lights(const scene::View& picture) {
   backends::Frame& frame = plan_.frame;
   for (const scene::Light& light : scene_.lights) {
     auto record = scene::light_record(light);
-    const std::vector<ShadowMap> maps = light.shadow ? shadow_maps(light, hulls, picture) : std::vector<ShadowMap>{};
-    if (light.shadow && maps.empty()) plan_.stats.skips.push_back({"shadow of " + light.name, "it darkens nothing that is seen"});
+    const bool is_black = light.intensity == 0 || light.color == glm::vec3(0);
+    const std::vector<ShadowMap> maps =
+        light.shadow && !is_black ? shadow_maps(light, hulls, picture) : std::vector<ShadowMap>{};
+    if (light.shadow && maps.empty())
+      plan_.stats.skips.push_back(
+          {"shadow of " + light.name, is_black ? "the light is black" : "it darkens nothing that is seen"});
+    note_largest_shadow(light, maps.size());
     if (!maps.empty()) {
       const size_t place = frame.views.size() + (has_opaque_view_ ? 1 : 0);
       record[word::shadow] = static_cast<float>(1 + place * lower::shadow_map_records);
@@ -217,6 +242,8 @@ void Planner::add_views(int width, int height, int side) {
   add_lights(camera);
   shadow_maps_ = views.size();
   if (has_opaque_view_) add_view(scene_.camera, camera, width, height, {"what is opaque", width, height});
+  const uint64_t opaque_words = uint64_t{5} * static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+  if (has_opaque_view_ && shadow_texels_ < opaque_words) plan_.frame.largest_shadow = {};
   add_view(scene_.camera, camera, width, height, {"the picture", side * width, side * height});
   for (size_t v = shadow_maps_; v < views.size(); ++v) {
     // Programs find what is opaque at the first place, and all of them find the shadow maps at the same ones behind it.

@@ -52,6 +52,7 @@ class Planner {
   void add_view(const scene::Camera& camera, const scene::View& view, int width, int height, backends::Target target);
   /// Adds the records of the lights, and a view for each of their shadow maps.
   void add_lights(const scene::View& picture);
+  void note_largest_shadow(const scene::Light& light, size_t maps);
   std::vector<Hull> find_hulls(const scene::View& picture) const;
   bool is_shadow_map(size_t view) const { return view < shadow_maps_; }
   /// The number of the view that draws what is opaque alone, if there is one.
@@ -99,6 +100,7 @@ class Planner {
   Plan plan_;
   std::vector<scene::View> cameras_;  ///< of each view of the frame
   size_t shadow_maps_ = 0;            ///< the views that begin the frame
+  uint64_t shadow_texels_ = 0, most_shadow_texels_ = 0;  ///< of all shadow maps; of those of one light
   bool has_opaque_view_ = false;
   struct BlendedDraw {
     float nearness;

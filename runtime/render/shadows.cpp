@@ -16,7 +16,11 @@ using glm::vec3;
 constexpr float widest_cone = 60;
 /// Part of the scene's size at which a point light or a spot begins to see.
 constexpr float near_part = 0.0009765625f;  // 2^-10
-/// Enlarges what a directional light looks at, against rounding.
+/// How far vertices may be moved without losing their shadow under a directional light, in sizes of the scene.
+constexpr float moved_sizes = 2;
+/// Deeper maps of directional lights gain nothing: their numbers would become denormal.
+constexpr float most_depths = 1.8446744e19f;  // 2^64
+/// Enlarges what a light looks at, against rounding.
 constexpr float slack = 0.001f;
 
 /// The smallest box along the axes around points.
@@ -29,7 +33,25 @@ struct Bounds {
     }
   }
   bool empty() const { return !(low.x <= high.x); }
+  /// The longest side.
+  float largest() const {
+    const vec3 sides = high - low;
+    return std::max({sides.x, sides.y, sides.z, 1e-6f});
+  }
+  /// The corners of a box that is larger by `sizes` times the longest side in each direction.
+  std::array<vec3, 8> widened(float sizes) const {
+    const vec3 margin(sizes * largest());
+    return corners_of(low - margin, high + margin, 0, glm::mat4(1));
+  }
 };
+
+/// The box around everything.
+Bounds bounds_of(std::span<const Hull> hulls) {
+  Bounds all;
+  for (const Hull& hull : hulls)
+    for (const vec3& corner : hull.corners) all.add(corner);
+  return all;
+}
 
 /// A plane through the eye, or along the view: distance(p) = dot(normal, p) + offset, not negative inside.
 struct Plane {
@@ -62,11 +84,12 @@ std::vector<vec3> clip(const std::vector<vec3>& polygon, const Plane& plane) {
 
 /// Calls use(p) for points whose convex hull is the part of the box that the picture may show.
 template <class Use>
-void for_seen_points(const Hull& hull, const scene::View& picture, const std::array<Plane, 4>& sides, const Use& use) {
+void for_seen_points(const std::array<vec3, 8>& corners, const scene::View& picture,
+                     const std::array<Plane, 4>& sides, const Use& use) {
   constexpr int faces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
   for (const auto& face : faces) {
     std::vector<vec3> polygon;
-    for (const int corner : face) polygon.push_back(hull.corners[static_cast<size_t>(corner)]);
+    for (const int corner : face) polygon.push_back(corners[static_cast<size_t>(corner)]);
     for (const Plane& side : sides) polygon = clip(polygon, side);
     std::ranges::for_each(polygon, use);
   }
@@ -74,7 +97,7 @@ void for_seen_points(const Hull& hull, const scene::View& picture, const std::ar
   if (picture.eye.w == 0) return;
   const vec3 eye(picture.eye);
   Bounds box;
-  for (const vec3& corner : hull.corners) box.add(corner);
+  for (const vec3& corner : corners) box.add(corner);
   bool inside = true;
   for (int i = 0; i < 3; ++i) inside = inside && box.low[i] <= eye[i] && eye[i] <= box.high[i];
   if (inside) use(eye);
@@ -89,7 +112,8 @@ vec3 up_across(const vec3& along) {
 /// The number of texels at each edge of a map that only the filter reads.
 float margin_of(const scene::Shadow& shadow) { return std::ceil(shadow.softness * 0.5f) + 1; }
 
-raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& camera, const scene::View& view) {
+raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& camera, const scene::View& view,
+                          float depths) {
   // The filter compares with texels whose centres lie so far away, and positions are rounded to 1/256.
   const float reach = shadow.softness * 0.5f + 0.5f + 0.01f;
   // What the facet of a curved surface lacks where its neighbour is steeper: as if each had at least this slope.
@@ -100,19 +124,21 @@ raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& came
   const bool perspective = camera.projection == scene::Projection::perspective;
   // Orthographic depth falls by clip_from_view[2][2] a unit; depth in perspective is near / distance.
   const float fall = perspective ? 1.0f : view.clip_from_view[2][2];
-  const float least = shadow.bias * (least_slope * texel * reach * fall + rounding);
+  const float least = shadow.bias * (least_slope * texel * reach * fall + rounding / depths);
   return {shadow.bias * reach, perspective ? least : 0.0f, perspective ? 0.0f : least};
 }
 
-/// The edges of the camera's picture lie as many texels inside of the map as the filter reaches.
-ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow) {
+/// The edges of the camera's picture lie as many texels inside of the map as the filter reaches. An orthographic map is as
+/// deep as `depths` pictures, towards the light.
+ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow, float depths = 1) {
   ShadowMap map{camera, scene::make_view(camera, shadow.size, shadow.size), {}};
   const auto size = static_cast<float>(shadow.size);
   map.margin = size / std::max(size - 2 * margin_of(shadow), 1.0f);
   map.view.clip_from_view[0][0] /= map.margin;
   map.view.clip_from_view[1][1] /= map.margin;
+  for (const int column : {2, 3}) map.view.clip_from_view[column][2] /= depths;
   map.view.projection = scene::multiply(map.view.clip_from_view, map.view.view);
-  map.bias = bias_of(shadow, camera, map.view);
+  map.bias = bias_of(shadow, camera, map.view, depths);
   return map;
 }
 
@@ -125,14 +151,23 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
     return vec3(scene::dot(right, p), scene::dot(upright, p), scene::dot(back, p));
   };
   const std::array<Plane, 4> sides = sides_of(picture.projection);
+  if (std::ranges::none_of(hulls, &Hull::darkens)) return {};
   Bounds seen;
+  const auto see = [&](const std::array<vec3, 8>& corners) {
+    for_seen_points(corners, picture, sides, [&](const vec3& p) { seen.add(in_light(p)); });
+  };
   for (const Hull& hull : hulls)
-    if (hull.shows) for_seen_points(hull, picture, sides, [&](const vec3& p) { seen.add(in_light(p)); });
+    if (hull.shows) see(hull.corners);
+  const Bounds all = bounds_of(hulls);
+  const bool may_show = std::ranges::any_of(hulls, [](const Hull& hull) { return hull.shows && hull.moves; });
+  // Nothing is where it was: look wherever vertices may have been moved to.
+  if (seen.empty() && may_show) see(all.widened(moved_sizes));
   if (seen.empty()) return {};
   float nearest = seen.high.z;
-  bool casts = false;
+  bool casts = false, casts_anywhere = false;
   for (const Hull& hull : hulls) {
     if (!hull.casts) continue;
+    casts_anywhere = casts_anywhere || hull.casts_anywhere;
     Bounds box;
     for (const vec3& corner : hull.corners) box.add(in_light(corner));
     const bool beside = box.high.x < seen.low.x || box.low.x > seen.high.x || box.high.y < seen.low.y ||
@@ -141,7 +176,7 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
     casts = true;
     nearest = std::max(nearest, box.high.z);
   }
-  if (!casts) return {};
+  if (!casts && !casts_anywhere) return {};
   const vec3 middle = (seen.low + seen.high) * 0.5f;
   const vec3 extent = vec3(seen.high.x, seen.high.y, nearest) - seen.low;
   const float widest = std::max({extent.x, extent.y, 1e-6f});
@@ -155,7 +190,21 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
   camera.height = widest * (1 + slack);
   camera.near = 0;
   camera.far = depth * (1 + 2 * slack);
-  return {map_of(camera, *light.shadow)};
+  if (!casts_anywhere) return {map_of(camera, *light.shadow)};
+  // How far the map must see beyond `begin`, in depths of the map: a power of two, so that all depths keep their digits.
+  float depths = 1;
+  while ((depths - 1) * camera.far < moved_sizes * all.largest() && depths < most_depths) depths *= 2;
+  return {map_of(camera, *light.shadow, depths)};
+}
+
+/// Whether a point of the hull may lie within the range of the light.
+bool may_reach(const scene::Light& light, const Hull& hull) {
+  if (light.range == 0 || hull.moves) return true;
+  Bounds box;
+  for (const vec3& corner : hull.corners) box.add(corner);
+  const vec3 gap = glm::max(glm::max(box.low - light.position, light.position - box.high), vec3(0));
+  const float reach = light.range * (1 + slack);
+  return !(scene::dot(gap, gap) > reach * reach);
 }
 
 }  // namespace
@@ -180,15 +229,11 @@ size_t shadow_map_count(const scene::Light& light) {
 
 std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture) {
   if (light.kind == scene::LightKind::directional) return map_of_directional(light, hulls, picture);
-  const bool is_needed = std::ranges::any_of(hulls, &Hull::shows) && std::ranges::any_of(hulls, &Hull::casts);
-  if (!is_needed) return {};
-  Bounds all;
-  for (const Hull& hull : hulls)
-    for (const vec3& corner : hull.corners) all.add(corner);
-  const vec3 diagonal = all.high - all.low;
+  const auto is_darkened = [&](const Hull& hull) { return hull.darkens && may_reach(light, hull); };
+  if (std::ranges::none_of(hulls, is_darkened) || std::ranges::none_of(hulls, &Hull::casts)) return {};
   scene::Camera camera;
   camera.position = light.position;
-  camera.near = std::max({diagonal.x, diagonal.y, diagonal.z, 1e-6f}) * near_part;
+  camera.near = bounds_of(hulls).largest() * near_part;
   std::vector<ShadowMap> maps;
   // Far enough to differ from the position.
   const vec3 away = glm::abs(light.position);

@@ -270,12 +270,79 @@ TEST_F(Shadows, AreCastAndReceivedByWhatSaysSo) {
   EXPECT_EQ(light("", "", R"(, "cull": "front", "casts_shadow": true)"), 0);
 }
 
+TEST_F(Shadows, AreCastByWhatIsBlendedOnlyWhereItIsOpaqueOrSaysSo) {
+  const auto light = [&](const std::string& blended, const std::string& pass) {
+    folder_.write("glass.json", R"({"isoshade": 1, "effect": "glass",
+      "parameters": {"blended": {"type": "boolean", "value": true}, "n": {"type": "float", "value": 1}},
+      "passes": [{"name": "p", "blend": "over", "color": [1, 1, 1, 0.5])" + pass + "}]}");
+    return Floor::light(picture({Floor::pixels, Floor::pixels}, Floor::camera() + R"(,
+      "lights": {"sun": {"type": "directional", "direction": [1, -1, 0], "shadow": {}}},
+      "objects": {
+        "floor": {"mesh": {"type": "plane", "size": [8, 8]}, "effect": "lit.json"},
+        "plate": {"mesh": {"type": "plane", "size": [2, 2]}, "effect": "glass.json", "transform": {"translate": [-2, 2, 0]},
+                  "parameters": {"blended": )" + blended + "}}}"), 0, 0);
+  };
+  const std::string key = R"(, "blended": "blended")", casts = R"(, "casts_shadow": true)";
+  EXPECT_EQ(light("true", ""), 1);
+  EXPECT_EQ(light("true", casts), 0);
+  EXPECT_EQ(light("true", key), 1);
+  EXPECT_EQ(light("true", key + casts), 0);
+  EXPECT_EQ(light("false", key), 0);
+  EXPECT_EQ(light("false", key + casts), 0);
+  EXPECT_EQ(light("false", key + R"(, "casts_shadow": false)"), 1);
+  EXPECT_EQ(light("false", key + R"(, "cull": "front")"), 1);
+}
+
+TEST_F(Shadows, AreCastFromWhereVerticesAreMovedTo) {
+  folder_.write("moved.json", R"({"isoshade": 1, "effect": "moved", "parameters": {"by": {"type": "vector3", "value": 0}},
+    "nodes": {"p": {"type": "position"}, "to": {"type": "add", "in1": "p", "in2": "by"}},
+    "passes": [{"name": "p", "position": "to", "color": 1}]})");
+  const auto light = [&](const std::string& at, const std::string& by, const std::string& of_floor = "") {
+    return Floor::light(picture({Floor::pixels, Floor::pixels}, Floor::camera() + R"(,
+      "lights": {"sun": {"type": "directional", "direction": [1, -1, 0], "shadow": {}}},
+      "objects": {
+        "floor": {"mesh": {"type": "plane", "size": [8, 8]}, "effect": "lit.json")" + of_floor + R"(},
+        "plate": {"mesh": {"type": "plane", "size": [2, 2]}, "effect": "moved.json", "transform": {"translate": )" + at +
+                                                            R"(}, "parameters": {"by": )" + by + "}}}"), 0, 0);
+  };
+  EXPECT_EQ(light("[-2, 2, 0]", "[0, 0, 0]"), 0);
+  EXPECT_EQ(light("[-2, 2, 0]", "[-30, 30, 0]"), 0) << "towards the light";
+  EXPECT_EQ(light("[-2, -40, 0]", "[0, 42, 0]"), 0) << "from behind what is seen";
+  EXPECT_EQ(light("[60, 2, 0]", "[-62, 0, 0]"), 0) << "from beside what is seen";
+  EXPECT_EQ(light("[60, 2, 0]", "[-62, 0, 0]", R"(, "casts_shadow": false)"), 0) << "as the only caster";
+  EXPECT_EQ(light("[60, 2, 0]", "[0, 0, 0]"), 1);
+  EXPECT_EQ(light("[-2, 2, 0]", "[0, 0, 30]"), 1);
+}
+
 TEST_F(Shadows, ThatDarkenNothingAreNotDrawn) {
   const render::Plan made = plan({64, 64}, 1, R"("lights": {"sun": {"type": "directional", "direction": [1, -1, 0], "shadow": {}}},
     "objects": {"ball": {"mesh": "sphere", "effect": "lit.json", "casts_shadow": false}})");
   EXPECT_EQ(made.frame.views.size(), 1u);
   ASSERT_EQ(made.stats.skips.size(), 1u);
   EXPECT_EQ(made.stats.skips[0].what, "shadow of sun");
+}
+
+TEST_F(Shadows, OfLightsThatArriveNowhereAreNotDrawn) {
+  folder_.write("flat.json", R"({"isoshade": 1, "effect": "flat", "passes": [{"name": "p", "color": 1}]})");
+  folder_.write("dull.json", R"json({"isoshade": 1, "effect": "dull",
+    "nodes": {"c": {"type": "lightcolor"}, "sum": {"type": "sum_lights", "in": "c"}},
+    "passes": [{"name": "p", "receives_shadow": false, "color": "sum"}]})json");
+  const auto maps = [&](const std::string& light, const std::string& effect = "lit.json") {
+    const render::Plan made = plan({64, 64}, 1, R"("lights": {"l": {"shadow": {}, )" + light +
+                                                    R"(}}, "objects": {"ball": {"mesh": "sphere", "effect": ")" + effect + "\"}}");
+    EXPECT_EQ(made.stats.skips.size(), made.frame.views.size() == 1 ? 1u : 0u);
+    return made.frame.views.size() - 1;
+  };
+  const std::string sun = R"("type": "directional", "direction": [1, -1, 0])";
+  const std::string lamp = R"("type": "point", "position": [0, 5, 0])";
+  EXPECT_EQ(maps(sun), 1u);
+  EXPECT_EQ(maps(sun + R"(, "intensity": 0)"), 0u);
+  EXPECT_EQ(maps(sun + R"(, "color": [0, 0, 0])"), 0u);
+  EXPECT_EQ(maps(sun, "flat.json"), 0u) << "no pass reads lights";
+  EXPECT_EQ(maps(sun, "dull.json"), 0u) << "no pass receives shadows";
+  EXPECT_EQ(maps(lamp), 6u);
+  EXPECT_EQ(maps(lamp + R"(, "range": 4.1)"), 6u);
+  EXPECT_EQ(maps(lamp + R"(, "range": 3.9)"), 0u) << "it ends before it reaches anything";
 }
 
 }  // namespace
