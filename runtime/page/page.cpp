@@ -59,6 +59,21 @@ bool report_large(const scene::Scene& scene, size_t bytes, support::Diagnostics&
   return true;
 }
 
+/// Reports effects that read what is opaque behind them.
+bool report_readers(const scene::Scene& scene, const render::Plan& plan, support::Diagnostics& diagnostics) {
+  for (const render::RecordOrigin& origin : plan.origins) {
+    if (!origin.pass->reads_scene) continue;
+    const scene::Object& object = scene.objects[origin.object];
+    diagnostics
+        .report(support::Id::unsupported, object.effect_where,
+                "a page has no picture of what is opaque, which the effect of object " + support::quote(object.name) +
+                    " reads (scenecolor, scenedepth)")
+        .suggest("draw the scene with `isoshade render`, or give the object another effect");
+    return true;
+  }
+  return false;
+}
+
 /// The scene as the page draws it where it compares pictures: of one sample a pixel.
 struct Reference {
   render::Plan plan;
@@ -94,6 +109,9 @@ std::vector<std::string> find_differences(const scene::Scene& scene, support::Di
   };
   if (scene.samples > 1)
     warn(scene.samples_where, "the page draws one sample a pixel, not " + std::to_string(scene.samples));
+  for (const scene::Light& light : scene.lights)
+    if (light.shadow)
+      warn(light.shadow_where, "the page draws without the shadow of light " + support::quote(light.name));
   if (scene.environment)
     warn(scene.environment->where, "the page draws without the environment");
   if (scene.lights.size() > emit::most_forward_lights)
@@ -113,8 +131,10 @@ std::optional<std::string> make_page(const scene::Scene& scene, const PageOption
   all.compiler.tier = options.tier;
   scene::Scene drawn = scene;
   drawn.environment.reset();  // its maps are large, and the page's shaders do not read them
+  for (scene::Light& light : drawn.lights) light.shadow.reset();
   const auto plan = render::plan_frame(drawn, all, diagnostics);
-  if (!plan || report_large(scene, array_bytes(*plan), diagnostics)) return std::nullopt;
+  if (!plan || report_readers(scene, *plan, diagnostics) || report_large(scene, array_bytes(*plan), diagnostics))
+    return std::nullopt;
   const auto shaders = compile_shaders(*plan, options, diagnostics);
   if (!shaders) return std::nullopt;
   Reference reference;

@@ -164,5 +164,27 @@ TEST_F(PageTest, WarnsOfSamples) {
   EXPECT_NE(diagnostics_.text().find("warning[page-limit]"), std::string::npos) << diagnostics_.text();
 }
 
+TEST_F(PageTest, WarnsOfEveryShadow) {
+  ASSERT_TRUE(make(ball + R"(, "lights": {
+    "sun": {"type": "directional", "direction": [0, -1, 0], "shadow": {}},
+    "fill": {"type": "directional", "direction": [1, 0, 0]}})"))
+      << diagnostics_.text();
+  EXPECT_NE(diagnostics_.text().find("warning[page-limit]: the page draws without the shadow of light \"sun\""),
+            std::string::npos)
+      << diagnostics_.text();
+  EXPECT_EQ(diagnostics_.all().size(), 1u);
+}
+
+TEST_F(PageTest, SaysThatItHasNoPictureOfWhatIsOpaque) {
+  write("glass.json", R"({"isoshade": 1, "effect": "glass", "nodes": {"behind": {"type": "scenecolor"}},
+    "passes": [{"name": "p", "blend": "over", "color": "behind"}]})");
+  EXPECT_FALSE(make(R"("objects": {"pane": {"mesh": "plane", "effect": "glass.json"}})"));
+  const std::string text = diagnostics_.text();
+  EXPECT_NE(text.find("a page has no picture of what is opaque, which the effect of object \"pane\" reads"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("forward"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace isoshade
