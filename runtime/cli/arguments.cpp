@@ -126,7 +126,8 @@ void add_choice(CLI::App& app, BackendChoice& choice, bool has_vulkan = true) {
 
 void add_changes(CLI::App& app, SceneChanges& changes) {
   app.add_option("--set", changes.settings,
-                 "Override a parameter: NAME.PARAMETER=VALUE, or PARAMETER=VALUE if only one has it")
+                 "Override a parameter: NAME.PARAMETER=VALUE, or PARAMETER=VALUE if only one has it; or a value of the "
+                 "camera, a light or the environment: camera.fov, sun.intensity, environment.rotate")
       ->take_all();
   app.add_option("--mesh", changes.mesh,
                  "glTF file (.gltf, .glb) to show instead of the scene's own, or of the mesh of its only object");
