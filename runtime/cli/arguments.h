@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parsed command line. Only arguments.cpp includes CLI11, which takes longer to compile than the rest together.
+// The parsed command line. Only arguments.cpp and options.cpp include CLI11, which takes longer to compile than
+// the rest together.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What options of several subcommands take, and how they are checked.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "runtime/cli/arguments.h"
+
+namespace isoshade::cli {
+
+extern const CLI::Validator size_text, range_text, varied_text, time_text, frames_text, limit_text;
+/// "error", or "no-" followed by the id of a warning.
+extern const CLI::Validator warning_text;
+extern const CLI::IsMember backend_names, lane_names, division_names;
+/// The backends that must agree in every bit.
+extern const CLI::Validator compared_names;
+
+void add_fail_on_nan(CLI::App& app, bool& fail);
+void add_precision(CLI::App& app, functions::Tier& precision);
+void add_lanes(CLI::App& app, BackendChoice& choice);
+void add_choice(CLI::App& app, BackendChoice& choice, bool has_vulkan = true);
+void add_changes(CLI::App& app, SceneChanges& changes);
+
+}  // namespace isoshade::cli
