@@ -248,7 +248,7 @@ TEST_F(Gltf, RefusesAlphaModesAndSidesThatAreNone) {
 
 TEST_F(Gltf, NamesBuffersWhoseDataUriCannotBeDecodedWithoutPrintingIt) {
   const std::string rest(5000, 'A');
-  for (const std::string uri : {"data:;base64," + rest, "data:application/octet-stream;base64," + rest}) {
+  for (const std::string& uri : {"data:;base64," + rest, "data:application/octet-stream;base64," + rest}) {
     EXPECT_TRUE(refuses(square_json(all_attributes, one_node, R"("uri": ")" + uri + R"(", )"),
                         "cannot read the buffer 0 of ", "m.gltf"));
     EXPECT_NE(diagnostics_.text().find("its data URI cannot be decoded to 156 bytes"), std::string::npos);
