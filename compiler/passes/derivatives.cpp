@@ -23,6 +23,9 @@ namespace {
 
 using Values = std::vector<ValueId>;
 
+/// More derivatives than that, each taken of the other, are a mistake.
+constexpr size_t most_rounds = 64;
+
 bool any(const Marks& marks) { return std::ranges::find(marks, true) != marks.end(); }
 
 class Differentiation {
@@ -38,7 +41,7 @@ class Differentiation {
     for (const uint32_t f : *order)
       // Derivatives of values that depend on no other derivative, then those that depended on these alone, and so on.
       for (size_t round = 0; asks(f); ++round) {
-        support::assert_that(round < module_.functions[f].instructions.size(), "a derivative depends on itself");
+        support::assert_that(round < most_rounds, "a derivative depends on itself");
         rewrite(f);
       }
   }
@@ -197,7 +200,8 @@ std::vector<Way> Differentiation::ways_of(const Function& function, const Marks&
         const Instruction& made = function.instructions[id];
         if (made.op == ways[w].op) want(function.operands_of(made)[0]);
         for (const Gradient& gradient : missing_gradients(function, made))
-          if (gradient.way == w) want(function.operands_of(made)[gradient.of]);
+          if (gradient.way == w && gradient.of < function.operands_of(made).size())
+            want(function.operands_of(made)[gradient.of]);
       }
     }
     ways[w].needed = needed(function, changes, wanted);
@@ -264,9 +268,12 @@ Values Differentiation::call_with_gradients(Tangents& tangents, Builder& b, cons
                                             const std::vector<Way>& ways, const Marks& derived,
                                             const Instruction& made, Values arguments) {
   for (const Gradient& gradient : missing_gradients(from, made)) {
-    const ValueId of = from.operands_of(made)[gradient.of];
     const Way& way = ways[gradient.way];
-    arguments.push_back(derived[of] ? b.op(way.op, {tangents.value(of)}) : tangents.change(way, of));
+    // A derivative of an argument that is a derivative itself is left for the next round.
+    const bool is_argument = gradient.of < from.operands_of(made).size();
+    const bool waits = !is_argument || derived[from.operands_of(made)[gradient.of]];
+    arguments.push_back(waits ? b.op(way.op, {arguments[gradient.of]})
+                              : tangents.change(way, from.operands_of(made)[gradient.of]));
   }
   return b.call(made.imm, arguments);
 }

@@ -58,11 +58,13 @@ Surroundings::Surroundings() {
   for (const auto& [width, height] : sizes) {
     const auto first = static_cast<uint32_t>(buffer(FrameBuffer::texels).size());
     for (int i = 0; i < 4 * width * height; ++i) buffer(FrameBuffer::texels).push_back(numbers.in(1000));
-    for (const uint32_t word : {first, static_cast<uint32_t>(width), static_cast<uint32_t>(height), 0u, ~0u})
+    for (const uint32_t word : {first, static_cast<uint32_t>(width), static_cast<uint32_t>(height), 0u, 1u, ~0u})
       buffer(FrameBuffer::textures).push_back(word);
   }
   buffer(FrameBuffer::texel_bytes).push_back(0);
   for (int i = 0; i < 4 * pixels; ++i) buffer(FrameBuffer::layers).push_back(numbers.in(1e6));
+  for (int i = 0; i < 4 * pixels; ++i)  // motions, of both signs
+    buffer(FrameBuffer::layers).push_back(numbers.in(lower::farthest_motion) | (i % 3 == 0 ? 0x80000000u : 0u));
   for (int i = 0; i < pixels; ++i) buffer(FrameBuffer::objects).push_back(numbers.in(1));  // depths
 }
 
@@ -85,8 +87,10 @@ void Surroundings::define(ir::Module& module, const interface::Interface& interf
     const Int pixel = (k.integer(0) * Int(7) + k.integer(1) * Int(13)) & Int(pixels - 1);
     if (function.host == interface::Host::depth)
       k.b.finish(std::array{k.load(FrameBuffer::objects, pixel).value});
-    else
-      k.b.finish(std::array{k.load4(FrameBuffer::layers, pixel * Int(4), 0).value});
+    else {
+      const bool is_motion = module.functions[function.function].name.find("motion") != std::string::npos;
+      k.b.finish(std::array{k.load4(FrameBuffer::layers, pixel * Int(4), is_motion ? 4 * pixels : 0).value});
+    }
   }
 }
 

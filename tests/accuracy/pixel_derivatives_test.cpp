@@ -125,5 +125,26 @@ TEST_F(SecondDerivatives, AreIdenticalOnEveryBackendAndThroughFunctions) {
   expect_identical(image, direct, "without functions");
 }
 
+TEST_F(SecondDerivatives, OfAttributesAndOfInputsOfFunctionsAreIdenticalEverywhere) {
+  folder_.write("bend_of.json", R"({"isoshade": 1, "function": "bend_of", "inputs": {"x": {"type": "float"}},
+"nodes": {"d": {"type": "ddx", "in": "x"}, "e": {"type": "ddy", "in": "d"}}, "outputs": {"out": "e"}})");
+  for (const char* nodes :
+       {R"("a": {"type": "ddx", "in": "uv"}, "shown": {"type": "ddx", "in": "a"})",
+        R"("a": {"type": "fwidth", "in": "uv"}, "shown": {"type": "fwidth", "in": "a"})",
+        R"("p": {"type": "position"}, "a": {"type": "multiply", "in1": "p.x", "in2": "p.x"}, "b": {"type": "ddy", "in": "a"},
+"c": {"type": "ddx", "in": "b"}, "shown": {"type": "combine2", "in1": "c", "in2": "b"})",
+        R"("n": {"type": "noise2d", "texcoord": "f", "to": "vector2"}, "a": {"type": "ddx", "in": "n"},
+"shown": {"type": "ddy", "in": "a"})",
+        R"("a": {"type": "bend_of.json", "x": "f.x"}, "b": {"type": "bend_of.json", "x": "uv.y"},
+"shown": {"type": "combine2", "in1": "a", "in2": "b"})"}) {
+    const render::Plan plan = showing(nodes);
+    const backends::Image image = draw(plan, *interpreter::create());
+    for (const char* lanes : {"1", "8x2"}) expect_identical(image, draw(plan, *cpu_backend(lanes)), nodes);
+#ifdef ISOSHADE_VULKAN
+    expect_identical(image, draw(plan, *vulkan_backend()), nodes);
+#endif
+  }
+}
+
 }  // namespace
 }  // namespace isoshade::equivalence

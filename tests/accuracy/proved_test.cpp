@@ -19,9 +19,9 @@ const fs::path graphs = ISOSHADE_GRAPHS;
 
 constexpr uint64_t most_work = 25'000'000;  ///< a second or so
 
-bool is_scene(const fs::path& path) {
+bool is_graph(const fs::path& path) {
   const std::string text = (std::stringstream() << std::ifstream(path).rdbuf()).str();
-  return text.find("\"scene\":") != std::string::npos;
+  return text.find("\"scene\":") == std::string::npos && text.find("\n  \"image\":") == std::string::npos;
 }
 
 /// Paths below graphs/, in order.
@@ -29,7 +29,7 @@ std::vector<std::string> documents() {
   std::vector<std::string> paths;
   for (const auto& file : fs::recursive_directory_iterator(graphs)) {
     const fs::path path = fs::relative(file.path(), graphs);
-    if (path.extension() == ".json" && *path.begin() != "schema" && !is_scene(file.path()))
+    if (path.extension() == ".json" && *path.begin() != "schema" && is_graph(file.path()))
       paths.push_back(path.string());
   }
   std::ranges::sort(paths);

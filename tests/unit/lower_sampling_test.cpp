@@ -32,7 +32,7 @@ class Picture {
     for (int i = 0; i < words; ++i) texels_.push_back(std::ldexp(static_cast<float>(random() >> 8), -24));
     bytes_.resize(table == floats ? 1 : count);
     for (uint32_t& word : bytes_) word = static_cast<uint32_t>(random());
-    records_ = {0, 1, 1, 0, table, table == floats ? 4 : 1, width, height, 0, table};
+    records_ = {0, 1, 1, 0, 1, table, table == floats ? 4 : 1, width, height, 0, 1, table};
   }
 
   float texel(int x, int y, int channel) const {

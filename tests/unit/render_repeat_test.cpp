@@ -21,7 +21,8 @@ class RepeatTest : public ::testing::Test {
                      "kind": {"type": "float", "value": 0}},
       "nodes": {"i": {"type": "passindex"}, "n": {"type": "passcount"},
                 "color": {"type": "expression", "code": "vector3(float(i), float(n), kind)", "i": "i", "n": "n", "kind": "kind"},
-                "shown": {"type": "convert", "in": "color", "to": "color3"}},
+                "flat": {"type": "convert", "in": "color", "to": "color3"}, "light": {"type": "lightcolor"},
+                "lit": {"type": "sum_lights", "in": "light"}, "shown": {"type": "add", "in1": "flat", "in2": "lit"}},
       "passes": [{"name": "first", "color": "shown"},
                  {"name": "shells", "repeat": "shells", "enabled": "on", "color": "shown"},
                  {"name": "last", "color": "shown"}]})json");
