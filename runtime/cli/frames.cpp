@@ -138,7 +138,7 @@ class FrameSequence {
     if (!file_) {
       // In real time; a single picture has no next one.
       const double length = static_cast<double>(times_.last) - static_cast<double>(times_.first);
-      const double seconds = length > 0 ? length / (times_.count - 1) : 1 / static_cast<double>(scene.frames_per_second);
+      const double seconds = length > 0 && times_.count > 1 ? length / (times_.count - 1) : 1 / static_cast<double>(scene.frames_per_second);
       file_.emplace(*format_, image.width, image.height, seconds);
     }
     file_->add(scene::encode(image.rgba, output.encoding, output.exposure));

@@ -34,6 +34,17 @@ void report_unknown(const driver::ParameterBlock& block, std::string_view giver,
   if (report.fix.empty()) report.note(list.empty() ? "it has no parameters" : "it has " + list);
 }
 
+/// Records hold floats, which have all integers up to this one.
+constexpr int64_t greatest_integer = int64_t{1} << 24;
+
+bool check_integer(const driver::Field& field, int64_t value, const support::Span& where, Diagnostics& diagnostics) {
+  if (value >= -greatest_integer && value <= greatest_integer) return true;
+  diagnostics.report(Id::out_of_range, where,
+                     "the integer parameter " + quote(field.name) + " is " + std::to_string(value) + "; it lies between -" +
+                         std::to_string(greatest_integer) + " and " + std::to_string(greatest_integer));
+  return false;
+}
+
 /// Whether every number of a value is in the range of the field.
 bool check_range(const driver::Field& field, Type type, const Literal& literal, const support::Span& where,
                  Diagnostics& diagnostics) {
@@ -74,7 +85,9 @@ bool check_fit(const driver::Field& field, const Literal& literal, const support
         .note(graph::described_names(values));
     return false;
   }
-  if (graph::fits(type, literal)) return check_range(field, type, literal, where, diagnostics);
+  if (graph::fits(type, literal))
+    return check_range(field, type, literal, where, diagnostics) &&
+           (type != Type::integer || check_integer(field, literal.integer, where, diagnostics));
   const int floats = graph::float_count(type);
   std::string expected = std::string(graph::type_name(type));
   if (type == Type::filename) expected += ", a path in quotes";
@@ -152,6 +165,9 @@ class ParameterValues::Resolver {
 
   std::optional<ParameterValues> resolve() {
     const size_t errors_before = diagnostics_.error_count();
+    for (const driver::Field& field : block_.fields)
+      if (driver::type_of(field) == Type::integer && !field.value.empty())
+        check_integer(field, static_cast<int64_t>(field.value[0]), {}, diagnostics_);
     take_factors();
     take_parameters();
     take_variations();

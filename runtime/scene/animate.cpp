@@ -114,6 +114,7 @@ class Finder {
       : document_(document), animation_(animation), diagnostics_(diagnostics), rest_(animation.key) {}
 
   std::optional<Place> find() {
+    if (rest_.ends_with('.')) return rests("its name ends with a dot");
     Json* owner = &document_.root;
     format::Object kind = format::Object::scene;
     while (true) {

@@ -15,10 +15,22 @@
 namespace isoshade::scene {
 namespace {
 
-/// A number of time steps, at least one and at most what two bytes hold.
-int steps_of(double seconds, double per_second) {
-  return static_cast<int>(std::clamp(std::round(seconds * per_second), 1.0, 65535.0));
-}
+/// For how many steps of time each picture is shown, so that all together last as long as they should. Two bytes hold a
+/// number of steps.
+class Steps {
+ public:
+  /// `least`: what players heed.
+  Steps(double seconds, double per_second, double least) : each_(seconds * per_second), least_(least) {}
+  int next() {
+    const double due = std::round(++count_ * each_) - shown_;
+    const double steps = std::clamp(due, least_, 65535.0);
+    shown_ += steps;
+    return static_cast<int>(steps);
+  }
+
+ private:
+  double each_, least_, shown_ = 0, count_ = 0;
+};
 
 void append(std::string& bytes, uint32_t value, int count) {
   for (int i = count - 1; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i) & 255);
@@ -51,6 +63,7 @@ void for_each_chunk(std::string_view file, const Use& use) {
 /// PNG, third edition, W3C 2025: acTL before the data; fcTL before that of each picture; the data of all but the first in
 /// fdAT, with numbers that count fcTL and fdAT together.
 std::string apng(std::span<const std::string> pngs, int width, int height, double seconds) {
+  Steps steps(seconds, 1000, 1);
   std::string file = pngs[0].substr(0, 8);
   uint32_t number = 0;
   for (size_t i = 0; i < pngs.size(); ++i) {
@@ -65,7 +78,7 @@ std::string apng(std::span<const std::string> pngs, int width, int height, doubl
       std::string control;
       for (const uint32_t word : {number++, static_cast<uint32_t>(width), static_cast<uint32_t>(height), 0u, 0u})
         append(control, word, 4);
-      append(control, static_cast<uint32_t>(steps_of(seconds, 1000)), 2);
+      append(control, static_cast<uint32_t>(steps.next()), 2);
       append(control, 1000, 2);
       append(control, 0, 2);  // it stays, and replaces what was there
       file += chunk("fcTL", control);
@@ -109,7 +122,7 @@ void must(int result) {
 class AnimationFile::Gif {
  public:
   Gif(int width, int height, double seconds)
-      : width_(width), height_(height), steps_(std::max(2, steps_of(seconds, 100))), row_(static_cast<size_t>(width)) {
+      : width_(width), height_(height), steps_(seconds, 100, 2), row_(static_cast<size_t>(width)) {
     int error = 0;
     file_ = EGifOpen(&bytes_, write, &error);
     map_ = GifMakeMapObject(palette_size, nullptr);
@@ -136,7 +149,7 @@ class AnimationFile::Gif {
   Gif& operator=(const Gif&) = delete;
 
   void add(std::span<const uint8_t> rgba) {
-    const GraphicsControlBlock control{DISPOSE_BACKGROUND, false, steps_, transparent};
+    const GraphicsControlBlock control{DISPOSE_BACKGROUND, false, steps_.next(), transparent};
     GifByteType block[4];
     const size_t size = EGifGCBToExtension(&control, block);
     must(EGifPutExtension(file_, GRAPHICS_EXT_FUNC_CODE, static_cast<int>(size), block));
@@ -167,7 +180,8 @@ class AnimationFile::Gif {
     return count;
   }
 
-  int width_, height_, steps_;
+  int width_, height_;
+  Steps steps_;
   std::vector<GifPixelType> row_;
   std::string bytes_;
   GifFileType* file_ = nullptr;

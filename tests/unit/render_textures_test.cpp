@@ -375,6 +375,17 @@ TEST_F(Textures, ImageDocumentsThatDoNotFitAreErrors) {
   EXPECT_NE(other.find("is not an image, but a document of the kind function"), std::string::npos) << other;
 }
 
+TEST_F(Textures, IntegersThatRecordsCannotHoldAreErrors) {
+  folder_.write("layered.json", R"({"isoshade": 1, "effect": "layered", "parameters": {"n": {"type": "integer", "value": 0}},
+    "nodes": {"picture": {"type": "image", "file": "a.png", "layer": "n"}}, "passes": [{"name": "base", "color": "picture"}]})");
+  EXPECT_TRUE(plan(square("layered", R"("n": 16777216)"))) << diagnostics_.text();
+  for (const char* number : {"16777217", "-16777217", "2147483647"}) {
+    EXPECT_FALSE(plan(square("layered", R"("n": )" + std::string(number)))) << number;
+    EXPECT_NE(diagnostics_.text().find("error[out-of-range]: the integer parameter \"n\""), std::string::npos)
+        << diagnostics_.text();
+  }
+}
+
 TEST_F(Textures, LayersCountInTheLimits) {
   folder_.write("strip.png", scene::png(4, 8, std::vector<uint8_t>(128)));
   folder_.write("strip.json", R"({"isoshade": 1, "image": "s", "layers": [{"file": "strip.png", "count": 2}]})");

@@ -155,6 +155,7 @@ TEST_F(Animate, PathsThatLeadToNothingAreReportedWithTheNearestName) {
 TEST_F(Animate, WhatMayNotMoveIsReportedWithTheReason) {
   EXPECT_TRUE(reports(R"("objects.ball.mesh.radius": {"keys": [[0, 1]]})", "a mesh is made once"));
   EXPECT_TRUE(reports(R"("objects.ball.effect": {"keys": [[0, 1]]})", "only numbers, lists of numbers and booleans"));
+  EXPECT_TRUE(reports(R"("camera.fov.": {"keys": [[0, 30]]})", "ends with a dot"));
   EXPECT_TRUE(reports(R"("size": {"keys": [[0, [8, 8]]]})", "sizes and counts are the same"));
   EXPECT_TRUE(reports(R"("samples": {"keys": [[0, 1]]})", "sizes and counts are the same"));
   EXPECT_TRUE(reports(R"("posts.fog.size": {"keys": [[0, 1]]})", "sizes and counts are the same"));

@@ -120,6 +120,25 @@ TEST(AnimationFile, AGifShowsEachPictureInItsNearestColours) {
   DGifCloseFile(gif, &error);
 }
 
+TEST(AnimationFile, PicturesLastAsLongTogetherAsTheyShould) {
+  // 31 pictures at 30 each second: 1033 ms, though none can last 33.3 ms or 3.33 hundredths of a second.
+  for (const auto format : {AnimationFormat::apng, AnimationFormat::gif}) {
+    AnimationFile file(format, 1, 1, 1.0 / 30);
+    const std::vector<uint8_t> pixel{10, 20, 30, 255};
+    for (int i = 0; i < 31; ++i) file.add(pixel);
+    const std::string bytes = file.finish();
+    const bool is_gif = format == AnimationFormat::gif;
+    const std::string mark = is_gif ? std::string("\x21\xf9\x04", 3) : "fcTL";
+    const size_t offset = is_gif ? 4 : 24;
+    int steps = 0;
+    for (size_t at = bytes.find(mark); at != std::string::npos; at = bytes.find(mark, at + 1)) {
+      const auto byte = [&](size_t i) { return int{static_cast<unsigned char>(bytes[at + offset + i])}; };
+      steps += is_gif ? byte(0) + 256 * byte(1) : 256 * byte(0) + byte(1);
+    }
+    EXPECT_EQ(steps, is_gif ? 103 : 1033);
+  }
+}
+
 TEST(AnimationFile, FormatsAreToldByTheEndingOfTheName) {
   EXPECT_EQ(animation_format_of("a/b.apng"), AnimationFormat::apng);
   EXPECT_EQ(animation_format_of("b.GIF"), AnimationFormat::gif);
