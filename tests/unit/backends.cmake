@@ -24,5 +24,6 @@ isoshade_test(reference_test
   SOURCES
     unit/reference_backend_test.cpp
     unit/reference_functions_test.cpp
-  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter isoshade_reference)
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter isoshade_reference
+  TIMEOUT 300)
 target_compile_definitions(reference_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
