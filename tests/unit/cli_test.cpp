@@ -215,7 +215,7 @@ TEST_F(Cli, StatsListSkippedPosts) {
 TEST_F(Cli, AnUnknownSubcommandListsTheKnownOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("compile, render, verify, eval, check, fmt, draw, page, bench, cache, devices"),
+  EXPECT_NE(outcome.text.find("compile, render, sheet, verify, eval, check, fmt, draw, page, bench, cache, devices"),
             std::string::npos)
       << outcome.text;
 }
