@@ -45,6 +45,20 @@ isoshade_test(outline_test
   TIMEOUT 300)
 target_compile_definitions(outline_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
+isoshade_test(depth_of_field_test
+  SOURCES accuracy/depth_of_field_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(depth_of_field_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
+isoshade_test(stylised_highlight_test
+  SOURCES accuracy/stylised_highlight_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
+  LABEL accuracy
+  TIMEOUT 300)
+target_compile_definitions(stylised_highlight_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
 isoshade_test(strokes_test
   SOURCES accuracy/strokes_test.cpp
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter
