@@ -14,6 +14,7 @@
 #include "compiler/interface/pass_state.h"
 #include "compiler/support/diagnostics.h"
 #include "runtime/raster/clip.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::backends {
 
@@ -138,7 +139,16 @@ class ViewRenderer {
 
 class Backend {
  public:
+  /// `threads`: of the host; 0: as many as there are cores.
+  explicit Backend(int threads = 0) : workers_(threads) {}
   virtual ~Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+
+  /// The threads of the host that may work for this backend.
+  threads::Workers& workers() { return workers_; }
+  const threads::Workers& workers() const { return workers_; }
+
   virtual std::string_view name() const = 0;
   /// Device or compiler, lanes, division: one line for reports.
   virtual std::string description() const = 0;
@@ -161,6 +171,9 @@ class Backend {
   /// Runs an eval program over `rows` records of inputs; outputs are records of the program's result words.
   virtual bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                         std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) = 0;
+
+ private:
+  threads::Workers workers_;
 };
 
 }  // namespace isoshade::backends

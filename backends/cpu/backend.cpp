@@ -8,7 +8,6 @@
 
 #include "backends/cpu/shade.h"
 #include "backends/shared.h"
-#include "backends/workers.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
@@ -23,7 +22,6 @@ using backends::Frame;
 using backends::Image;
 using backends::ScreenPass;
 using backends::ViewPass;
-using backends::Workers;
 using driver::Program;
 using lower::FrameBuffer;
 using support::Diagnostics;
@@ -74,12 +72,13 @@ class Buffers {
 
 class CpuBackend final : public backends::Backend {
  public:
-  CpuBackend(KernelStore kernels, int threads) : kernels_(std::move(kernels)), workers_(threads) {}
+  CpuBackend(KernelStore kernels, int threads) : Backend(threads), kernels_(std::move(kernels)) {}
 
   std::string_view name() const override { return "cpu"; }
   std::string description() const override {
+    const int count = workers().count();
     return kernels_.compiler().version() + ", lanes " + std::string(kernels_.lanes().name) + ", " +
-           std::to_string(workers_.count()) + (workers_.count() == 1 ? " thread" : " threads") +
+           std::to_string(count) + (count == 1 ? " thread" : " threads") +
            ", native division";
   }
   double build_seconds() const override { return kernels_.seconds(); }
@@ -102,7 +101,6 @@ class CpuBackend final : public backends::Backend {
                     Diagnostics& diagnostics);
 
   KernelStore kernels_;
-  Workers workers_;
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
 };
 
@@ -165,7 +163,7 @@ bool CpuBackend::transform(const ViewPass& pass, std::vector<std::vector<float>>
     clip[d].resize(4 * count);
     for (size_t first = 0; first < count; first += vertex_chunk) tasks.push_back({d, first});
   }
-  workers_.for_each(tasks.size(), [&](size_t i) {
+  workers().for_each(tasks.size(), [&](size_t i) {
     const auto [d, first] = tasks[i];
     const Draw& draw = draws[d];
     const size_t count = std::min(vertex_chunk, draw.vertex_count - first);
@@ -212,14 +210,14 @@ bool CpuViewRenderer::draw(const backends::Window& window, std::span<const int32
   DrawJob job{pass_.frame, pass_.view, grid, triangles, opaque, buffers_.views(), kernels_, {}, image};
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
   job.bins.resize(parts);
-  backend_.workers_.for_each(parts, [&](size_t part) {
+  backend_.workers().for_each(parts, [&](size_t part) {
     const size_t first = part * triangle_chunk;
     job.bins[part] = raster::Bins(triangles, static_cast<int>(first),
                                   static_cast<int>(std::min(triangle_chunk, count - first)), grid);
   });
 
   image.resize(window.width, window.height, pass_.view.target.has_color);
-  backend_.workers_.for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
+  backend_.workers().for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
     std::unique_ptr<TilePainter>& painter = backend_.painters_.local();
     if (!painter) painter = std::make_unique<TilePainter>();
     painter->paint(job, static_cast<int>(tile));
@@ -237,7 +235,7 @@ bool CpuBackend::post(const ScreenPass& pass, std::vector<float>& rgba, Diagnost
   rgba.resize(4 * width * height);
   // A task takes consecutive rows, because these read almost the same pixels.
   const size_t rows = std::max<size_t>(1, row_chunk / width);
-  workers_.for_each((height + rows - 1) / rows, [&](size_t chunk) {
+  workers().for_each((height + rows - 1) / rows, [&](size_t chunk) {
     for (size_t y = chunk * rows; y < std::min(height, (chunk + 1) * rows); ++y)
       kernels->front()->post(buffers.views(), 0, pass.first_row + static_cast<int>(y), pass.width,
                              rgba.data() + 4 * width * y);
@@ -262,7 +260,7 @@ bool CpuBackend::evaluate(const Program& program, std::span<const int32_t> input
   const size_t width = backends::word_count(program.results);
   outputs.resize(rows * width);
   const size_t chunks = (rows + row_chunk - 1) / row_chunk;
-  workers_.for_each(chunks, [&](size_t chunk) {
+  workers().for_each(chunks, [&](size_t chunk) {
     const size_t first = chunk * row_chunk;
     kernels->front()->eval(buffers.views(), static_cast<int>(first),
                            static_cast<int>(std::min(row_chunk, rows - first)),

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/support/diagnostics.h"
@@ -24,10 +27,32 @@ bool check_memory(uint64_t bytes, const std::string& what, const std::string& fi
 /// "1.3 GiB", "20 MiB".
 std::string memory_text(uint64_t bytes);
 
-/// Frees the memory of a vector. (`v = {}` assigns an empty list and keeps the capacity.)
+/// Leaves new elements uninitialised unless they are given a value.
 template <class T>
-void release(std::vector<T>& vector) {
-  std::vector<T>().swap(vector);
+struct Uninitialised : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = Uninitialised<U>;
+  };
+  template <class U>
+  void construct(U* place) noexcept {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... Values>
+  void construct(U* place, Values&&... values) {
+    ::new (static_cast<void*>(place)) U(std::forward<Values>(values)...);
+  }
+};
+
+/// A vector whose resize() does not write the new elements: for arrays that are then written whole, whose memory is so
+/// touched only once.
+template <class T>
+using Array = std::vector<T, Uninitialised<T>>;
+
+/// Frees the memory of a vector. (`v = {}` assigns an empty list and keeps the capacity.)
+template <class T, class Allocator>
+void release(std::vector<T, Allocator>& vector) {
+  std::vector<T, Allocator>().swap(vector);
 }
 
 }  // namespace isoshade::support

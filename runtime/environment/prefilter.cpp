@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "backends/workers.h"
+#include "runtime/threads/workers.h"
 #include "compiler/functions/logarithm.h"
 #include "runtime/raster/tile.h"
 #include "runtime/scene/host_math.h"
@@ -12,7 +12,7 @@
 namespace isoshade::environment {
 namespace {
 
-using backends::Workers;
+using threads::Workers;
 
 /// Rays for each level of roughness from 1 on: powers of two. The lobes of the other levels are wide enough for LobeJob.
 constexpr int ray_counts[] = {128, 512, 1024};

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "backends/workers.h"
+#include "runtime/threads/workers.h"
 #include "compiler/driver/driver.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/lower/frame_layout.h"
@@ -116,7 +116,7 @@ Pyramid paint_sky(const scene::Sky& sky, const driver::Program& program, float r
     return color;
   };
   constexpr size_t rows_of_task = 16;
-  backends::Workers(options.threads).for_each(side / rows_of_task, [&](size_t task) {
+  threads::Workers(options.threads).for_each(side / rows_of_task, [&](size_t task) {
     Sky seen(program);
     for (size_t y = task * rows_of_task; y < (task + 1) * rows_of_task; ++y) {
       float* texel = pyramid.level(0) + channels * ((y + 1) * (side + 2) + 1);

@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "backends/cpu/backend.h"
-#include "backends/workers.h"
+#include "runtime/threads/workers.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/raster/reference.h"
 #include "runtime/raster/triangle.h"
@@ -22,7 +22,7 @@ using backends::Image;
 using backends::object_stride;
 using backends::render;
 using backends::same_bits;
-using backends::Workers;
+using threads::Workers;
 using driver::Program;
 using driver::Stage;
 using support::Diagnostics;

@@ -11,7 +11,7 @@
 
 #include "runtime/lanes/lanes.h"
 
-namespace isoshade::backends {
+namespace isoshade::threads {
 
 class Workers {
  public:
@@ -42,4 +42,4 @@ class Workers {
   std::optional<tbb::global_control> more_;
 };
 
-}  // namespace isoshade::backends
+}  // namespace isoshade::threads
