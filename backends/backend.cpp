@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/backend.h"
 
+#include <algorithm>
+
 #include "backends/shared.h"
+#include "runtime/lanes/lanes.h"
 
 namespace isoshade::backends {
 namespace {
@@ -50,12 +53,13 @@ void Image::resize(int w, int h, bool has_color) {
   depth.resize(pixels);
 }
 
-bool Backend::draw(const ViewPass& pass, std::span<const float> vertices, std::span<const int32_t> triangles,
-                   Image& image, support::Diagnostics& diagnostics) {
-  const std::unique_ptr<ViewRenderer> renderer = begin(pass, vertices, diagnostics);
-  const Target& target = pass.view.target;
-  return renderer != nullptr &&
-         renderer->draw({0, 0, target.width, target.height}, triangles, image, diagnostics);
+bool is_finite(std::span<const float> numbers) {
+  using Floats = lanes::Float<4, 1>;
+  const auto is_special = [](const auto& x) { return (lanes::bits_nonnan(x) & lanes::exponent_bits) == lanes::exponent_bits; };
+  const size_t in_registers = numbers.size() / 4 * 4;
+  auto special = lanes::Bool<4, 1>(false);
+  for (size_t i = 0; i < in_registers; i += 4) special = special | is_special(lanes::load_lanes<Floats>(&numbers[i]));
+  return !any(special) && std::ranges::none_of(numbers.subspan(in_registers), is_special);
 }
 
 size_t word_count(std::span<const driver::Field> fields) {

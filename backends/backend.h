@@ -10,9 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "backends/slots.h"
 #include "compiler/driver/program.h"
 #include "compiler/interface/pass_state.h"
 #include "compiler/support/diagnostics.h"
+#include "compiler/support/memory.h"
 #include "runtime/raster/clip.h"
 #include "runtime/threads/workers.h"
 
@@ -104,8 +106,7 @@ struct Frame {
 struct ViewPass {
   const Frame& frame;
   const View& view;
-  std::span<const float> layers = {};
-  std::span<const int32_t> layer_records = {};
+  std::span<const ImageRead> images = {};
 };
 
 /// A full-screen pass ready to be run: a program of Stage::post and its arrays of lower/frame_layout.h.
@@ -113,28 +114,26 @@ struct ScreenPass {
   const driver::Program* program = nullptr;
   int width = 0;  ///< of the image that it makes
   int height = 0;
-  int first_row = 0;  ///< of those that are made; `height` rows from there on. The record of the image has all rows.
   std::span<const float> frame;
   std::span<const float> view;    ///< the camera alone
   std::span<const float> record;  ///< parameters and numbers of taps, as `objects`
-  std::span<const float> layers;
-  std::span<const int32_t> layer_records;
+  /// The depth, the image that it processes, and those that its document lists.
+  std::span<const ImageRead> images;
   const Frame* textures = nullptr;  ///< whose textures it reads; null if it reads none
 };
 
-/// Draws a view window by window. The backend prepares once what all windows share.
-class ViewRenderer {
- public:
-  virtual ~ViewRenderer() = default;
-  /// Rasterises `triangles` (records of lower/frame_layout.h, in draw order, in pixels of the target) over the
-  /// background, those with triangle_flag::cutout where their cut-out holds, and runs the pixel program once for each
-  /// pixel of the window that they cover, if the target has color. Then it draws those with triangle_flag::blended, which
-  /// come last and only if the target has color, one after the other: where one covers a pixel and passes the depth test,
-  /// its program of Stage::blend makes the new color of the old one, and without triangle_flag::keeps_depth the pixel gets
-  /// its depth.
-  /// `image` gets the size of the window. Its bits do not depend on how a view is divided into windows.
-  virtual bool draw(const Window& window, std::span<const int32_t> triangles, Image& image,
-                    support::Diagnostics& diagnostics) = 0;
+/// Triangles to draw into a window of a view's target, and where the result goes.
+struct Drawing {
+  ViewPass pass;
+  std::span<const float> vertices;     ///< Frame::vertices, followed by those that clipping made
+  std::span<const int32_t> triangles;  ///< records of lower/frame_layout.h, in draw order, in pixels of the target
+  Window window;                       ///< in pixels of the target
+  /// The samples along each axis in each pixel of the images: 1, 2 or 4. A target without color has 1.
+  int side = 1;
+  /// Run over each sample, one after the other, before samples become pixels. They read the depth and the color of their
+  /// own sample alone, as their first two images; nothing else reads what they make.
+  std::span<const ScreenPass> posts = {};
+  Slot depth, color;  ///< of the window in pixels; no color where the target has none
 };
 
 class Backend {
@@ -155,19 +154,28 @@ class Backend {
   /// The seconds spent so far on machine code: compiling it, or finding and loading it, when a program first runs.
   virtual double build_seconds() const { return 0; }
 
-  /// Runs the vertex programs: clip[d] receives 4 floats for each vertex of view.draws[d], NaN canonical.
-  virtual bool transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
-                         support::Diagnostics& diagnostics) = 0;
-  /// `vertices`: frame.vertices, followed by those that clipping made. What `pass` refers to and `vertices` must
-  /// outlive the ViewRenderer; call no other Backend method until it is destroyed. Null after an error, which is
-  /// reported.
-  virtual std::unique_ptr<ViewRenderer> begin(const ViewPass& pass, std::span<const float> vertices,
-                                              support::Diagnostics& diagnostics) = 0;
-  /// Draws the whole view at once.
-  bool draw(const ViewPass& pass, std::span<const float> vertices, std::span<const int32_t> triangles,
-            Image& image, support::Diagnostics& diagnostics);
-  /// Runs a full-screen pass: `rgba` receives 4 floats a pixel, rows top down, NaN canonical.
-  virtual bool post(const ScreenPass& pass, std::vector<float>& rgba, support::Diagnostics& diagnostics) = 0;
+  // The images of a frame lie in one array, `layers`, where programs read them. It lives on from frame to frame.
+
+  /// Makes the array this long before a frame is drawn; what was in it is lost. Reports arrays beyond the backend's limit.
+  virtual bool reserve(size_t floats, support::Diagnostics& diagnostics) = 0;
+  virtual void write(size_t first, std::span<const float> floats) = 0;
+  /// Valid until the next call of a method that is not const.
+  virtual std::span<const float> read(const Slot& slot) = 0;
+  /// Whether every color that has been drawn or that a post has made since reserve() is finite.
+  virtual bool is_finite() = 0;
+
+  /// Runs the vertex programs: `clip` receives 4 floats for each vertex of each draw of the view, NaN canonical.
+  virtual bool transform(const ViewPass& pass, support::Array<float>& clip, support::Diagnostics& diagnostics) = 0;
+  /// Rasterises the triangles over the background, those with triangle_flag::cutout where their cut-out holds, and runs the
+  /// pixel program once for each sample of the window that they cover, if the target has color. Then it draws those with
+  /// triangle_flag::blended, which come last and only if the target has color, one after the other: where one covers a
+  /// sample and passes the depth test, its program of Stage::blend makes the new color of the old one, and without
+  /// triangle_flag::keeps_depth the sample gets its depth. Then it runs the posts, and each pixel becomes the mean of its
+  /// samples, see resolve(). The bits do not depend on how a view is divided into windows.
+  virtual bool draw(const Drawing& drawing, support::Diagnostics& diagnostics) = 0;
+  /// Runs full-screen passes of one size, NaN canonical. Each pass after the first reads, of what the passes before it
+  /// made, its own pixel alone, as its image 1, and nothing else reads that: all of them write to `made`.
+  virtual bool post(std::span<const ScreenPass> passes, const Slot& made, support::Diagnostics& diagnostics) = 0;
   /// Runs an eval program over `rows` records of inputs; outputs are records of the program's result words.
   virtual bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                         std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) = 0;

@@ -13,17 +13,23 @@
 
 namespace isoshade::backends {
 
+/// The arrays `layers` and `layer_records`, as programs are given them.
+struct Layers {
+  std::span<const float> floats;
+  std::span<const int32_t> records;
+};
+
 /// Calls use(buffer, words) for each array that programs of a view read, except textures and triangles, until a call
-/// returns false. `vertices`: see Backend::begin.
+/// returns false. `vertices`: see Drawing.
 template <class Use>
-bool for_each_array(const ViewPass& pass, std::span<const float> vertices, const Use& use) {
+bool for_each_array(const ViewPass& pass, const Layers& layers, std::span<const float> vertices, const Use& use) {
   using lower::FrameBuffer;
   const Frame& frame = pass.frame;
   return use(FrameBuffer::vertices, vertices) && use(FrameBuffer::objects, std::span(frame.objects)) &&
          use(FrameBuffer::lights, std::span(frame.lights)) &&
          use(FrameBuffer::frame, std::span(pass.view.frame.empty() ? frame.frame : pass.view.frame)) &&
-         use(FrameBuffer::view, std::span(pass.view.words)) && use(FrameBuffer::layers, pass.layers) &&
-         use(FrameBuffer::layer_records, pass.layer_records);
+         use(FrameBuffer::view, std::span(pass.view.words)) && use(FrameBuffer::layers, layers.floats) &&
+         use(FrameBuffer::layer_records, layers.records);
 }
 
 template <class Use>
@@ -35,11 +41,11 @@ bool for_each_texture_array(const Frame& frame, const Use& use) {
 }
 
 template <class Use>
-bool for_each_array(const ScreenPass& pass, const Use& use) {
+bool for_each_array(const ScreenPass& pass, const Layers& layers, const Use& use) {
   using lower::FrameBuffer;
   return use(FrameBuffer::frame, pass.frame) && use(FrameBuffer::view, pass.view) &&
-         use(FrameBuffer::objects, pass.record) && use(FrameBuffer::layers, pass.layers) &&
-         use(FrameBuffer::layer_records, pass.layer_records) &&
+         use(FrameBuffer::objects, pass.record) && use(FrameBuffer::layers, layers.floats) &&
+         use(FrameBuffer::layer_records, layers.records) &&
          (pass.textures == nullptr || for_each_texture_array(*pass.textures, use));
 }
 
@@ -76,6 +82,9 @@ void report_too_large(lower::FrameBuffer array, size_t bytes, const ArrayLimit& 
 
 /// What the user can do where shadow maps take most of the room.
 inline constexpr std::string_view smaller_shadow = "make the \"size\" of its shadow smaller";
+
+/// Whether no number is infinite or NaN.
+bool is_finite(std::span<const float> numbers);
 
 /// Adds its lifetime in seconds to a sum.
 class Timed {

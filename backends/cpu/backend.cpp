@@ -2,11 +2,13 @@
 #include "backends/cpu/backend.h"
 
 #include <algorithm>
+#include <atomic>
 #include <climits>
 #include <tbb/enumerable_thread_specific.h>
 #include <utility>
 
 #include "backends/cpu/shade.h"
+#include "backends/resolve.h"
 #include "backends/shared.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
@@ -19,8 +21,11 @@ namespace {
 using backends::Cache;
 using backends::Draw;
 using backends::Frame;
-using backends::Image;
+using backends::Drawing;
+using backends::ImageRead;
+using backends::Layers;
 using backends::ScreenPass;
+using backends::Slot;
 using backends::ViewPass;
 using driver::Program;
 using lower::FrameBuffer;
@@ -51,14 +56,14 @@ class Buffers {
     view = words.empty() ? BufferView{&nothing, 1} : BufferView{words.data(), static_cast<int>(words.size())};
     return true;
   }
-  bool bind(const ViewPass& pass, std::span<const float> vertices, Diagnostics& diagnostics) {
+  bool bind(const ViewPass& pass, const Layers& layers, std::span<const float> vertices, Diagnostics& diagnostics) {
     const auto use = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
       return bind(buffer, words, diagnostics);
     };
-    return backends::for_each_array(pass, vertices, use) && backends::for_each_texture_array(pass.frame, use);
+    return backends::for_each_array(pass, layers, vertices, use) && backends::for_each_texture_array(pass.frame, use);
   }
-  bool bind(const ScreenPass& pass, Diagnostics& diagnostics) {
-    return backends::for_each_array(pass, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+  bool bind(const ScreenPass& pass, const Layers& layers, Diagnostics& diagnostics) {
+    return backends::for_each_array(pass, layers, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
       return bind(buffer, words, diagnostics);
     });
   }
@@ -83,47 +88,54 @@ class CpuBackend final : public backends::Backend {
   }
   double build_seconds() const override { return kernels_.seconds(); }
 
-  bool transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
-                 Diagnostics& diagnostics) override;
-  std::unique_ptr<backends::ViewRenderer> begin(const ViewPass& pass, std::span<const float> vertices,
-                                                Diagnostics& diagnostics) override;
-  bool post(const ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override;
+  bool reserve(size_t floats, Diagnostics& diagnostics) override;
+  void write(size_t first, std::span<const float> floats) override {
+    std::ranges::copy(floats, layers_.begin() + static_cast<ptrdiff_t>(first));
+  }
+  std::span<const float> read(const Slot& slot) override { return std::span(layers_).subspan(slot.first, slot.size()); }
+  bool is_finite() override { return is_finite_; }
+  bool transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) override;
+  bool draw(const Drawing& drawing, Diagnostics& diagnostics) override;
+  bool post(std::span<const ScreenPass> passes, const Slot& made, Diagnostics& diagnostics) override;
   bool evaluate(const Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override;
 
  private:
-  friend class CpuViewRenderer;
   using FrameKernels =
       std::vector<const Kernel*>;  ///< one for each program of a frame; null until it is needed
 
   /// Adds the kernels that are asked for and still missing.
   bool find_kernels(const Frame& frame, const std::vector<bool>& asked, FrameKernels& kernels,
                     Diagnostics& diagnostics);
+  /// Full-screen passes with their kernels and arrays.
+  struct Screens {
+    std::vector<std::vector<int32_t>> records;
+    std::vector<Buffers> buffers;
+    std::vector<const Kernel*> kernels;
+  };
+  bool bind(std::span<const ScreenPass> passes, Screens& screens, Diagnostics& diagnostics);
 
   KernelStore kernels_;
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
+  support::Array<float> layers_;
+  std::atomic<bool> is_finite_ = true;  ///< what has been made since reserve()
 };
 
-class CpuViewRenderer final : public backends::ViewRenderer {
- public:
-  CpuViewRenderer(CpuBackend& backend, const ViewPass& pass)
-      : backend_(backend), pass_(pass), buffers_(&pass.frame), kernels_(pass.frame.programs.size()) {}
-  bool bind(std::span<const float> vertices, Diagnostics& diagnostics) {
-    return buffers_.bind(pass_, vertices, diagnostics);
+bool CpuBackend::reserve(size_t floats, Diagnostics& diagnostics) {
+  is_finite_ = true;
+  if (floats > INT_MAX) {
+    const backends::ArrayLimit limit{"the cpu backend", size_t{4} * INT_MAX, true};
+    backends::report_too_large(FrameBuffer::layers, floats * sizeof(float), limit, nullptr, diagnostics);
+    return false;
   }
-
-  bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
-            Diagnostics& diagnostics) override;
-
- private:
-  /// Which programs the triangles need.
-  std::vector<bool> programs_of(std::span<const int32_t> triangles) const;
-
-  CpuBackend& backend_;
-  const ViewPass pass_;
-  Buffers buffers_;
-  CpuBackend::FrameKernels kernels_;
-};
+  if (floats > layers_.capacity()) {
+    support::release(layers_);  // or growing would copy what is lost
+    layers_.resize(floats);
+    support::use_huge_pages(layers_.data(), floats * sizeof(float));
+  }
+  layers_.resize(floats);
+  return true;
+}
 
 bool CpuBackend::find_kernels(const Frame& frame, const std::vector<bool>& asked, FrameKernels& kernels,
                               Diagnostics& diagnostics) {
@@ -141,8 +153,7 @@ bool CpuBackend::find_kernels(const Frame& frame, const std::vector<bool>& asked
   return true;
 }
 
-bool CpuBackend::transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
-                           Diagnostics& diagnostics) {
+bool CpuBackend::transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) {
   const Frame& frame = pass.frame;
   const std::vector<Draw>& draws = pass.view.draws;
   std::vector<bool> asked(frame.programs.size());
@@ -150,42 +161,37 @@ bool CpuBackend::transform(const ViewPass& pass, std::vector<std::vector<float>>
   FrameKernels kernels(frame.programs.size());
   if (!find_kernels(frame, asked, kernels, diagnostics)) return false;
   Buffers buffers(&frame);
-  if (!buffers.bind(pass, frame.vertices, diagnostics)) return false;
+  if (!buffers.bind(pass, {}, frame.vertices, diagnostics)) return false;
 
   struct Task {
     size_t draw;
     size_t first;
+    size_t place;  ///< of its positions
   };
   std::vector<Task> tasks;
-  clip.resize(draws.size());
+  size_t vertices = 0;
   for (size_t d = 0; d < draws.size(); ++d) {
     const size_t count = draws[d].vertex_count;
-    clip[d].resize(4 * count);
-    for (size_t first = 0; first < count; first += vertex_chunk) tasks.push_back({d, first});
+    for (size_t first = 0; first < count; first += vertex_chunk) tasks.push_back({d, first, vertices + first});
+    vertices += count;
   }
+  clip.resize(4 * vertices);
   workers().for_each(tasks.size(), [&](size_t i) {
-    const auto [d, first] = tasks[i];
+    const auto [d, first, place] = tasks[i];
     const Draw& draw = draws[d];
     const size_t count = std::min(vertex_chunk, draw.vertex_count - first);
     kernels[draw.vertex_program]->vertex(buffers.views(), draw.object, draw.projected,
                                          static_cast<int>(draw.first_vertex + first), static_cast<int>(count),
-                                         clip[d].data() + 4 * first);
+                                         clip.data() + 4 * place);
   });
   return true;
 }
 
-std::unique_ptr<backends::ViewRenderer> CpuBackend::begin(const ViewPass& pass,
-                                                          std::span<const float> vertices,
-                                                          Diagnostics& diagnostics) {
-  auto renderer = std::make_unique<CpuViewRenderer>(*this, pass);
-  if (!renderer->bind(vertices, diagnostics)) return nullptr;
-  return renderer;
-}
-
-std::vector<bool> CpuViewRenderer::programs_of(std::span<const int32_t> triangles) const {
-  std::vector<bool> seen(pass_.frame.programs.size());
-  const bool has_color = pass_.view.target.has_color;
-  if (!has_color && pass_.frame.cutouts.empty()) return seen;
+/// Which programs the triangles of a view need.
+std::vector<bool> programs_of(const ViewPass& pass, std::span<const int32_t> triangles) {
+  std::vector<bool> seen(pass.frame.programs.size());
+  const bool has_color = pass.view.target.has_color;
+  if (!has_color && pass.frame.cutouts.empty()) return seen;
   const size_t count = triangles.size() / lower::triangle_word::stride;
   int last_object = -1;
   for (size_t i = 0; i < count; ++i) {
@@ -193,52 +199,88 @@ std::vector<bool> CpuViewRenderer::programs_of(std::span<const int32_t> triangle
     const int object = triangle.object();
     if (object == last_object) continue;
     last_object = object;
-    if (has_color) seen[backends::pixel_program_of(pass_.frame, object)] = true;
-    if (triangle.cutout()) seen[backends::cutout_program_of(pass_.frame, object)] = true;
+    if (has_color) seen[backends::pixel_program_of(pass.frame, object)] = true;
+    if (triangle.cutout()) seen[backends::cutout_program_of(pass.frame, object)] = true;
   }
   return seen;
 }
 
-bool CpuViewRenderer::draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
-                           Diagnostics& diagnostics) {
-  if (!buffers_.bind(FrameBuffer::triangles, triangles, diagnostics)) return false;
-  if (!backend_.find_kernels(pass_.frame, programs_of(triangles), kernels_, diagnostics)) return false;
+bool CpuBackend::bind(std::span<const ScreenPass> passes, Screens& screens, Diagnostics& diagnostics) {
+  std::vector<const Program*> programs;
+  for (const ScreenPass& pass : passes) {
+    programs.push_back(pass.program);
+    screens.records.push_back(backends::image_records(pass.width, pass.height, pass.images));
+  }
+  for (size_t i = 0; i < passes.size(); ++i)
+    if (!screens.buffers.emplace_back(nullptr).bind(passes[i], {layers_, screens.records[i]}, diagnostics)) return false;
+  auto kernels = kernels_.kernels(programs, diagnostics);
+  if (kernels) screens.kernels = *std::move(kernels);
+  return kernels.has_value();
+}
+
+bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
+  const auto& [frame, view, images] = drawing.pass;
+  const std::span<const int32_t> triangles = drawing.triangles;
+  const backends::Window& window = drawing.window;
+  const std::vector<int32_t> records = backends::image_records(view.target.width, view.target.height, images);
+  Buffers buffers(&frame);
+  FrameKernels kernels(frame.programs.size());
+  Screens posts;
+  if (!buffers.bind(drawing.pass, {layers_, records}, drawing.vertices, diagnostics) ||
+      !buffers.bind(FrameBuffer::triangles, triangles, diagnostics) || !bind(drawing.posts, posts, diagnostics) ||
+      !find_kernels(frame, programs_of(drawing.pass, triangles), kernels, diagnostics))
+    return false;
   const size_t count = triangles.size() / lower::triangle_word::stride;
   const raster::TileGrid grid(raster::box_at(window.x, window.y, window.width, window.height));
 
-  const int opaque = raster::opaque_count(triangles.data(), static_cast<int>(count));
-  DrawJob job{pass_.frame, pass_.view, grid, triangles, opaque, buffers_.views(), kernels_, {}, image};
+  std::vector<TilePost> tile_posts;
+  for (size_t i = 0; i < drawing.posts.size(); ++i)
+    tile_posts.push_back({*posts.kernels[i], posts.buffers[i].views(), posts.records[i]});
+  DrawJob job{.frame = frame,
+              .view = view,
+              .grid = grid,
+              .triangles = triangles,
+              .opaque = raster::opaque_count(triangles.data(), static_cast<int>(count)),
+              .buffers = buffers.views(),
+              .kernels = kernels,
+              .side = drawing.side,
+              .posts = tile_posts,
+              .background = {},
+              .color = drawing.color.exists() ? layers_.data() + drawing.color.first : nullptr,
+              .depth = layers_.data() + drawing.depth.first,
+              .width = drawing.depth.width,
+              .bins = {}};
+  backends::resolve_color(view.background, drawing.side, job.background);
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
   job.bins.resize(parts);
-  backend_.workers().for_each(parts, [&](size_t part) {
+  workers().for_each(parts, [&](size_t part) {
     const size_t first = part * triangle_chunk;
     job.bins[part] = raster::Bins(triangles, static_cast<int>(first),
                                   static_cast<int>(std::min(triangle_chunk, count - first)), grid);
   });
 
-  image.resize(window.width, window.height, pass_.view.target.has_color);
-  backend_.workers().for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
-    std::unique_ptr<TilePainter>& painter = backend_.painters_.local();
+  workers().for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
+    std::unique_ptr<TilePainter>& painter = painters_.local();
     if (!painter) painter = std::make_unique<TilePainter>();
-    painter->paint(job, static_cast<int>(tile));
+    if (!painter->paint(job, static_cast<int>(tile))) is_finite_ = false;
   });
   return true;
 }
 
-bool CpuBackend::post(const ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) {
-  const Program* const programs[] = {pass.program};
-  const auto kernels = kernels_.kernels(programs, diagnostics);
-  if (!kernels) return false;
-  Buffers buffers(nullptr);
-  if (!buffers.bind(pass, diagnostics)) return false;
-  const auto width = static_cast<size_t>(pass.width), height = static_cast<size_t>(pass.height);
-  rgba.resize(4 * width * height);
+bool CpuBackend::post(std::span<const ScreenPass> passes, const Slot& made, Diagnostics& diagnostics) {
+  Screens screens;
+  if (!bind(passes, screens, diagnostics)) return false;
+  const auto width = static_cast<size_t>(made.width), height = static_cast<size_t>(made.height);
   // A task takes consecutive rows, because these read almost the same pixels.
   const size_t rows = std::max<size_t>(1, row_chunk / width);
   workers().for_each((height + rows - 1) / rows, [&](size_t chunk) {
-    for (size_t y = chunk * rows; y < std::min(height, (chunk + 1) * rows); ++y)
-      kernels->front()->post(buffers.views(), 0, pass.first_row + static_cast<int>(y), pass.width,
-                             rgba.data() + 4 * width * y);
+    for (size_t y = chunk * rows; y < std::min(height, (chunk + 1) * rows); ++y) {
+      float* const row = layers_.data() + made.first + 4 * width * y;
+      for (size_t i = 0; i < passes.size(); ++i) {
+        screens.kernels[i]->post(screens.buffers[i].views(), 0, static_cast<int>(y), made.width, row);
+        if (!backends::is_finite({row, 4 * width})) is_finite_ = false;
+      }
+    }
   });
   return true;
 }

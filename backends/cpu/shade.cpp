@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "backends/resolve.h"
 #include "backends/shared.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/raster/triangle.h"
@@ -17,56 +18,128 @@ using raster::tile_size;
 
 constexpr int nothing = -1;  ///< no triangle
 
-/// The index in the image, which has the size of the window, of a pixel of the target.
-size_t place_in_image(const DrawJob& job, int x, int y) {
-  const raster::Box& area = job.grid.area;
-  return static_cast<size_t>(y - area.y0) * static_cast<size_t>(job.image.width) +
-         static_cast<size_t>(x - area.x0);
-}
-
 /// The triangles of a tile's list that are opaque.
 std::span<const int32_t> opaque_of(const DrawJob& job, std::span<const int32_t> listed) {
   if (listed.empty() || listed.back() < job.opaque) return listed;
   return listed.first(static_cast<size_t>(std::ranges::lower_bound(listed, job.opaque) - listed.begin()));
 }
 
-void fill_background(DrawJob& job, int x, int y, int width, int height) {
-  for (int row = 0; row < height; ++row) {
-    const size_t first = place_in_image(job, x, y + row);
-    if (job.view.target.has_color) {
-      float* color = job.image.rgba.data() + 4 * first;
-      for (int i = 0; i < width; ++i) std::copy_n(job.view.background, 4, color + 4 * i);
-    }
-    std::fill_n(job.image.depth.data() + first, width, 0.0f);
-  }
+/// Copies a row of pixels to each row of an image.
+void copy_rows(const float* from, size_t from_stride, float* to, size_t to_stride, size_t count, int rows) {
+  for (int y = 0; y < rows; ++y)
+    std::memcpy(to + static_cast<size_t>(y) * to_stride, from + static_cast<size_t>(y) * from_stride, count * sizeof(float));
+}
+
+void fill_color(const float (&color)[4], float* row, int width) {
+  for (int x = 0; x < width; ++x) std::memcpy(row + 4 * x, color, sizeof color);
 }
 
 }  // namespace
 
-void TilePainter::paint(DrawJob& job, int tile) {
+TilePainter::Canvas TilePainter::canvas_of(const DrawJob& job, int tile) {
   x_ = job.grid.x(tile);
   y_ = job.grid.y(tile);
-  const int width = std::min(tile_size, job.grid.area.x1 + 1 - x_);
-  const int height = std::min(tile_size, job.grid.area.y1 + 1 - y_);
-  collect(job, tile);
-  if (runs_.empty())
-    fill_background(job, x_, y_, width, height);
-  else
-    paint_opaque(job, width, height);
-  if (static_cast<size_t>(job.opaque) * lower::triangle_word::stride < job.triangles.size())
-    blend(job, tile, width, height);
+  const raster::Box& area = job.grid.area;
+  const int width = std::min(tile_size, area.x1 + 1 - x_), height = std::min(tile_size, area.y1 + 1 - y_);
+  if (job.side > 1) {
+    if (!samples_) samples_ = std::make_unique<Samples>();
+    return {samples_->color, samples_->depth, static_cast<size_t>(width), width, height};
+  }
+  const auto stride = static_cast<size_t>(job.width);
+  const size_t first = static_cast<size_t>(y_ - area.y0) * stride + static_cast<size_t>(x_ - area.x0);
+  return {job.view.target.has_color ? job.color + 4 * first : nullptr, job.depth + first, stride, width, height};
 }
 
-void TilePainter::paint_opaque(DrawJob& job, int width, int height) {
-  write_depth(job, width, height);
+bool TilePainter::paint(const DrawJob& job, int tile) {
+  canvas_ = canvas_of(job, tile);
+  collect(job, tile);
+  const bool is_opaque = static_cast<size_t>(job.opaque) * lower::triangle_word::stride == job.triangles.size();
+  if (runs_.empty() && job.side > 1 && is_opaque && job.posts.empty()) {
+    fill_pixels(job);
+    return true;
+  }
+  if (runs_.empty())
+    fill_background(job);
+  else
+    paint_opaque(job);
+  if (!is_opaque) blend(job, tile);
+  if (!job.view.target.has_color) return true;
+  bool finite = is_finite();
+  for (const TilePost& post : job.posts) finite = process(post, job) && finite;
+  if (job.side > 1) resolve(job);
+  return finite;
+}
+
+void TilePainter::fill_background(const DrawJob& job) const {
+  for (int y = 0; y < canvas_.height; ++y) {
+    if (job.view.target.has_color) fill_color(job.view.background, canvas_.color + 4 * canvas_.index(0, y), canvas_.width);
+    std::fill_n(canvas_.depth + canvas_.index(0, y), canvas_.width, 0.0f);
+  }
+}
+
+void TilePainter::fill_pixels(const DrawJob& job) const {
+  const int x = (x_ - job.grid.area.x0) / job.side, y = (y_ - job.grid.area.y0) / job.side;
+  for (int row = 0; row < canvas_.height / job.side; ++row) {
+    const size_t first = static_cast<size_t>(y + row) * static_cast<size_t>(job.width) + static_cast<size_t>(x);
+    fill_color(job.background, job.color + 4 * first, canvas_.width / job.side);
+    std::fill_n(job.depth + first, canvas_.width / job.side, 0.0f);
+  }
+}
+
+/// Runs a post over the samples of the tile, in place. Returns whether what it made is finite.
+bool TilePainter::process(const TilePost& post, const DrawJob& job) {
+  namespace word = lower::image_word;
+  BufferView buffers[std::size(lower::frame_buffers)];
+  std::copy_n(post.buffers, std::size(lower::frame_buffers), buffers);
+  BufferView& layers = buffers[static_cast<size_t>(lower::FrameBuffer::layers)];
+  if (job.side > 1) {
+    records_.assign(post.records.begin(), post.records.end());
+    buffers[static_cast<size_t>(lower::FrameBuffer::layer_records)].data = records_.data();
+    layers = {samples_->color, sizeof(Samples) / sizeof(float)};
+  }
+  const auto first_of = [&](int image) -> int32_t& {
+    return records_[static_cast<size_t>((1 + image) * word::stride + word::first)];
+  };
+  for (int y = 0; y < canvas_.height; ++y) {
+    if (job.side > 1) {
+      // A program finds its sample by its place in the whole picture: each row of it would begin there.
+      const int64_t place = static_cast<int64_t>(y_ + y) * job.view.target.width + x_;
+      const auto row = static_cast<int64_t>(canvas_.index(0, y));
+      first_of(0) = static_cast<int32_t>((samples_->depth - samples_->color) + row - place);
+      first_of(1) = static_cast<int32_t>(4 * (row - place));
+    }
+    post.kernel.post(buffers, x_, y_ + y, canvas_.width, canvas_.color + 4 * canvas_.index(0, y));
+  }
+  return is_finite();
+}
+
+void TilePainter::resolve(const DrawJob& job) {
+  backends::resolve(canvas_.color, canvas_.depth, canvas_.width, canvas_.height, job.side);
+  const auto columns = static_cast<size_t>(canvas_.width / job.side), stride = static_cast<size_t>(job.width);
+  const int rows = canvas_.height / job.side;
+  const size_t first = static_cast<size_t>((y_ - job.grid.area.y0) / job.side) * stride +
+                       static_cast<size_t>((x_ - job.grid.area.x0) / job.side);
+  copy_rows(canvas_.color, 4 * columns, job.color + 4 * first, 4 * stride, 4 * columns, rows);
+  copy_rows(canvas_.depth, columns, job.depth + first, stride, columns, rows);
+}
+
+bool TilePainter::is_finite() const {
+  for (int y = 0; y < canvas_.height; ++y)
+    if (!backends::is_finite({canvas_.color + 4 * canvas_.index(0, y), size_t{4} * static_cast<size_t>(canvas_.width)}))
+      return false;
+  return true;
+}
+
+void TilePainter::paint_opaque(const DrawJob& job) {
+  write_depth();
   if (!job.view.target.has_color) return;
-  if (width < tile_size || height < tile_size)
+  if (canvas_.width < tile_size || canvas_.height < tile_size)
     for (int i = 0; i < tile_pixels; ++i)
-      if (raster::tile_x(i) >= width || raster::tile_y(i) >= height) tile_.triangles[i] = nothing;
+      if (raster::tile_x(i) >= canvas_.width || raster::tile_y(i) >= canvas_.height) tile_.triangles[i] = nothing;
   segment();
   list_pixels();
   shade(job);
-  write_color(job, width, height);
+  write_color(job);
 }
 
 void TilePainter::collect(const DrawJob& job, int tile) {
@@ -115,7 +188,7 @@ void TilePainter::cut_out(const DrawJob& job, std::span<const int32_t> listed, c
   }
 }
 
-void TilePainter::blend(DrawJob& job, int tile, int width, int height) {
+void TilePainter::blend(const DrawJob& job, int tile) {
   const int32_t* const triangles = job.triangles.data();
   bool is_clear = !runs_.empty(), changes_depth = false;
   for (const raster::Bins& bins : job.bins) {
@@ -130,10 +203,10 @@ void TilePainter::blend(DrawJob& job, int tile, int width, int height) {
       listed = listed.subspan(count);
     }
   }
-  if (changes_depth) write_depth(job, width, height);
+  if (changes_depth) write_depth();
 }
 
-void TilePainter::blend_object(DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first) {
+void TilePainter::blend_object(const DrawJob& job, std::span<const int32_t> listed, const raster::Triangle& first) {
   if (!candidates_) candidates_ = std::make_unique<raster::Candidates>();
   raster::Candidates& found = *candidates_;
   const int object = first.object();
@@ -151,7 +224,7 @@ void TilePainter::blend_object(DrawJob& job, std::span<const int32_t> listed, co
 }
 
 // The candidates of a pixel are blended in their order: the first of each pixel, then the second of each, and so on.
-void TilePainter::blend_candidates(DrawJob& job, const raster::Candidates& found, const raster::Triangle& first) {
+void TilePainter::blend_candidates(const DrawJob& job, const raster::Candidates& found, const raster::Triangle& first) {
   size_t count = 0;
   for (int i = 0; i < found.count; ++i) {
     if (found.drawn[i] == 0) continue;
@@ -173,14 +246,14 @@ void TilePainter::blend_candidates(DrawJob& job, const raster::Candidates& found
       pixel_x_[next] = found.x[i];
       pixel_y_[next] = found.y[i];
       pixel_triangle_[next] = found.triangle[i];
-      std::copy_n(job.image.rgba.data() + 4 * place_in_image(job, found.x[i], found.y[i]), 4, color_ + 4 * next);
+      std::copy_n(color_at(found.x[i], found.y[i]), 4, color_ + 4 * next);
       ++next;
     }
     layer.clear();
     if (next == 0) continue;
     kernel.blend(job.buffers, first.object(), job.frame.light_count, next, pixel_x_, pixel_y_, pixel_triangle_, color_);
     for (int i = 0; i < next; ++i)
-      std::copy_n(color_ + 4 * i, 4, job.image.rgba.data() + 4 * place_in_image(job, pixel_x_[i], pixel_y_[i]));
+      std::copy_n(color_ + 4 * i, 4, color_at(pixel_x_[i], pixel_y_[i]));
   }
 }
 
@@ -239,24 +312,24 @@ void TilePainter::shade(const DrawJob& job) {
   }
 }
 
-void TilePainter::write_depth(DrawJob& job, int width, int height) const {
-  for (int y = 0; y < height; ++y) {
-    float* depth = job.image.depth.data() + place_in_image(job, x_, y_ + y);
-    for (int x = 0; x < width; x += raster::block_size) {
+void TilePainter::write_depth() const {
+  for (int y = 0; y < canvas_.height; ++y) {
+    float* depth = canvas_.depth + canvas_.index(0, y);
+    for (int x = 0; x < canvas_.width; x += raster::block_size) {
       // The pixels of a block's row are stored one after the other.
-      const int count = std::min(raster::block_size, width - x);
+      const int count = std::min(raster::block_size, canvas_.width - x);
       std::copy_n(tile_.depth + raster::tile_index(x, y), count, depth + x);
     }
   }
 }
 
-void TilePainter::write_color(DrawJob& job, int width, int height) const {
-  for (int y = 0; y < height; ++y) {
-    const size_t first = place_in_image(job, x_, y_ + y);
-    for (int x = 0; x < width; ++x) {
+void TilePainter::write_color(const DrawJob& job) const {
+  for (int y = 0; y < canvas_.height; ++y) {
+    float* row = canvas_.color + 4 * canvas_.index(0, y);
+    for (int x = 0; x < canvas_.width; ++x) {
       const int i = raster::tile_index(x, y);
       const float* color = tile_.triangles[i] == nothing ? job.view.background : color_ + 4 * place_[i];
-      std::memcpy(job.image.rgba.data() + 4 * (first + static_cast<size_t>(x)), color, 4 * sizeof(float));
+      std::memcpy(row + 4 * x, color, 4 * sizeof(float));
     }
   }
 }

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "backends/shared.h"
+#include "backends/host_backend.h"
 #include "compiler/driver/target_limits.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/lower/frame_layout.h"
@@ -21,6 +21,7 @@ namespace {
 using backends::Draw;
 using backends::Frame;
 using backends::Image;
+using backends::Layers;
 using backends::ScreenPass;
 using backends::ViewPass;
 using driver::Program;
@@ -36,16 +37,16 @@ class Buffers {
     words.resize(values.size());
     std::ranges::transform(values, words.begin(), [](T value) { return std::bit_cast<uint32_t>(value); });
   }
-  void bind(const ViewPass& pass, std::span<const float> vertices) {
+  void bind(const ViewPass& pass, const Layers& layers, std::span<const float> vertices) {
     const auto use = [&]<class T>(FrameBuffer buffer, std::span<const T> values) {
       bind(buffer, values);
       return true;
     };
-    backends::for_each_array(pass, vertices, use);
+    backends::for_each_array(pass, layers, vertices, use);
     backends::for_each_texture_array(pass.frame, use);
   }
-  void bind(const ScreenPass& pass) {
-    backends::for_each_array(pass, [&]<class T>(FrameBuffer buffer, std::span<const T> values) {
+  void bind(const ScreenPass& pass, const Layers& layers) {
+    backends::for_each_array(pass, layers, [&]<class T>(FrameBuffer buffer, std::span<const T> values) {
       bind(buffer, values);
       return true;
     });
@@ -96,9 +97,10 @@ class StageRunner {
 
 class InterpreterViewRenderer final : public backends::ViewRenderer {
  public:
-  InterpreterViewRenderer(const MakeMachine& make, const ViewPass& pass, std::span<const float> vertices)
+  InterpreterViewRenderer(const MakeMachine& make, const ViewPass& pass, const Layers& layers,
+                          std::span<const float> vertices)
       : make_(make), pass_(pass) {
-    buffers_.bind(pass, vertices);
+    buffers_.bind(pass, layers, vertices);
   }
 
   bool draw(const backends::Window& window, std::span<const int32_t> triangles, Image& image,
@@ -182,7 +184,7 @@ class InterpreterViewRenderer final : public backends::ViewRenderer {
   Buffers buffers_;
 };
 
-class InterpreterBackend final : public backends::Backend {
+class InterpreterBackend final : public backends::HostBackend {
  public:
   InterpreterBackend(std::string name, std::string description, MakeMachine make)
       : name_(std::move(name)), description_(std::move(description)), make_(std::move(make)) {}
@@ -190,43 +192,18 @@ class InterpreterBackend final : public backends::Backend {
   std::string_view name() const override { return name_; }
   std::string description() const override { return description_; }
 
-  bool transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
-                 Diagnostics& diagnostics) override {
+  bool transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) override {
     const Frame& frame = pass.frame;
     Buffers buffers;
-    buffers.bind(pass, frame.vertices);
-    clip.resize(pass.view.draws.size());
-    for (size_t d = 0; d < clip.size(); ++d) {
-      const Draw& draw = pass.view.draws[d];
+    buffers.bind(pass, {}, frame.vertices);
+    clip.clear();
+    for (const Draw& draw : pass.view.draws) {
       if (!is_within_limits(*frame.programs[draw.vertex_program], diagnostics)) return false;
       StageRunner vertex(make_, *frame.programs[draw.vertex_program], buffers);
-      clip[d].resize(4 * static_cast<size_t>(draw.vertex_count));
       for (uint32_t i = 0; i < draw.vertex_count; ++i) {
         std::array<uint32_t, 4> position;
         vertex.run({static_cast<int>(draw.first_vertex + i), draw.object, draw.projected}, position);
-        for (size_t k = 0; k < 4; ++k) clip[d][4 * i + k] = std::bit_cast<float>(position[k]);
-      }
-    }
-    return true;
-  }
-
-  std::unique_ptr<backends::ViewRenderer> begin(const ViewPass& pass, std::span<const float> vertices,
-                                                Diagnostics&) override {
-    return std::make_unique<InterpreterViewRenderer>(make_, pass, vertices);
-  }
-
-  bool post(const ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
-    if (!is_within_limits(*pass.program, diagnostics)) return false;
-    Buffers buffers;
-    buffers.bind(pass);
-    StageRunner runner(make_, *pass.program, buffers);
-    rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
-    size_t next = 0;
-    for (int y = 0; y < pass.height; ++y) {
-      for (int x = 0; x < pass.width; ++x) {
-        std::array<uint32_t, 4> result;
-        runner.run({x, pass.first_row + y}, result);
-        for (const uint32_t bits : result) rgba[next++] = std::bit_cast<float>(bits);
+        for (const uint32_t bits : position) clip.push_back(std::bit_cast<float>(bits));
       }
     }
     return true;
@@ -245,6 +222,30 @@ class InterpreterBackend final : public backends::Backend {
       eval.run({static_cast<int>(row)}, results);
       std::ranges::transform(results, outputs.begin() + static_cast<ptrdiff_t>(row * width),
                              [](uint32_t bits) { return std::bit_cast<int32_t>(bits); });
+    }
+    return true;
+  }
+
+ protected:
+  std::unique_ptr<backends::ViewRenderer> begin(const ViewPass& pass, const Layers& layers,
+                                                std::span<const float> vertices, Diagnostics&) override {
+    return std::make_unique<InterpreterViewRenderer>(make_, pass, layers, vertices);
+  }
+
+  bool screen(const ScreenPass& pass, const Layers& layers, int first_row, int rows, std::vector<float>& rgba,
+              Diagnostics& diagnostics) override {
+    if (!is_within_limits(*pass.program, diagnostics)) return false;
+    Buffers buffers;
+    buffers.bind(pass, layers);
+    StageRunner runner(make_, *pass.program, buffers);
+    rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(rows));
+    size_t next = 0;
+    for (int y = 0; y < rows; ++y) {
+      for (int x = 0; x < pass.width; ++x) {
+        std::array<uint32_t, 4> result;
+        runner.run({x, first_row + y}, result);
+        for (const uint32_t bits : result) rgba[next++] = std::bit_cast<float>(bits);
+      }
     }
     return true;
   }

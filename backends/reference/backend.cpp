@@ -52,7 +52,7 @@ class ReferenceBackend final : public backends::Backend {
   std::string_view name() const override { return inner_->name(); }
   std::string description() const override { return inner_->description(); }
 
-  bool transform(const backends::ViewPass& pass, std::vector<std::vector<float>>& clip,
+  bool transform(const backends::ViewPass& pass, support::Array<float>& clip,
                  Diagnostics& diagnostics) override {
     const backends::Target& target = pass.view.target;
     if (target.has_color && (target.width > max_size || target.height > max_size)) {
@@ -66,13 +66,15 @@ class ReferenceBackend final : public backends::Backend {
     }
     return inner_->transform(pass, clip, diagnostics);
   }
-  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass& pass,
-                                                std::span<const float> vertices,
-                                                Diagnostics& diagnostics) override {
-    return inner_->begin(pass, vertices, diagnostics);
+  bool reserve(size_t floats, Diagnostics& diagnostics) override { return inner_->reserve(floats, diagnostics); }
+  void write(size_t first, std::span<const float> floats) override { inner_->write(first, floats); }
+  std::span<const float> read(const backends::Slot& slot) override { return inner_->read(slot); }
+  bool is_finite() override { return inner_->is_finite(); }
+  bool draw(const backends::Drawing& drawing, Diagnostics& diagnostics) override {
+    return inner_->draw(drawing, diagnostics);
   }
-  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, Diagnostics& diagnostics) override {
-    return inner_->post(pass, rgba, diagnostics);
+  bool post(std::span<const backends::ScreenPass> passes, const backends::Slot& made, Diagnostics& diagnostics) override {
+    return inner_->post(passes, made, diagnostics);
   }
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, Diagnostics& diagnostics) override {

@@ -115,8 +115,9 @@ bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()
   return succeeded;
 }
 
-bool VulkanBackend::upload(const ViewPass& pass, std::span<const float> vertices, Diagnostics& diagnostics) {
-  return backends::for_each_array(pass, vertices, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+bool VulkanBackend::upload(const ViewPass& pass, const backends::Layers& layers, std::span<const float> vertices,
+                           Diagnostics& diagnostics) {
+  return backends::for_each_array(pass, layers, vertices, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
     return upload_array(*device_, buffer, words, &pass.frame, diagnostics);
   });
 }
@@ -132,18 +133,22 @@ bool VulkanBackend::upload_triangles(const Frame& frame, std::span<const int32_t
   return upload_array(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics);
 }
 
-bool VulkanBackend::transform(const ViewPass& pass, std::vector<std::vector<float>>& clip,
-                              Diagnostics& diagnostics) {
+bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) {
   const Frame& frame = pass.frame;
   const std::vector<Draw>& draws = pass.view.draws;
   return guarded(diagnostics, [&] {
-    if (!upload(pass, frame.vertices, diagnostics)) return false;
+    if (!upload(pass, {}, frame.vertices, diagnostics)) return false;
     const auto reads = [&](const Draw& draw) { return reads_textures(*frame.programs[draw.vertex_program]); };
     if (std::ranges::any_of(draws, reads) && !upload_textures(frame, diagnostics)) return false;
     std::vector<std::optional<PipelineIndex>> pipelines(frame.programs.size());
-    clip.resize(draws.size());
+    std::vector<size_t> places;  // of the first vertex of each draw
+    size_t vertex_count = 0;
+    for (const Draw& draw : draws) {
+      places.push_back(vertex_count);
+      vertex_count += draw.vertex_count;
+    }
+    clip.resize(4 * vertex_count);
     for (size_t d = 0; d < draws.size(); ++d) {
-      clip[d].resize(size_t{4} * draws[d].vertex_count);
       std::optional<PipelineIndex>& pipeline = pipelines[draws[d].vertex_program];
       if (pipeline) continue;
       const Program& program = *frame.programs[draws[d].vertex_program];
@@ -175,7 +180,7 @@ bool VulkanBackend::transform(const ViewPass& pass, std::vector<std::vector<floa
       output.resize(4 * (run.back().output + run.back().count));
       device_->run_vertices(calls, output);
       for (const VertexChunk& chunk : run)
-        std::memcpy(clip[chunk.draw].data() + size_t{4} * chunk.first, output.data() + 4 * chunk.output,
+        std::memcpy(clip.data() + 4 * (places[chunk.draw] + chunk.first), output.data() + 4 * chunk.output,
                     size_t{4} * chunk.count * sizeof(float));
     }
     return true;
@@ -193,13 +198,13 @@ bool VulkanBackend::check_size(int width, int height, Diagnostics& diagnostics) 
   return false;
 }
 
-bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& rgba,
-                         Diagnostics& diagnostics) {
+bool VulkanBackend::screen(const backends::ScreenPass& pass, const backends::Layers& layers, int first_row, int rows,
+                           std::vector<float>& rgba, Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
     const auto upload = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
       return upload_array(*device_, buffer, words, nullptr, diagnostics);
     };
-    if (!check_size(pass.width, pass.height, diagnostics) || !backends::for_each_array(pass, upload))
+    if (!check_size(pass.width, first_row + rows, diagnostics) || !backends::for_each_array(pass, layers, upload))
       return false;
     auto text = text_of(*pass.program, diagnostics);
     if (!text) return false;
@@ -207,8 +212,8 @@ bool VulkanBackend::post(const backends::ScreenPass& pass, std::vector<float>& r
     source.what = driver::description(*pass.program);
     const auto pipeline = device_->pipeline(source, diagnostics);
     if (!pipeline) return false;
-    rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(pass.height));
-    device_->run_screen(*pipeline, pass.width, pass.height, pass.first_row, rgba);
+    rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(rows));
+    device_->run_screen(*pipeline, pass.width, rows, first_row, rgba);
     return true;
   });
 }

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/backend.h"
+#include "backends/host_backend.h"
 #include "backends/vulkan/probe.h"
 #include "compiler/driver/program.h"
 #include "compiler/support/diagnostics.h"
@@ -56,7 +56,7 @@ struct VulkanOptions {
   std::function<std::string(const driver::Program&, driver::Division)> glsl;
 };
 
-class VulkanBackend : public backends::Backend {
+class VulkanBackend : public backends::HostBackend {
  public:
   ~VulkanBackend() override;
 
@@ -64,19 +64,21 @@ class VulkanBackend : public backends::Backend {
   std::string description() const override;
   double build_seconds() const override;
 
-  bool transform(const backends::ViewPass& pass, std::vector<std::vector<float>>& clip,
+  bool transform(const backends::ViewPass& pass, support::Array<float>& clip,
                  support::Diagnostics& diagnostics) override;
-  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass& pass,
-                                                std::span<const float> vertices,
-                                                support::Diagnostics& diagnostics) override;
-  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba,
-            support::Diagnostics& diagnostics) override;
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
                 std::vector<int32_t>& outputs, support::Diagnostics& diagnostics) override;
 
   const DeviceInfo& device() const;
   const Probe& probe() const { return probe_; }
   driver::Division division() const { return division_; }
+
+ protected:
+  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass& pass, const backends::Layers& layers,
+                                                std::span<const float> vertices,
+                                                support::Diagnostics& diagnostics) override;
+  bool screen(const backends::ScreenPass& pass, const backends::Layers& layers, int first_row, int rows,
+              std::vector<float>& rgba, support::Diagnostics& diagnostics) override;
 
  private:
   friend std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, support::Diagnostics& diagnostics);
@@ -90,7 +92,7 @@ class VulkanBackend : public backends::Backend {
   std::optional<std::string> text_of(const driver::Program& program, support::Diagnostics& diagnostics) const;
   bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
   /// Uploads what the programs of a view read, except textures and triangles.
-  bool upload(const backends::ViewPass& pass, std::span<const float> vertices,
+  bool upload(const backends::ViewPass& pass, const backends::Layers& layers, std::span<const float> vertices,
               support::Diagnostics& diagnostics);
   bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,

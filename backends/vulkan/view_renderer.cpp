@@ -116,8 +116,9 @@ Window window_of(const Box& box) { return {box.x0, box.y0, box.x1 - box.x0 + 1, 
 
 class VulkanViewRenderer final : public backends::ViewRenderer {
  public:
-  VulkanViewRenderer(VulkanBackend& backend, const ViewPass& pass, std::span<const float> vertices)
-      : backend_(backend), pass_(pass), vertices_(vertices), shading_(pass.frame.programs.size()) {}
+  VulkanViewRenderer(VulkanBackend& backend, const ViewPass& pass, const backends::Layers& layers,
+                     std::span<const float> vertices)
+      : backend_(backend), pass_(pass), layers_(layers), vertices_(vertices), shading_(pass.frame.programs.size()) {}
 
   bool draw(const Window& window, std::span<const int32_t> triangles, backends::Image& image,
             Diagnostics& diagnostics) override {
@@ -202,7 +203,7 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   /// Uploads the triangles; the first time, also everything that cut-outs and pixel programs read.
   bool upload(std::span<const int32_t> triangles, Diagnostics& diagnostics) {
     uploaded_ = uploaded_ || (!pass_.view.target.has_color && pass_.frame.cutouts.empty()) ||
-                (backend_.upload(pass_, vertices_, diagnostics) &&
+                (backend_.upload(pass_, layers_, vertices_, diagnostics) &&
                  backend_.upload_textures(pass_.frame, diagnostics));
     return uploaded_ && backend_.upload_triangles(pass_.frame, triangles, diagnostics);
   }
@@ -243,6 +244,7 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
 
   VulkanBackend& backend_;
   const ViewPass pass_;
+  const backends::Layers layers_;
   std::span<const float> vertices_;
   bool uploaded_ = false;
   /// By the program of the cut-out, or null, whether the depth test always passes, and whether it draws layers.
@@ -253,9 +255,9 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   std::map<std::pair<size_t, bool>, std::optional<PipelineIndex>> blending_;
 };
 
-std::unique_ptr<backends::ViewRenderer> VulkanBackend::begin(const ViewPass& pass,
+std::unique_ptr<backends::ViewRenderer> VulkanBackend::begin(const ViewPass& pass, const backends::Layers& layers,
                                                              std::span<const float> vertices, Diagnostics&) {
-  return std::make_unique<VulkanViewRenderer>(*this, pass, vertices);
+  return std::make_unique<VulkanViewRenderer>(*this, pass, layers, vertices);
 }
 
 }  // namespace isoshade::vulkan

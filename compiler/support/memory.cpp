@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -101,6 +102,14 @@ bool check_memory(uint64_t bytes, const std::string& what, const std::string& fi
                                     memory_text(available) + " are available")
       .suggest(fix);
   return false;
+}
+
+void use_huge_pages(void* begin, size_t bytes) {
+  constexpr uintptr_t page = uintptr_t{1} << 21;
+  const auto address = reinterpret_cast<uintptr_t>(begin);
+  const uintptr_t first = (address + page - 1) / page * page, end = (address + bytes) / page * page;
+  // Only a wish: where the system does not grant it, memory comes in small pages.
+  if (end > first) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
 }
 
 }  // namespace isoshade::support

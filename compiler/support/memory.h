@@ -2,6 +2,7 @@
 // How much memory is available, how to report that it is too little, and how to free it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
@@ -48,6 +49,9 @@ struct Uninitialised : std::allocator<T> {
 /// touched only once.
 template <class T>
 using Array = std::vector<T, Uninitialised<T>>;
+
+/// Asks the system for large pages where this memory has none yet: fewer faults when it is first written.
+void use_huge_pages(void* begin, size_t bytes);
 
 /// Frees the memory of a vector. (`v = {}` assigns an empty list and keeps the capacity.)
 template <class T, class Allocator>

@@ -57,14 +57,4 @@ std::optional<PostChain> plan_posts(const scene::Scene& scene,
                                     const std::vector<const driver::Post*>& documents, int width, int height,
                                     bool skip, std::vector<Skip>& skips, support::Diagnostics& diagnostics);
 
-/// Runs the first steps of the chain (PostChain::sample_steps) over rows of the samples of the picture, which has the
-/// size of its target; the first of them is `first_row`.
-bool run_sample_posts(const PostChain& chain, const backends::Frame& frame, int first_row, backends::Backend& backend,
-                      backends::Image& samples, DrawStats& stats, support::Diagnostics& diagnostics);
-
-/// Runs the chain over the image of the frame, from step `first` on. Does not change the depth. `motion` has pixels if a step
-/// reads it.
-bool run_posts(const PostChain& chain, size_t first, const backends::Frame& frame, const backends::Image& motion,
-               backends::Backend& backend, backends::Image& image, DrawStats& stats, support::Diagnostics& diagnostics);
-
 }  // namespace isoshade::render

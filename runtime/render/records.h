@@ -46,32 +46,4 @@ void widen_rays(std::span<float> view_words, float factor);
 /// Appends the matrix of a draw, object space -> clip space, and returns its first word.
 int append_matrix(const glm::mat4& projected, std::vector<float>& view);
 
-/// The images that a program reads: the arrays `layers` and `layer_records`.
-struct Layers {
-  std::vector<float> floats;
-  std::vector<int32_t> records;
-
-  /// Begins with the record of the image that the program makes.
-  Layers(int width, int height);
-  /// Appends an image, 1 or 4 floats a pixel, and its record. `camera`: see image_word.
-  void add(std::span<const float> pixels, int width, int height, int camera = no_camera);
-  /// Appends rows of an image of this size and number of floats a pixel, from `first_row` on: no others are read.
-  void add_rows(std::span<const float> rows, int channels, int width, int height, int first_row);
-  /// Appends the record of an image that is there already.
-  void add_again(size_t record);
-  /// Appends the record of an image that the program does not read. Posts may still ask for the size of the depth.
-  void add_unread(int width = 0, int height = 0);
-  /// Appends the camera of a view, then the depth and the color that it drew. A target without color gets the record of
-  /// an image that is not read.
-  void add_target(const backends::View& view, const backends::Image& drawn);
-
-  /// Appends the records of a target that is not read.
-  void add_no_target();
-
-  static constexpr int no_camera = -1;
-
- private:
-  void add_record(int64_t first, int width, int height, int camera);
-};
-
 }  // namespace isoshade::render

@@ -12,48 +12,28 @@
 #include "runtime/lanes/float_rules.h"
 #include "runtime/raster/clip.h"
 #include "runtime/render/clock.h"
+#include "runtime/render/layout.h"
 #include "runtime/render/records.h"
 #include "runtime/render/samples.h"
+#include "runtime/render/search.h"
 
 namespace isoshade::render {
+
+using backends::Drawing;
+using backends::ImageRead;
+using backends::ScreenPass;
+using backends::Slot;
+
 namespace {
 
-/// The least memory that the images of a frame take: the targets, and the images that posts keep, beside the arrays
-/// that a post reads. Drawing takes more, which only the backend knows.
-struct ImageBytes {
-  uint64_t all = 0;
-  uint64_t shadows = 0;  ///< those of shadow maps
-};
-ImageBytes image_bytes(const Plan& plan) {
-  constexpr uint64_t color = 4 * sizeof(float), depth = sizeof(float);
-  const auto pixels = [](int width, int height) {
-    return static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-  };
-  uint64_t sum = 0, shadows = 0;
-  for (const backends::View& view : plan.frame.views) {
-    const bool is_picture = &view == &plan.frame.picture();
-    const int side = is_picture ? samples_each_way(plan.samples) : 1;
-    if (!view.target.has_color) shadows += pixels(view.target.width, view.target.height) * depth;
-    sum += pixels(view.target.width / side, view.target.height / side) *
-           (view.target.has_color ? color + depth : depth);
-    if (is_picture && !plan.posts.steps.empty())
-      sum += pixels(view.target.width / side, view.target.height / side) * color;
-  }
-  if (plan.motion) sum += 2 * pixels(plan.motion->now.target.width, plan.motion->now.target.height) * color;
-  uint64_t of_posts = 0;
-  for (const PostStep& step : plan.posts.steps)
-    of_posts = std::max(of_posts, pixels(step.width, step.height) * color);
-  return {sum + of_posts, shadows};
-}
-
 /// Whether the images fit into memory; otherwise reports what takes most of it.
-bool check_images(const Plan& plan, support::Diagnostics& diagnostics) {
-  const ImageBytes bytes = image_bytes(plan);
+bool check_images(const Plan& plan, const FrameLayout& layout, support::Diagnostics& diagnostics) {
+  const uint64_t bytes = uint64_t{sizeof(float)} * layout.floats;
   const backends::Largest& shadow = plan.frame.largest_shadow;
-  if (bytes.shadows <= bytes.all / 2 || shadow.what.empty())
-    return support::check_memory(bytes.all, "the image", "choose a smaller --size, or fewer posts", diagnostics);
+  if (shadow_bytes(plan) <= bytes / 2 || shadow.what.empty())
+    return support::check_memory(bytes, "the image", "choose a smaller --size, or fewer posts", diagnostics);
   const std::string what = "the image, of which shadow maps are the largest part,";
-  if (support::check_memory(bytes.all, what, std::string(backends::smaller_shadow), diagnostics)) return true;
+  if (support::check_memory(bytes, what, std::string(backends::smaller_shadow), diagnostics)) return true;
   if (!diagnostics.full()) {
     support::Diagnostic& report = diagnostics.all().back();
     report.where = shadow.where;
@@ -62,33 +42,46 @@ bool check_images(const Plan& plan, support::Diagnostics& diagnostics) {
   return false;
 }
 
-/// Draws a plan with one backend.
+}  // namespace
+
+/// Draws one frame.
 class FrameRenderer {
  public:
-  FrameRenderer(const Plan& plan, backends::Backend& backend, DrawStats& stats,
+  FrameRenderer(const Plan& plan, const FrameLayout& layout, Renderer& renderer, DrawStats& stats,
                 support::Diagnostics& diagnostics)
       : plan_(plan),
         frame_(plan.frame),
-        backend_(backend),
+        layout_(layout),
+        memory_(renderer),
+        backend_(renderer.backend_),
         stats_(stats),
         diagnostics_(diagnostics),
-        built_(backend.build_seconds()),
-        targets_(plan.frame.views.size()) {}
+        built_(backend_.build_seconds()) {
+    for (size_t s = 0; s < plan.posts.steps.size(); ++s) images_of_step_.push_back(images_of(s));
+  }
 
-  bool run(backends::Image& image) {
+  /// With `search`, looks after each step for pixels that are not finite; the layout must be that of steps apart.
+  bool run(bool search) {
+    if (!backend_.reserve(layout_.floats, diagnostics_)) return false;
     for (size_t v = 0; v < frame_.views.size(); ++v) {
-      if (!draw_view(v, v + 1 == frame_.views.size() ? image : targets_[v])) return false;
-      release_unread(v);
+      const std::span<const float> words(frame_.views[v].words);
+      backend_.write(layout_.views[v].camera, words.first(lower::view_word::camera_words));
     }
-    backends::Image motion;
-    if (plan_.motion && !draw_motion(*plan_.motion, motion)) return false;
-    if (!run_posts(plan_.posts, sample_steps(), frame_, motion, backend_, image, stats_, diagnostics_)) return false;
-    stats_.post_seconds = lap();
+    memory_.vertices_ = frame_.vertices;
+    for (size_t v = 0; v < frame_.views.size(); ++v)
+      if (!draw_view(v, search)) return false;
+    if (plan_.motion && !draw_motion(*plan_.motion)) return false;
+    for (const StepGroup& group : layout_.groups) {
+      if (!run_posts(group)) return false;
+      if (search) search_made(group.first);
+    }
+    if (search) stats_.non_finite.result = find(image(plan_.posts.result));
+    stats_.post_seconds += lap();
     return true;
   }
 
  private:
-  size_t sample_steps() const { return plan_.samples > 1 ? plan_.posts.sample_steps : 0; }
+  const Slot& image(int number) const { return layout_.images[static_cast<size_t>(number)]; }
 
   /// Seconds since the last call, without those that the backend built programs.
   double lap() {
@@ -97,97 +90,165 @@ class FrameRenderer {
     return clock_.lap() - (built_ - before);
   }
 
+  NonFinite find(const Slot& slot) { return find_non_finite(backend_.read(slot), slot.width); }
+
   /// Runs the vertex programs of the view and makes triangles of their positions.
   bool make_triangles(const backends::ViewPass& pass) {
-    std::vector<std::vector<float>> clip;
-    if (!backend_.transform(pass, clip, diagnostics_)) return false;
+    if (!backend_.transform(pass, memory_.clip_, diagnostics_)) return false;
     const std::vector<backends::Draw>& draws = pass.view.draws;
-    support::assert_that(clip.size() == draws.size(), "a backend transformed another number of draws");
     stats_.transform_seconds += lap();
-    vertices_ = frame_.vertices;
-    triangles_.clear();
-    for (size_t d = 0; d < draws.size(); ++d) {
-      const backends::Draw& draw = draws[d];
-      support::assert_that(clip[d].size() == size_t{4} * draw.vertex_count, "a backend left out vertices");
+    memory_.vertices_.resize(frame_.vertices.size());
+    memory_.triangles_.clear();
+    size_t place = 0;
+    for (const backends::Draw& draw : draws) {
+      const size_t floats = size_t{4} * draw.vertex_count;
+      const std::span<const float> clip = std::span(memory_.clip_).subspan(std::exchange(place, place + floats), floats);
       // Where only depth counts, a blended draw is one that writes it or nothing.
       const backends::Target& target = pass.view.target;
       const bool writes_depth = !draw.blended || draw.state.depth_write == interface::DepthWrite::on;
       if (target.has_color || writes_depth)
-        raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored,
+        raster::clip_and_snap({clip, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored,
                                draw.cutout, draw.blended && target.has_color, pass.view.depth_bias},
-                              target.width, target.height, vertices_, triangles_);
-      support::release(clip[d]);
+                              target.width, target.height, memory_.vertices_, memory_.triangles_);
     }
-    stats_.triangles += static_cast<int64_t>(triangles_.size()) / lower::triangle_word::stride;
+    support::assert_that(place == memory_.clip_.size(), "a backend transformed another number of vertices");
+    stats_.triangles += static_cast<int64_t>(memory_.triangles_.size()) / lower::triangle_word::stride;
     stats_.made_vertices +=
-        static_cast<int64_t>(vertices_.size() - frame_.vertices.size()) / lower::vertex_word::stride;
+        static_cast<int64_t>(memory_.vertices_.size() - frame_.vertices.size()) / lower::vertex_word::stride;
     stats_.clip_seconds += lap();
     return true;
   }
 
-  bool draw_view(size_t v, backends::Image& image) {
-    const backends::View& view = frame_.views[v];
-    Layers layers(view.target.width, view.target.height);
+  /// The images that the programs of a view read: for each view that it reads, the depth and the color.
+  std::vector<ImageRead> images_of(const backends::View& view) const {
+    std::vector<ImageRead> images;
     for (const size_t read : view.reads) {
       if (read == backends::View::nothing) {
-        layers.add_no_target();
+        images.resize(images.size() + 2);
         continue;
       }
-      support::assert_that(read < v, "a view reads a target that is not drawn yet");
-      layers.add_target(frame_.views[read], targets_[read]);
+      const auto& [camera, depth, color] = layout_.views[read];
+      images.push_back({depth, camera});
+      images.push_back(color.exists() ? ImageRead{color, camera} : ImageRead{});
     }
-    const backends::ViewPass pass{frame_, view, layers.floats, layers.records};
+    return images;
+  }
+
+  bool draw_view(size_t v, bool search) {
+    const backends::View& view = frame_.views[v];
+    const std::vector<ImageRead> images = images_of(view);
+    const backends::ViewPass pass{frame_, view, images};
     if (!make_triangles(pass)) return false;
     const bool is_picture = v + 1 == frame_.views.size();
-    ProcessSamples process;
-    if (is_picture && sample_steps() > 0)
-      process = [&](int first_row, backends::Image& samples) {
-        return run_sample_posts(plan_.posts, frame_, first_row, backend_, samples, stats_, diagnostics_);
-      };
-    if (!draw(pass, is_picture ? plan_.samples : 1, vertices_, triangles_, process, backend_, image, stats_, diagnostics_))
-      return false;
+    std::vector<ScreenPass> posts;
+    if (is_picture)
+      for (size_t s = 0; s < layout_.drawn_steps; ++s) posts.push_back(pass_of(s));
+    Drawing drawing{.pass = pass,
+                    .vertices = memory_.vertices_,
+                    .triangles = memory_.triangles_,
+                    .window = {0, 0, view.target.width, view.target.height},
+                    .side = is_picture ? samples_each_way(plan_.samples) : 1,
+                    .posts = {},
+                    .depth = layout_.views[v].depth,
+                    .color = layout_.views[v].color};
+    if (is_picture && search && !search_drawn(drawing, posts)) return false;
+    drawing.posts = posts;
+    if (!backend_.draw(drawing, diagnostics_)) return false;
     stats_.draw_seconds += lap();
     return true;
   }
 
+  /// The images that a step reads.
+  std::vector<ImageRead> images_of(size_t s) const {
+    const PostStep& step = plan_.posts.steps[s];
+    const backends::Target& target = frame_.picture().target;
+    const int side = samples_each_way(plan_.samples);
+    const bool over_samples = s < layout_.drawn_steps;
+    ImageRead depth{layout_.views.back().depth};
+    if (!step.post->reads_depth) depth.slot.channels = 0;
+    std::vector<ImageRead> images{depth};
+    for (const int source : step.sources) {
+      if (source == PostStep::not_read)
+        images.emplace_back();
+      else
+        images.push_back({source == PostStep::motion ? layout_.motion : image(source)});
+    }
+    if (over_samples) {
+      for (size_t i = 0; i < 2; ++i)
+        images[i].slot.width = target.width, images[i].slot.height = target.height;
+    } else {
+      images[0].slot.width = target.width / side, images[0].slot.height = target.height / side;
+    }
+    return images;
+  }
+
+  /// The pass of a step over its whole image, or over the samples of the picture.
+  ScreenPass pass_of(size_t s) const {
+    const PostStep& step = plan_.posts.steps[s];
+    const bool over_samples = s < layout_.drawn_steps;
+    const backends::Target& target = frame_.picture().target;
+    return {.program = &step.post->program,
+            .width = over_samples ? target.width : step.width,
+            .height = over_samples ? target.height : step.height,
+            .frame = frame_.frame,
+            .view = std::span(frame_.picture().words).first(lower::view_word::camera_words),
+            .record = step.record,
+            .images = images_of_step_[s],
+            .textures = step.post->reads_environment ? &frame_ : nullptr};
+  }
+
+  bool run_posts(const StepGroup& group) {
+    std::vector<ScreenPass> passes;
+    for (size_t s = group.first; s < group.first + group.count; ++s) passes.push_back(pass_of(s));
+    return backend_.post(passes, layout_.images[group.first + group.count], diagnostics_);
+  }
+
   /// Draws the motion with one sample a pixel.
-  bool draw_motion(const MotionPlan& motion, backends::Image& image) {
+  bool draw_motion(const MotionPlan& motion) {
     const backends::View& view = motion.now;
     const auto [width, height] = std::pair(view.target.width, view.target.height);
-    const Layers layers(width, height);
-    const backends::ViewPass before{frame_, motion.before, layers.floats, layers.records};
-    const backends::ViewPass now{frame_, view, layers.floats, layers.records};
-    std::vector<std::vector<float>> clip_before, clip;
+    const backends::ViewPass before{frame_, motion.before}, now{frame_, view};
+    support::Array<float>&clip = memory_.clip_, &clip_before = memory_.clip_before_;
     if (!backend_.transform(before, clip_before, diagnostics_) || !backend_.transform(now, clip, diagnostics_))
       return false;
-    vertices_.clear();
+    std::vector<float>& vertices = memory_.vertices_;
+    vertices.clear();
     std::vector<uint32_t> first_vertices;
-    for (size_t d = 0; d < view.draws.size(); ++d) {
-      first_vertices.push_back(static_cast<uint32_t>(vertices_.size() / lower::vertex_word::stride));
-      append_moved(view.draws[d], clip[d], clip_before[d]);
+    size_t place = 0;
+    for (const backends::Draw& draw : view.draws) {
+      const size_t floats = size_t{4} * draw.vertex_count;
+      first_vertices.push_back(static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride));
+      append_moved(draw, std::span(clip).subspan(place, floats), std::span(clip_before).subspan(place, floats));
+      place += floats;
     }
-    triangles_.clear();
+    memory_.triangles_.clear();
+    place = 0;
     for (size_t d = 0; d < view.draws.size(); ++d) {
       const backends::Draw& draw = view.draws[d];
-      raster::clip_and_snap({clip[d], draw.indices, first_vertices[d], draw.state, draw.object, draw.mirrored,
-                             draw.cutout, false, {}},
-                            width, height, vertices_, triangles_);
+      const size_t floats = size_t{4} * draw.vertex_count;
+      raster::clip_and_snap({std::span<const float>(clip).subspan(std::exchange(place, place + floats), floats),
+                             draw.indices, first_vertices[d], draw.state, draw.object, draw.mirrored, draw.cutout,
+                             false, {}},
+                            width, height, vertices, memory_.triangles_);
     }
-    backends::Image drawn;
-    if (!backend_.draw(now, vertices_, triangles_, drawn, diagnostics_)) return false;
-    Layers images(width, height);
-    images.add_unread(width, height);
-    images.add(drawn.rgba, width, height);
-    const backends::ScreenPass pass{.program = motion.complete,
-                                    .width = width,
-                                    .height = height,
-                                    .frame = frame_.frame,
-                                    .view = std::span(view.words).first(lower::view_word::camera_words),
-                                    .record = motion.backdrop,
-                                    .layers = images.floats,
-                                    .layer_records = images.records};
-    image.resize(width, height);
-    return backend_.post(pass, image.rgba, diagnostics_);
+    const auto& drawn = layout_.drawn_motion;
+    if (!backend_.draw({.pass = now,
+                        .vertices = vertices,
+                        .triangles = memory_.triangles_,
+                        .window = {0, 0, width, height},
+                        .depth = drawn.depth,
+                        .color = drawn.color},
+                       diagnostics_))
+      return false;
+    const ImageRead images[] = {{Slot{0, width, height, 0}}, {drawn.color}};
+    const ScreenPass complete{.program = motion.complete,
+                              .width = width,
+                              .height = height,
+                              .frame = frame_.frame,
+                              .view = std::span(view.words).first(lower::view_word::camera_words),
+                              .record = motion.backdrop,
+                              .images = images};
+    return backend_.post({&complete, 1}, layout_.motion, diagnostics_);
   }
 
   /// Appends the vertices of a draw with how far they have moved, see lower::add_motion_kernel.
@@ -195,8 +256,8 @@ class FrameRenderer {
     namespace word = lower::vertex_word;
     const lanes::FpGuard guard;
     const auto first = frame_.vertices.begin() + static_cast<ptrdiff_t>(draw.first_vertex) * word::stride;
-    const size_t begin = vertices_.size();
-    vertices_.insert(vertices_.end(), first, first + static_cast<ptrdiff_t>(draw.vertex_count) * word::stride);
+    const size_t begin = memory_.vertices_.size();
+    memory_.vertices_.insert(memory_.vertices_.end(), first, first + static_cast<ptrdiff_t>(draw.vertex_count) * word::stride);
     for (size_t i = 0; i < draw.vertex_count; ++i) {
       float change[3];
       bool is_known = true;
@@ -206,44 +267,82 @@ class FrameRenderer {
         is_known = is_known && std::isfinite(change[c]);
       }
       for (size_t c = 0; c < 3; ++c)
-        vertices_[begin + i * word::stride + word::corner_normals + c] = is_known ? change[c] : 0.0f;
+        memory_.vertices_[begin + i * word::stride + word::corner_normals + c] = is_known ? change[c] : 0.0f;
     }
   }
 
-  /// Frees the targets that no view after `v` reads.
-  void release_unread(size_t v) {
-    for (size_t drawn = 0; drawn <= v; ++drawn) {
-      const auto reads_it = [&](const backends::View& view) {
-        return std::ranges::find(view.reads, drawn) != view.reads.end();
-      };
-      if (std::any_of(frame_.views.begin() + static_cast<ptrdiff_t>(v) + 1, frame_.views.end(), reads_it))
-        continue;
-      support::release(targets_[drawn].rgba);
-      support::release(targets_[drawn].depth);
+  /// Draws the picture with more and more of the posts that run over its samples, and looks for what made the first pixel
+  /// that is not finite.
+  bool search_drawn(Drawing drawing, std::span<const ScreenPass> posts) {
+    NonFiniteReport& report = stats_.non_finite;
+    bool was_finite = true;
+    for (size_t count = 0; count <= posts.size(); ++count) {
+      drawing.posts = posts.first(count);
+      if (!backend_.draw(drawing, diagnostics_)) return false;
+      const NonFinite made = find(drawing.color);
+      if (count == 0) report.drawn = made;
+      if (count > 0 && was_finite && made.count > 0) report.posts.push_back({plan_.posts.steps[count - 1].post_number, made});
+      was_finite = made.count == 0;
+      finite_.push_back(was_finite);
     }
+    drawing.posts = {};
+    return report.drawn.count == 0 || find_object(backend_, drawing, layout_.probe, report, diagnostics_);
+  }
+
+  /// Notes pixels of a step's image that are not finite if the step made them so.
+  void search_made(size_t s) {
+    const PostStep& step = plan_.posts.steps[s];
+    const NonFinite made = find(layout_.images[s + 1]);
+    const bool read_finite = std::ranges::all_of(
+        step.sources, [&](int source) { return source < 0 || finite_[static_cast<size_t>(source)]; });
+    finite_.push_back(made.count == 0);
+    if (made.count > 0 && read_finite) stats_.non_finite.posts.push_back({step.post_number, made});
   }
 
   const Plan& plan_;
   const backends::Frame& frame_;
+  const FrameLayout& layout_;
+  Renderer& memory_;
   backends::Backend& backend_;
   DrawStats& stats_;
   support::Diagnostics& diagnostics_;
   Clock clock_;
   double built_;  ///< Backend::build_seconds() at the last lap
-  std::vector<backends::Image>
-      targets_;                  ///< of each view but the last, from when it is drawn until it was last read
-  std::vector<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
-  std::vector<int32_t> triangles_;
+  std::vector<std::vector<ImageRead>> images_of_step_;
+  std::vector<bool> finite_;  ///< of each image of the chain, in a search
 };
 
-}  // namespace
+std::optional<scene::ImageView> Renderer::render(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics) {
+  const FrameLayout layout(plan);
+  if (!check_images(plan, layout, diagnostics)) return std::nullopt;
+  stats = {};
+  stats.samples = plan.samples;
+  stats.fused_posts = static_cast<int64_t>(layout.fused());
+  stats.kept_images = plan.posts.steps.empty() ? 0 : static_cast<int64_t>(layout.most_images);
+  const FrameLayout* used = &layout;
+  std::optional<FrameLayout> apart;
+  if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false)) return std::nullopt;
+  if (!backend_.is_finite()) {
+    used = &apart.emplace(plan, true);
+    DrawStats searched;
+    if (!check_images(plan, *used, diagnostics) ||
+        !FrameRenderer(plan, *used, *this, searched, diagnostics).run(true))
+      return std::nullopt;
+    stats.non_finite = std::move(searched.non_finite);
+  }
+  const Slot &color = used->images[static_cast<size_t>(plan.posts.result)], &depth = used->views.back().depth;
+  return scene::ImageView{color.width, color.height, backend_.read(color), backend_.read(depth)};
+}
 
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics) {
-  if (!check_images(plan, diagnostics)) return false;
-  stats = {};
-  stats.samples = plan.samples;
-  return FrameRenderer(plan, backend, stats, diagnostics).run(image);
+  const auto drawn = Renderer(backend).render(plan, stats, diagnostics);
+  if (!drawn) return false;
+  image.width = drawn->width;
+  image.height = drawn->height;
+  image.rgba.assign(drawn->rgba.begin(), drawn->rgba.end());
+  image.depth.assign(drawn->depth.begin(), drawn->depth.end());
+  return true;
 }
 
 }  // namespace isoshade::render

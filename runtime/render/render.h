@@ -2,13 +2,34 @@
 // Drawing a planned frame with a backend.
 #pragma once
 
+#include <optional>
+
 #include "runtime/render/plan.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::render {
 
-/// Draws the views in their order (vertex programs, clipping and snapping, pixel programs), then runs the posts over
-/// the picture, which `image` receives. Every backend takes the same steps on the same numbers. Reports errors of the
-/// device.
+/// Draws frames with a backend. Its memory and that of the backend live on from one frame to the next.
+class Renderer {
+ public:
+  /// The backend must outlive it.
+  explicit Renderer(backends::Backend& backend) : backend_(backend) {}
+
+  /// Draws the views in their order (vertex programs, clipping and snapping, pixel programs), then runs the posts over the
+  /// picture. Every backend takes the same steps on the same numbers. The image is valid until the backend draws again.
+  /// If a pixel is not finite, the frame is drawn once more, step by step, to find what made it so. Reports errors of the
+  /// device.
+  std::optional<scene::ImageView> render(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics);
+
+ private:
+  friend class FrameRenderer;
+  backends::Backend& backend_;
+  support::Array<float> clip_, clip_before_;
+  std::vector<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
+  std::vector<int32_t> triangles_;
+};
+
+/// Draws one frame; `image` receives a copy.
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics);
 

@@ -42,11 +42,10 @@ std::string text(const DrawStats& stats) {
       1e3 * stats.build_seconds, 1e3 * stats.transform_seconds, 1e3 * stats.clip_seconds, stats.triangles,
       stats.made_vertices, 1e3 * stats.draw_seconds);
   if (stats.samples > 1)
-    text += fmt::format("samples:  {} a pixel, in {} parts, {} of them without triangles and not drawn\n",
-                        stats.samples, stats.parts, stats.empty_parts);
+    text += fmt::format("samples:  {} a pixel\n", stats.samples);
   if (stats.kept_images > 0)
-    text += fmt::format("posts:    {:.1f} ms; at most {} images at a time\n", 1e3 * stats.post_seconds,
-                        stats.kept_images);
+    text += fmt::format("posts:    {:.1f} ms; {} run with what is before them; at most {} images at a time\n",
+                        1e3 * stats.post_seconds, stats.fused_posts, stats.kept_images);
   return text;
 }
 

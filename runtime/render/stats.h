@@ -40,9 +40,8 @@ struct DrawStats {
   int64_t triangles = 0;      ///< left by clipping and culling
   int64_t made_vertices = 0;  ///< by clipping
   int samples = 1;            ///< a pixel
-  int64_t parts = 0;          ///< windows that the picture is drawn in, if it has several samples a pixel
-  int64_t empty_parts = 0;    ///< windows without triangles, which are not drawn
   int64_t kept_images = 0;    ///< the most images that the post chain kept at a time, with the new one
+  int64_t fused_posts = 0;    ///< posts that were run right after what is before them, pixel by pixel
   NonFiniteReport non_finite;
   double build_seconds = 0;  ///< the backend's, for machine code; not part of the following
   double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0, post_seconds = 0;
