@@ -26,7 +26,7 @@ struct FrameLayout {
   size_t drawn_steps = 0;         ///< steps of the chain that run over each sample or pixel as it is drawn
   std::vector<StepGroup> groups;  ///< of the other steps
   std::vector<backends::Slot> images;  ///< of the chain: the picture's, then that of each step
-  size_t most_images = 0;              ///< of the chain that are kept at a time, with the one that is made
+  size_t most_images = 1;              ///< of the chain that are kept at a time, with the one that is made
   size_t floats = 0;                   ///< of all images together
   ViewImages probe;                    ///< of the samples of one pixel; only if steps run apart
 

@@ -223,7 +223,7 @@ TEST_F(Blending, IsDoneForEverySampleAlone) {
   const backends::Image resolved = draw(in_parts, *cpu);
   in_parts.samples = 1;  // all samples are an image
   backends::Image samples = draw(in_parts, *cpu);
-  while (samples.width > resolved.width) render::halve(samples);
+  samples = resolved_to(samples, resolved.width);
   expect_identical(samples, resolved, "530x283");
 }
 

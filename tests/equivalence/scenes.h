@@ -10,6 +10,7 @@
 
 #include "backends/cpu/backend.h"
 #include "backends/interpreter/backend.h"
+#include "backends/resolve.h"
 #include "compiler/check/library.h"
 #include "runtime/compare/compare.h"
 #include "runtime/render/render.h"
@@ -68,6 +69,15 @@ inline backends::Image draw(const render::Plan& plan, backends::Backend& backend
   backends::Image image;
   render::DrawStats stats;
   if (!render::render(plan, backend, image, stats, diagnostics)) ADD_FAILURE() << diagnostics.text();
+  return image;
+}
+
+/// The image whose pixels have the pixels of this one as samples.
+inline backends::Image resolved_to(backends::Image image, int width) {
+  const lanes::FpGuard guard;
+  const int side = image.width / width;
+  backends::resolve(image.rgba.data(), image.depth.data(), image.width, image.height, side);
+  image.resize(width, image.height / side);
   return image;
 }
 

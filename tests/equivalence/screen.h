@@ -2,6 +2,7 @@
 // Posts over images that a test makes, without a scene.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -26,7 +27,8 @@ struct Pixels {
 class Screen {
  public:
   Screen(const support::Source& source, int width, int height, const Pixels& depth,
-         const std::vector<Pixels>& images) {
+         const std::vector<Pixels>& images)
+      : width_(width), height_(height) {
     support::Diagnostics diagnostics;
     check::Library library(ISOSHADE_GRAPHS "/library");
     driver::CompileOptions options;
@@ -37,10 +39,8 @@ class Screen {
     record_ = post.parameters.defaults();
     frame.resize(lower::frame_word::count);
     view.resize(lower::view_word::camera_words);
-    add({width, height, {}});
-    add(depth);
-    for (const Pixels& image : images) add(image);
-    pass_ = {&post.program, width, height, 0, frame, view, record_, images_, records_};
+    images_.push_back(depth);
+    images_.insert(images_.end(), images.begin(), images.end());
   }
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
@@ -55,9 +55,26 @@ class Screen {
 
   std::vector<float> run(backends::Backend& backend) {
     support::Diagnostics diagnostics;
-    std::vector<float> rgba;
-    EXPECT_TRUE(backend.post(pass_, rgba, diagnostics)) << diagnostics.text();
-    return rgba;
+    backends::SlotAllocator slots;
+    std::vector<backends::ImageRead> images;
+    for (const Pixels& image : images_) {
+      const int pixels = std::max(1, image.width * image.height);  // what is not read has none
+      const int channels = static_cast<int>(image.floats.size()) / pixels;
+      images.push_back({slots.take(image.width, image.height, channels)});
+    }
+    const backends::Slot made = slots.take(width_, height_, 4);
+    EXPECT_TRUE(backend.reserve(slots.length(), diagnostics)) << diagnostics.text();
+    for (size_t i = 0; i < images.size(); ++i) backend.write(images[i].slot.first, images_[i].floats);
+    const backends::ScreenPass pass{.program = &post.program,
+                                    .width = width_,
+                                    .height = height_,
+                                    .frame = frame,
+                                    .view = view,
+                                    .record = record_,
+                                    .images = images};
+    EXPECT_TRUE(backend.post({&pass, 1}, made, diagnostics)) << diagnostics.text();
+    const std::span<const float> rgba = backend.read(made);
+    return {rgba.begin(), rgba.end()};
   }
   std::vector<float> interpreted() { return run(*interpreter::create()); }
 
@@ -66,13 +83,9 @@ class Screen {
   std::vector<float> view;   ///< words of lower::view_word
 
  private:
-  void add(const Pixels& pixels) {
-    records_.insert(records_.end(), {static_cast<int32_t>(images_.size()), pixels.width, pixels.height, -1});
-    images_.insert(images_.end(), pixels.floats.begin(), pixels.floats.end());
-  }
-  std::vector<float> record_, images_;
-  std::vector<int32_t> records_;
-  backends::ScreenPass pass_;
+  int width_, height_;
+  std::vector<float> record_;
+  std::vector<Pixels> images_;  ///< the depth, then those that are read
 };
 
 }  // namespace isoshade::equivalence

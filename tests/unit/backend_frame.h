@@ -42,12 +42,12 @@ struct TestFrame {
   ViewPass pass() const { return {frame, view()}; }
 
   /// The steps between transform and draw.
-  void assemble(const std::vector<std::vector<float>>& clip, std::vector<float>& vertices,
-                std::vector<int32_t>& triangles) const {
+  void assemble(std::span<const float> clip, std::vector<float>& vertices, std::vector<int32_t>& triangles) const {
     vertices = frame.vertices;
-    for (size_t d = 0; d < view().draws.size(); ++d) {
-      const Draw& draw = view().draws[d];
-      raster::clip_and_snap({clip[d], draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout},
+    for (const Draw& draw : view().draws) {
+      const std::span<const float> of_draw = clip.first(size_t{4} * draw.vertex_count);
+      clip = clip.subspan(of_draw.size());
+      raster::clip_and_snap({of_draw, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout},
                             view().target.width, view().target.height, vertices, triangles);
     }
   }
@@ -99,19 +99,44 @@ struct TestFrame {
   std::mt19937 random_{1};
 };
 
-inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+template <class Floats>
+bool same_bits(const Floats& a, const Floats& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+/// Draws a whole view.
+inline bool draw(Backend& backend, const ViewPass& pass, std::span<const float> vertices,
+                 std::span<const int32_t> triangles, Image& image, support::Diagnostics& diagnostics) {
+  const Target& target = pass.view.target;
+  SlotAllocator slots;
+  const Slot depth = slots.take(target.width, target.height, 1);
+  const Slot color = target.has_color ? slots.take(target.width, target.height, 4) : Slot{};
+  if (!backend.reserve(slots.length(), diagnostics) ||
+      !backend.draw({.pass = pass,
+                     .vertices = vertices,
+                     .triangles = triangles,
+                     .window = {0, 0, target.width, target.height},
+                     .depth = depth,
+                     .color = color},
+                    diagnostics))
+    return false;
+  const auto copy = [&](const Slot& slot) {
+    const std::span<const float> floats = backend.read(slot);
+    return std::vector<float>(floats.begin(), floats.end());
+  };
+  image = {target.width, target.height, copy(color), copy(depth)};
+  return true;
 }
 
 inline Image render(Backend& backend, const TestFrame& test) {
   support::Diagnostics diagnostics;
-  std::vector<std::vector<float>> clip;
+  support::Array<float> clip;
   std::vector<float> vertices;
   std::vector<int32_t> triangles;
   Image image;
   EXPECT_TRUE(backend.transform(test.pass(), clip, diagnostics)) << diagnostics.text();
   test.assemble(clip, vertices, triangles);
-  EXPECT_TRUE(backend.draw(test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
+  EXPECT_TRUE(draw(backend, test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
   return image;
 }
 

@@ -65,18 +65,18 @@ class CpuLanes : public testing::TestWithParam<const char*> {
 TEST_P(CpuLanes, TransformsEveryVertex) {
   const Scene test(64, 64, 5);
   Diagnostics diagnostics;
-  std::vector<std::vector<float>> clip;
+  support::Array<float> clip;
   ASSERT_TRUE(backend(GetParam(), 2)->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
-  ASSERT_EQ(clip.size(), 5u);
-  for (size_t d = 0; d < clip.size(); ++d) {
-    ASSERT_EQ(clip[d].size(), 4u * 30);
+  ASSERT_EQ(clip.size(), 5u * 4u * 30);
+  for (size_t d = 0; d < 5; ++d) {
+    const float* const of_draw = &clip[d * 4 * 30];
     for (size_t v = 0; v < 30; ++v) {
       const float* position = test.frame.vertices.data() + (30 * d + v) * lower::vertex_word::stride;
       const float scale = test.frame.objects[d * object_stride];
-      EXPECT_EQ(clip[d][4 * v], position[0] * scale);
-      EXPECT_EQ(clip[d][4 * v + 1], position[1] * scale);
-      EXPECT_EQ(clip[d][4 * v + 2], position[2]);
-      EXPECT_EQ(clip[d][4 * v + 3], 1.0f);
+      EXPECT_EQ(of_draw[4 * v], position[0] * scale);
+      EXPECT_EQ(of_draw[4 * v + 1], position[1] * scale);
+      EXPECT_EQ(of_draw[4 * v + 2], position[2]);
+      EXPECT_EQ(of_draw[4 * v + 3], 1.0f);
     }
   }
 }
@@ -86,7 +86,7 @@ TEST_P(CpuLanes, ReportsProgramBuildTime) {
   const auto cpu = backend(GetParam(), 2);
   EXPECT_EQ(cpu->build_seconds(), 0);
   Diagnostics diagnostics;
-  std::vector<std::vector<float>> clip;
+  support::Array<float> clip;
   ASSERT_TRUE(cpu->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
   EXPECT_GT(cpu->build_seconds(), 0);
 }
@@ -96,13 +96,13 @@ TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{200, 150}, std::pair{65, 129}}) {
     const Scene test(width, height, 60);
     Diagnostics diagnostics;
-    std::vector<std::vector<float>> clip;
+    support::Array<float> clip;
     std::vector<float> vertices;
     std::vector<int32_t> triangles;
     Image image;
     ASSERT_TRUE(cpu->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
     test.assemble(clip, vertices, triangles);
-    ASSERT_TRUE(cpu->draw(test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
+    ASSERT_TRUE(draw(*cpu, test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
 
     std::vector<int32_t> ids(static_cast<size_t>(width) * height);
     std::vector<float> depth(ids.size());

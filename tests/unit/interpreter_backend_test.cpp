@@ -119,11 +119,10 @@ TEST_P(InterpreterAndCpu, TransformToIdenticalPositions) {
   TestFrame test(64, 64, 20);
   test.frame.programs = {&vertex};
   Diagnostics diagnostics;
-  std::vector<std::vector<float>> a, b;
+  support::Array<float> a, b;
   ASSERT_TRUE(interpreted->transform(test.pass(), a, diagnostics)) << diagnostics.text();
   ASSERT_TRUE(compiled->transform(test.pass(), b, diagnostics)) << diagnostics.text();
-  ASSERT_EQ(a.size(), b.size());
-  for (size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(same_bits(a[i], b[i]));
+  EXPECT_TRUE(same_bits(a, b));
 }
 
 TEST_P(InterpreterAndCpu, EvaluateIdenticalTables) {

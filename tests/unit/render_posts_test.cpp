@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <malloc.h>
 #include <unistd.h>
 
 #include "backends/interpreter/backend.h"
+#include "runtime/render/layout.h"
 #include "runtime/render/plan.h"
 #include "runtime/render/render.h"
 #include "tests/unit/scene_documents.h"
@@ -109,7 +109,7 @@ TEST_F(PostsTest, KeepsOnlyImagesThatAreReadLater) {
   for (int i = 1; i < 8; ++i)
     chain += "," + post("p" + std::to_string(i), "gain", R"("parameters": {"gain": 1})");
   EXPECT_EQ(red(chain), 1.5f * 128);
-  EXPECT_EQ(stats_.kept_images, 2);
+  EXPECT_EQ(stats_.kept_images, 1);  // each runs over it in place
   // The first is read again at the end.
   EXPECT_EQ(red(chain + "," + post("last", "sum", R"("inputs": {"other": "p0"})")), 1.5f * 128 + 1.5f);
   EXPECT_EQ(stats_.kept_images, 3);
@@ -121,47 +121,38 @@ TEST_F(PostsTest, KeepsOnlyImagesThatAreReadLater) {
   EXPECT_EQ(stats_.kept_images, 4);
 }
 
-/// Fills what posts make, and measures the memory that the process has from the heap then.
-class MeasuringBackend final : public backends::Backend {
- public:
-  std::string_view name() const override { return "measuring"; }
-  std::string description() const override { return "fills images"; }
-  bool transform(const backends::ViewPass&, std::vector<std::vector<float>>&,
-                 support::Diagnostics&) override {
-    return true;
-  }
-  std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass&, std::span<const float>,
-                                                support::Diagnostics&) override {
-    return nullptr;
-  }
-  bool post(const backends::ScreenPass& pass, std::vector<float>& rgba, support::Diagnostics&) override {
-    rgba.assign(size_t{4} * static_cast<size_t>(pass.width * pass.height), 0.5f);
-    const struct mallinfo2 heap = mallinfo2();
-    bytes.push_back(heap.hblkhd + heap.uordblks);
-    return true;
-  }
-  bool evaluate(const driver::Program&, std::span<const int32_t>, size_t, std::vector<int32_t>&,
-                support::Diagnostics&) override {
-    return false;
-  }
-
-  std::vector<size_t> bytes;  ///< at each post
-};
-
-TEST_F(PostsTest, UnusedImagesAreReleased) {
+TEST_F(PostsTest, ImagesThatNothingReadsAnyMoreGiveUpTheirPlace) {
   std::string chain = post("p0", "gain");
-  for (int i = 1; i < 32; ++i) chain += "," + post("p" + std::to_string(i), "gain");
+  for (int i = 1; i < 32; ++i) {
+    // Half as large, so that each needs an image of its own.
+    const std::string size = i % 2 == 1 ? R"("size": 0.5)" : R"("size": 1)";
+    chain += "," + post("p" + std::to_string(i), "gain", size);
+  }
+  chain += "," + post("last", "gain");
   options_.width = options_.height = 512;
   const auto made = plan(chain);
   ASSERT_TRUE(made) << diagnostics_.text();
-  backends::Image image;
-  image.resize(512, 512);
-  MeasuringBackend backend;
-  ASSERT_TRUE(render::run_posts(made->posts, 0, made->frame, {}, backend, image, stats_, diagnostics_));
-  ASSERT_EQ(backend.bytes.size(), 32u);
-  // An image has 4 MiB. Under the address sanitizer, which has a heap of its own, all are alike.
-  const auto [least, most] = std::ranges::minmax(backend.bytes);
-  EXPECT_LE(most - least, size_t{8} << 20);
+  const render::FrameLayout layout(*made);
+  EXPECT_GE(layout.groups.size(), 30u);
+  constexpr size_t pixels = size_t{512} * 512, camera = 1024;
+  EXPECT_LE(layout.floats, pixels * (1 + 4 + 4) + camera);  // a depth, and two images
+}
+
+TEST_F(PostsTest, RunWithWhatIsBeforeThemWhereTheyReadTheirOwnPixel) {
+  const auto groups = [&](const std::string& posts) {
+    const auto made = plan(posts);
+    EXPECT_TRUE(made) << diagnostics_.text();
+    const render::FrameLayout layout(*made);
+    return std::pair(layout.drawn_steps, layout.groups.size());
+  };
+  const std::string two = post("a", "gain") + "," + post("b", "gain");
+  EXPECT_EQ(groups(two), std::pair(size_t{2}, size_t{0}));
+  EXPECT_EQ(groups(two + "," + post("c", "sum", R"("inputs": {"other": "b"})")), std::pair(size_t{2}, size_t{1}));
+  // What is read later has a place of its own.
+  EXPECT_EQ(groups(two + "," + post("c", "sum", R"("inputs": {"other": "scene"})")), std::pair(size_t{0}, size_t{2}));
+  EXPECT_EQ(groups(post("c", "sum", R"("inputs": {"other": "scene"})") + "," + two), std::pair(size_t{0}, size_t{1}));
+  EXPECT_EQ(groups(two + "," + post("c", "gain", R"("size": 0.5)") + "," + post("d", "gain")),
+            std::pair(size_t{2}, size_t{2}));
 }
 
 TEST_F(PostsTest, PostsThatAreSwitchedOffPassOnTheirInput) {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "backends/vulkan/limits.h"
+#include "tests/unit/backend_frame.h"
 #include "tests/unit/vulkan_shaders.h"
 
 namespace isoshade::vulkan {
@@ -48,21 +49,22 @@ TEST(VulkanTransform, ReturnsTheVerticesOfEachDrawInOrder) {
   // More than one run of the device takes.
   view.draws[2].first_vertex = 3;
   view.draws[2].vertex_count = max_output_words / 4 + 7;
-  std::vector<std::vector<float>> clip;
+  support::Array<float> clip;
   ASSERT_TRUE(hand.backend->transform({frame, view}, clip, hand.diagnostics)) << hand.diagnostics.text();
 
-  ASSERT_EQ(clip.size(), 3u);
+  ASSERT_EQ(clip.size(), size_t{4} * (3 + view.draws[2].vertex_count));
+  size_t place = 0;
   for (size_t d = 0; d < 3; ++d) {
     const backends::Draw& draw = view.draws[d];
-    ASSERT_EQ(clip[d].size(), size_t{4} * draw.vertex_count);
     for (uint32_t v = 0; v < draw.vertex_count; ++v) {
       const uint32_t vertex = draw.first_vertex + v;
       const float expected[4] = {static_cast<float>(vertex), frame.objects[static_cast<size_t>(draw.object)],
                                  frame.vertices[size_t{8} * (vertex % 4)],
                                  view.words[static_cast<size_t>(draw.projected)]};
-      ASSERT_EQ(std::memcmp(clip[d].data() + size_t{4} * v, expected, sizeof(expected)), 0)
+      ASSERT_EQ(std::memcmp(clip.data() + 4 * (place + v), expected, sizeof(expected)), 0)
           << "draw " << d << ", vertex " << v;
     }
+    place += draw.vertex_count;
   }
 }
 
@@ -171,7 +173,7 @@ class VulkanDraw : public testing::Test {
   void expect_identical(const Rectangles& scene) {
     Image image;
     const std::vector<float> vertices(8);
-    ASSERT_TRUE(hand.backend->draw(scene.pass(), vertices, scene.triangles, image, hand.diagnostics))
+    ASSERT_TRUE(draw(*hand.backend, scene.pass(), vertices, scene.triangles, image, hand.diagnostics))
         << hand.diagnostics.text();
     ASSERT_EQ(image.width, scene.target().width);
     ASSERT_EQ(image.height, scene.target().height);
@@ -212,7 +214,7 @@ TEST_F(VulkanDraw, RejectsFramesBeyondTheGuardBand) {
   Rectangles scene(1, 1, {});
   scene.frame.views[0].target.width = guard_band + 1;
   Image image;
-  EXPECT_FALSE(hand.backend->draw(scene.pass(), {}, {}, image, hand.diagnostics));
+  EXPECT_FALSE(draw(*hand.backend, scene.pass(), {}, {}, image, hand.diagnostics));
   ASSERT_EQ(hand.diagnostics.all().size(), 1u);
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::device_limit);
   EXPECT_NE(hand.diagnostics.text().find("8193x1 pixels"), std::string::npos) << hand.diagnostics.text();
@@ -223,7 +225,7 @@ TEST_F(VulkanDraw, ReportsShaderErrorsAndContinues) {
   const Rectangles scene(8, 8, {{0, 0, 8, 8, 0.5f, 0}});
   hand.texts["red"] = "#version 450\nvoid main() { nothing(); }\n";
   Image image;
-  EXPECT_FALSE(hand.backend->draw(scene.pass(), {}, scene.triangles, image, hand.diagnostics));
+  EXPECT_FALSE(draw(*hand.backend, scene.pass(), {}, scene.triangles, image, hand.diagnostics));
   ASSERT_EQ(hand.diagnostics.all().size(), 1u);
   EXPECT_EQ(hand.diagnostics.all()[0].id, support::Id::bad_shader);
   EXPECT_NE(hand.diagnostics.text().find("the pixel stage of \"red\""), std::string::npos);
