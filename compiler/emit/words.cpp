@@ -2,6 +2,7 @@
 #include "compiler/emit/words.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <unordered_map>
 
@@ -74,24 +75,30 @@ bool follows(std::string_view rest, Rest rule) {
   return !rest.empty() && std::ranges::all_of(rest, [](char c) { return is_capital(c) || c == '_'; });
 }
 
-bool is_of_family(std::string_view name, uint8_t scope, std::span<const Row> rows) {
-  if (name.empty()) return false;
-  for (const Row& row : rows) {
-    if ((row.where & scope) == 0) continue;
-    // Most names differ in their first or last letter already.
-    switch (row.kind) {
-      case Row::Kind::words: break;
-      case Row::Kind::family:
-        if (row.text.front() == name.front() && name.starts_with(row.text) &&
-            follows(name.substr(row.text.size()), row.rest))
-          return true;
-        break;
-      case Row::Kind::ending:
-        if (row.text.back() == name.back() && name.ends_with(row.text)) return true;
+/// The families and endings of a table, by the first and by the last letter of the names that belong to them.
+class Families {
+ public:
+  explicit Families(std::span<const Row> rows) {
+    for (const Row& row : rows) {
+      if (row.kind == Row::Kind::family) families_[letter(row.text.front())].push_back(row);
+      if (row.kind == Row::Kind::ending) endings_[letter(row.text.back())].push_back(row);
     }
   }
-  return false;
-}
+
+  bool contain(std::string_view name, uint8_t scope) const {
+    if (name.empty()) return false;
+    const auto begins = [&](const Row& row) {
+      return (row.where & scope) != 0 && name.starts_with(row.text) && follows(name.substr(row.text.size()), row.rest);
+    };
+    const auto ends = [&](const Row& row) { return (row.where & scope) != 0 && name.ends_with(row.text); };
+    return std::ranges::any_of(families_[letter(name.front())], begins) ||
+           std::ranges::any_of(endings_[letter(name.back())], ends);
+  }
+
+ private:
+  static size_t letter(char c) { return static_cast<unsigned char>(c); }
+  std::array<std::vector<Row>, 256> families_, endings_;
+};
 
 }  // namespace
 
@@ -103,7 +110,8 @@ bool is_word(std::string_view name, Scope scope, Avoid avoid) {
     if ((found->second & bit) != 0) return true;
     if (avoids_own && (found->second >> 3 & bit) != 0) return true;
   }
-  return is_of_family(name, bit, language_rows) || (avoids_own && is_of_family(name, bit, own_rows));
+  static const Families of_languages(language_rows), our_own(own_rows);
+  return of_languages.contain(name, bit) || (avoids_own && our_own.contain(name, bit));
 }
 
 std::vector<std::string_view> all_words() {
