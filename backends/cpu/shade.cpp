@@ -2,6 +2,7 @@
 #include "backends/cpu/shade.h"
 
 #include <algorithm>
+#include <climits>
 #include <cstring>
 #include <utility>
 
@@ -266,6 +267,7 @@ int TilePainter::run_of(int triangle) const {
 void TilePainter::segment() {
   segments_.clear();
   int begin = 0, run = nothing, last_triangle = nothing;
+  int run_first = nothing, run_end = 0;  // the triangles of the run, or `nothing` alone
   const auto end_at = [&](int i) {
     if (run == nothing || begin == i) return;
     segments_.push_back({begin, i, run});
@@ -273,13 +275,16 @@ void TilePainter::segment() {
   };
   for (int i = 0; i < tile_pixels; ++i) {
     const int triangle = tile_.triangles[i];
-    if (triangle == last_triangle) continue;  // the common case: neighbours mostly show one triangle
+    // The common cases: neighbours mostly show one triangle, or one object.
+    if (triangle == last_triangle) continue;
     last_triangle = triangle;
-    const int next = triangle == nothing ? nothing : run_of(triangle);
-    if (next == run) continue;
+    if (triangle >= run_first && triangle < run_end) continue;
     end_at(i);
     begin = i;
-    run = next;
+    run = triangle == nothing ? nothing : run_of(triangle);
+    const auto next = static_cast<size_t>(run + 1);
+    run_first = run == nothing ? nothing : runs_[static_cast<size_t>(run)].first_triangle;
+    run_end = run == nothing ? 0 : next < runs_.size() ? runs_[next].first_triangle : INT_MAX;
   }
   end_at(tile_pixels);
 }
@@ -326,12 +331,28 @@ void TilePainter::write_depth() const {
 void TilePainter::write_color(const DrawJob& job) const {
   for (int y = 0; y < canvas_.height; ++y) {
     float* row = canvas_.color + 4 * canvas_.index(0, y);
-    for (int x = 0; x < canvas_.width; ++x) {
-      const int i = raster::tile_index(x, y);
-      const float* color = tile_.triangles[i] == nothing ? job.view.background : color_ + 4 * place_[i];
-      std::memcpy(row + 4 * x, color, 4 * sizeof(float));
+    for (int x = 0; x < canvas_.width; x += raster::block_size) {
+      const int first = raster::tile_index(x, y);
+      const int count = std::min(raster::block_size, canvas_.width - x);
+      if (count == raster::block_size && is_one_piece(first)) {
+        std::memcpy(row + 4 * x, color_ + 4 * place_[first], 4 * raster::block_size * sizeof(float));
+        continue;
+      }
+      for (int i = 0; i < count; ++i) {
+        const float* color =
+            tile_.triangles[first + i] == nothing ? job.view.background : color_ + 4 * place_[first + i];
+        std::memcpy(row + 4 * (x + i), color, 4 * sizeof(float));
+      }
     }
   }
+}
+
+/// Whether the pixels of a block's row are all covered and their colors lie one after the other.
+bool TilePainter::is_one_piece(int first) const {
+  bool whole = true;
+  for (int i = 0; i < raster::block_size; ++i)
+    whole &= tile_.triangles[first + i] != nothing && place_[first + i] == place_[first] + i;
+  return whole;
 }
 
 }  // namespace isoshade::cpu

@@ -94,6 +94,7 @@ class TilePainter {
   void list_pixels();
   void shade(const DrawJob& job);
   void write_color(const DrawJob& job) const;
+  bool is_one_piece(int first) const;
   void write_depth() const;
   /// The color of a sample of the target.
   float* color_at(int x, int y) const { return canvas_.color + 4 * canvas_.index(x - x_, y - y_); }
