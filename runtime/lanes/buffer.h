@@ -111,6 +111,52 @@ ISOSHADE_INLINE void store_lanes(float* to, Float<W, 2> value) {
   store_lanes(to + W, value.high);
 }
 
+/// Stores a pixel of four floats for each lane, one after the other, as store_lanes does.
+ISOSHADE_INLINE void store_pixels(float* to, float r, float g, float b, float a) {
+  store_lanes(to, r);
+  store_lanes(to + 1, g);
+  store_lanes(to + 2, b);
+  store_lanes(to + 3, a);
+}
+template <int W>
+ISOSHADE_INLINE void store_pixels(float* to, Float<W, 1> r, Float<W, 1> g, Float<W, 1> b, Float<W, 1> a) {
+#if ISOSHADE_SHUFFLES
+  using R = Register<W>;
+  using Floats = typename R::Floats;
+  const auto canonical = [](Float<W, 1> x) __attribute__((always_inline)) { return (Floats)bits(x).raw; };
+  const Floats red = canonical(r), green = canonical(g), blue = canonical(b), alpha = canonical(a);
+  const Floats low_rg = R::low_pairs(red, green), high_rg = R::high_pairs(red, green);
+  const Floats low_ba = R::low_pairs(blue, alpha), high_ba = R::high_pairs(blue, alpha);
+  // In each group of four lanes one pixel.
+  const Floats pixels[4] = {R::low_halves(low_rg, low_ba), R::high_halves(low_rg, low_ba),
+                            R::low_halves(high_rg, high_ba), R::high_halves(high_rg, high_ba)};
+  for (int group = 0; group < W / 4; ++group)
+    for (int pixel = 0; pixel < 4; ++pixel)
+      __builtin_memcpy(to + 4 * (4 * group + pixel), reinterpret_cast<const char*>(&pixels[pixel]) + 16 * group, 16);
+#else
+  float words[4][W];
+  store_lanes(words[0], r);
+  store_lanes(words[1], g);
+  store_lanes(words[2], b);
+  store_lanes(words[3], a);
+  for (int lane = 0; lane < W; ++lane)
+    for (int word = 0; word < 4; ++word) to[4 * lane + word] = words[word][lane];
+#endif
+}
+template <int W>
+ISOSHADE_INLINE void store_pixels(float* to, Float<W, 2> r, Float<W, 2> g, Float<W, 2> b, Float<W, 2> a) {
+  store_pixels(to, r.low, g.low, b.low, a.low);
+  store_pixels(to + 4 * W, r.high, g.high, b.high, a.high);
+}
+/// The first `count` of them.
+template <class F>
+ISOSHADE_INLINE void store_pixels(float* to, F r, F g, F b, F a, int count) {
+  if (count >= lane_count<F>) return store_pixels(to, r, g, b, a);
+  float pixels[4 * lane_count<F>];
+  store_pixels(pixels, r, g, b, a);
+  for (int i = 0; i < 4 * count; ++i) to[i] = pixels[i];
+}
+
 ISOSHADE_INLINE void number_lanes(int& lanes) { lanes = 0; }
 template <int W>
 ISOSHADE_INLINE void number_lanes(Int<W, 1>& lanes) {

@@ -15,6 +15,16 @@ struct Register;
 
 #if ISOSHADE_SIMD
 
+// g++ has them from version 12 on.
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define ISOSHADE_SHUFFLES 1
+#endif
+#endif
+#ifndef ISOSHADE_SHUFFLES
+#define ISOSHADE_SHUFFLES 0
+#endif
+
 template <int W>
 struct Vectors {
   typedef float Floats __attribute__((vector_size(4 * W)));
@@ -60,6 +70,22 @@ struct Register<4> : VectorMasks<4> {
   ISOSHADE_INLINE static Floats splat(float x) { return Floats{x, x, x, x}; }
   ISOSHADE_INLINE static Ints splat(int x) { return Ints{x, x, x, x}; }
   ISOSHADE_INLINE static Ints lane_index() { return Ints{0, 1, 2, 3}; }
+
+#if ISOSHADE_SHUFFLES
+  // In each group of four lanes: the first or the last two of `a` and of `b`, in turn or one pair after the other.
+  ISOSHADE_INLINE static Floats low_pairs(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  }
+  ISOSHADE_INLINE static Floats high_pairs(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  }
+  ISOSHADE_INLINE static Floats low_halves(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 0, 1, 4, 5);
+  }
+  ISOSHADE_INLINE static Floats high_halves(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  }
+#endif
 
   ISOSHADE_INLINE static bool any(Mask mask) { return __builtin_ia32_movmskps((Floats)mask) != 0; }
   ISOSHADE_INLINE static bool all(Mask mask) { return __builtin_ia32_movmskps((Floats)mask) == 0xf; }

@@ -18,6 +18,22 @@ struct Register<8> : VectorMasks<8> {
   ISOSHADE_INLINE static Ints splat(int x) { return Ints{x, x, x, x, x, x, x, x}; }
   ISOSHADE_INLINE static Ints lane_index() { return Ints{0, 1, 2, 3, 4, 5, 6, 7}; }
 
+#if ISOSHADE_SHUFFLES
+  // In each group of four lanes: the first or the last two of `a` and of `b`, in turn or one pair after the other.
+  ISOSHADE_INLINE static Floats low_pairs(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+  }
+  ISOSHADE_INLINE static Floats high_pairs(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  ISOSHADE_INLINE static Floats low_halves(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+  }
+  ISOSHADE_INLINE static Floats high_halves(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+#endif
+
   ISOSHADE_INLINE static bool any(Mask mask) { return __builtin_ia32_movmskps256((Floats)mask) != 0; }
   ISOSHADE_INLINE static bool all(Mask mask) { return __builtin_ia32_movmskps256((Floats)mask) == 0xff; }
   ISOSHADE_INLINE static Floats blend(Mask mask, Floats then, Floats other) {

@@ -22,6 +22,22 @@ struct Register<16> : Vectors<16> {
     return Ints{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   }
 
+#if ISOSHADE_SHUFFLES
+  // In each group of four lanes: the first or the last two of `a` and of `b`, in turn or one pair after the other.
+  ISOSHADE_INLINE static Floats low_pairs(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+  }
+  ISOSHADE_INLINE static Floats high_pairs(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+  }
+  ISOSHADE_INLINE static Floats low_halves(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+  }
+  ISOSHADE_INLINE static Floats high_halves(Floats a, Floats b) {
+    return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+  }
+#endif
+
   ISOSHADE_INLINE static Mask mask(bool value) { return value ? 0xffff : 0; }
   ISOSHADE_INLINE static bool any(Mask mask) { return mask != 0; }
   ISOSHADE_INLINE static bool all(Mask mask) { return mask == 0xffff; }

@@ -191,6 +191,11 @@ void copy(const float* from, float* to, int count) {
   for (int at = 0; at < count; at += lane_count<F>) store_lanes(to + at, load_lanes<F>(from + at));
 }
 
+void copy_pixels(const float* from, int stride, float* to, int count) {
+  const auto channel = [&](int c) { return load_lanes<F>(from + c * stride); };
+  store_pixels(to, channel(0), channel(1), channel(2), channel(3), count);
+}
+
 void count_branch_sides(const int* conditions, int* then_count, int* other_count) {
   int then_calls = 0, other_calls = 0;
   const B condition = load_lanes<I>(conditions) != 0;
@@ -200,7 +205,7 @@ void count_branch_sides(const int* conditions, int* then_count, int* other_count
   *other_count = other_calls;
 }
 
-const KernelTable table = {lane_count<F>, kernels, sizeof(kernels) / sizeof(kernels[0]), copy,
+const KernelTable table = {lane_count<F>, kernels, sizeof(kernels) / sizeof(kernels[0]), copy, copy_pixels,
                            count_branch_sides};
 
 }  // namespace

@@ -31,6 +31,8 @@ struct KernelTable {
   int count;
   /// Copies floats through lanes. count is a multiple of 32.
   void (*copy)(const float* from, float* to, int count);
+  /// Of the first `count` lanes: r, g, b and a come from `from` and three more arrays behind it, `stride` apart.
+  void (*copy_pixels)(const float* from, int stride, float* to, int count);
   /// Counts how often each side of a branch runs, for `lanes` conditions of 0 or 1.
   void (*count_branch_sides)(const int* conditions, int* then_count, int* other_count);
 };

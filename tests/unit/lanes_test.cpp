@@ -102,6 +102,33 @@ TEST_P(Lanes, StoreFloatsUnchangedExceptNan) {
   }
 }
 
+TEST_P(Lanes, StorePixelsOfTheLanesThatAreCounted) {
+  constexpr int most = 32;
+  std::vector<float> from(4 * most);
+  for (size_t i = 0; i < from.size(); ++i) from[i] = static_cast<float>(i) + 0.5f;
+  from[most + 1] = std::bit_cast<float>(0xffc12345u);
+  const int lanes = table().lanes;
+  for (int count = 1; count <= lanes; ++count) {
+    std::vector<float> to(4 * most, -1.0f);
+    {
+      const FpGuard guard;
+      table().copy_pixels(from.data(), most, to.data(), count);
+    }
+    for (int lane = 0; lane < most; ++lane) {
+      for (int c = 0; c < 4; ++c) {
+        const float stored = to[static_cast<size_t>(4 * lane + c)];
+        const uint32_t bits = std::bit_cast<uint32_t>(stored);
+        if (lane >= count)
+          ASSERT_EQ(stored, -1.0f) << "beyond " << count << " lanes";
+        else if (lane == 1 && c == 1)
+          ASSERT_EQ(bits, 0x7fc00000u);
+        else
+          ASSERT_EQ(stored, from[static_cast<size_t>(c * most + lane)]) << lane << " of " << count;
+      }
+    }
+  }
+}
+
 TEST_P(Lanes, BranchRunsOnlySidesTakenBySomeLane) {
   const int lanes = table().lanes;
   const auto sides = [&](const std::vector<int>& conditions) {

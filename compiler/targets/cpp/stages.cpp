@@ -54,14 +54,7 @@ constexpr std::string_view vertex_main =
     "  for (int begin = 0; begin < count; begin += batch) {\n"
     "    const Ints vertex_index = lane_index<Ints>() + (first + begin);\n"
     "    const vec4<Lanes> position = vertex<Lanes>(buffers, vertex_index, object, projected);\n"
-    "    float words[4][batch];\n"
-    "    store_lanes(words[0], position.x);\n"
-    "    store_lanes(words[1], position.y);\n"
-    "    store_lanes(words[2], position.z);\n"
-    "    store_lanes(words[3], position.w);\n"
-    "    const int wanted = count - begin < batch ? count - begin : batch;\n"
-    "    for (int lane = 0; lane < wanted; ++lane)\n"
-    "      for (int word = 0; word < 4; ++word) clip[4 * (begin + lane) + word] = words[word][lane];\n"
+    "    store_pixels(clip + 4 * begin, position.x, position.y, position.z, position.w, count - begin);\n"
     "  }\n";
 
 // Over lists of pixels, a batch at a time. A tail is filled up with its last pixel.
@@ -81,13 +74,7 @@ constexpr std::string_view pixel_loop =
 constexpr std::string_view pixel_main =
     "    const vec4<Lanes> color = pixel<Lanes>(buffers, load_lanes<Ints>(at[0]), load_lanes<Ints>(at[1]),\n"
     "                                           load_lanes<Ints>(at[2]), object, light_count);\n"
-    "    float words[4][batch];\n"
-    "    store_lanes(words[0], color.x);\n"
-    "    store_lanes(words[1], color.y);\n"
-    "    store_lanes(words[2], color.z);\n"
-    "    store_lanes(words[3], color.w);\n"
-    "    for (int lane = 0; lane < wanted; ++lane)\n"
-    "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
+    "    store_pixels(rgba + 4 * begin, color.x, color.y, color.z, color.w, wanted);\n"
     "  }\n";
 
 /// What is behind each pixel comes in `rgba`, and what it then shows goes there.
@@ -102,14 +89,10 @@ std::string blend_main(const ir::Function& kernel, const FunctionText& called) {
          "    const auto blended = blend<Lanes>(buffers, load_lanes<Ints>(at[0]), load_lanes<Ints>(at[1]),\n"
          "                                      load_lanes<Ints>(at[2]), object, light_count, backdrop);\n" +
          [&] {
-           std::string stores;
            const std::vector<ResultWord> results = result_words(kernel, called, "blended");
-           for (size_t i = 0; i < 4; ++i)
-             stores += "    store_lanes(words[" + std::to_string(i) + "], " + results[i].text + ");\n";
-           return stores;
+           return "    store_pixels(rgba + 4 * begin, " + results[0].text + ", " + results[1].text + ", " + results[2].text +
+                  ", " + results[3].text + ", wanted);\n";
          }() +
-         "    for (int lane = 0; lane < wanted; ++lane)\n"
-         "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
          "  }\n";
 }
 
@@ -131,14 +114,7 @@ constexpr std::string_view post_main =
     "  for (int begin = 0; begin < count; begin += batch) {\n"
     "    const Ints x = lane_index<Ints>() + (first + begin);\n"
     "    const vec4<Lanes> color = post<Lanes>(buffers, x, y);\n"
-    "    float words[4][batch];\n"
-    "    store_lanes(words[0], color.x);\n"
-    "    store_lanes(words[1], color.y);\n"
-    "    store_lanes(words[2], color.z);\n"
-    "    store_lanes(words[3], color.w);\n"
-    "    const int wanted = count - begin < batch ? count - begin : batch;\n"
-    "    for (int lane = 0; lane < wanted; ++lane)\n"
-    "      for (int word = 0; word < 4; ++word) rgba[4 * (begin + lane) + word] = words[word][lane];\n"
+    "    store_pixels(rgba + 4 * begin, color.x, color.y, color.z, color.w, count - begin);\n"
     "  }\n";
 
 std::string eval_main(const ir::Function& kernel, const FunctionText& called) {
