@@ -187,14 +187,13 @@ bool CpuBackend::transform(const ViewPass& pass, support::Array<float>& clip, Di
   return true;
 }
 
-/// Which programs the triangles of a view need.
-std::vector<bool> programs_of(const ViewPass& pass, std::span<const int32_t> triangles) {
+/// Which programs the triangles [first, end) of a view need.
+std::vector<bool> programs_of(const ViewPass& pass, std::span<const int32_t> triangles, size_t first, size_t end) {
   std::vector<bool> seen(pass.frame.programs.size());
   const bool has_color = pass.view.target.has_color;
   if (!has_color && pass.frame.cutouts.empty()) return seen;
-  const size_t count = triangles.size() / lower::triangle_word::stride;
   int last_object = -1;
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = first; i < end; ++i) {
     const raster::Triangle triangle = raster::triangle_at(triangles.data(), static_cast<int>(i));
     const int object = triangle.object();
     if (object == last_object) continue;
@@ -227,8 +226,7 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
   FrameKernels kernels(frame.programs.size());
   Screens posts;
   if (!buffers.bind(drawing.pass, {layers_, records}, drawing.vertices, diagnostics) ||
-      !buffers.bind(FrameBuffer::triangles, triangles, diagnostics) || !bind(drawing.posts, posts, diagnostics) ||
-      !find_kernels(frame, programs_of(drawing.pass, triangles), kernels, diagnostics))
+      !buffers.bind(FrameBuffer::triangles, triangles, diagnostics) || !bind(drawing.posts, posts, diagnostics))
     return false;
   const size_t count = triangles.size() / lower::triangle_word::stride;
   const raster::TileGrid grid(raster::box_at(window.x, window.y, window.width, window.height));
@@ -253,11 +251,16 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
   backends::resolve_color(view.background, drawing.side, job.background);
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
   job.bins.resize(parts);
+  std::vector<std::vector<bool>> programs(parts);
   workers().for_each(parts, [&](size_t part) {
-    const size_t first = part * triangle_chunk;
-    job.bins[part] = raster::Bins(triangles, static_cast<int>(first),
-                                  static_cast<int>(std::min(triangle_chunk, count - first)), grid);
+    const size_t first = part * triangle_chunk, end = std::min(first + triangle_chunk, count);
+    job.bins[part] = raster::Bins(triangles, static_cast<int>(first), static_cast<int>(end - first), grid);
+    programs[part] = programs_of(drawing.pass, triangles, first, end);
   });
+  std::vector<bool> asked(frame.programs.size());
+  for (const std::vector<bool>& seen : programs)
+    for (size_t p = 0; p < asked.size(); ++p) asked[p] = asked[p] || seen[p];
+  if (!find_kernels(frame, asked, kernels, diagnostics)) return false;
 
   workers().for_each(static_cast<size_t>(grid.count()), [&](size_t tile) {
     std::unique_ptr<TilePainter>& painter = painters_.local();
