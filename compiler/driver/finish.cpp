@@ -3,6 +3,7 @@
 #include "compiler/driver/finish.h"
 
 #include <array>
+#include <atomic>
 
 #include "compiler/driver/dumps.h"
 #include "compiler/passes/passes.h"
@@ -12,6 +13,8 @@ namespace isoshade::driver {
 
 void finish(Program& program, uint32_t kernel, const CompileOptions& options,
             support::Source source) {
+  static std::atomic<uint64_t> last_number = 0;
+  program.number = ++last_number;
   program.entry = kernel;
   program.source = std::move(source);
   if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);

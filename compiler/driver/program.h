@@ -41,6 +41,9 @@ struct Program {
   support::Source source = nullptr;  ///< of the document, for messages; null if there is none
   /// The bindings of the document's function, as lowered; empty if there is none.
   std::vector<interface::Binding> bindings = {};
+  /// Of what was compiled in this process; copies have the same. So backends need not print a program to recognise it.
+  /// 0: it was not compiled.
+  uint64_t number = 0;
 };
 
 /// Whether the device computes `/` and `sqrt`, or Newton steps with an exact integer remainder do.
