@@ -129,26 +129,32 @@ bool is_usable(const std::string& folder) {
          access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
-std::string_view ending_of(EntryKind kind) {
+constexpr std::string_view ending_of(EntryKind kind) {
   switch (kind) {
     case EntryKind::code: return ".so";
     case EntryKind::maps: return ".maps";
+    case EntryKind::probe: return ".probe";
+    case EntryKind::spirv: return ".spv";
+    case EntryKind::pipelines: return ".pipelines";
   }
   return "";
 }
+static_assert(!ending_of(static_cast<EntryKind>(entry_kinds - 1)).empty() &&
+              ending_of(static_cast<EntryKind>(entry_kinds)).empty());
 
-bool is_entry_name(const std::string& name) {
-  const auto is = [&](EntryKind kind) {
-    const std::string_view ending = ending_of(kind);
-    return name.size() == hash_digits + ending.size() && name.ends_with(ending);
-  };
-  return (is(EntryKind::code) || is(EntryKind::maps)) && name.find_first_not_of("0123456789abcdef") == hash_digits;
+/// Nothing if no cache gives this name.
+std::optional<EntryKind> kind_of(std::string_view name) {
+  if (name.size() < hash_digits || name.find_first_not_of("0123456789abcdef") != hash_digits) return std::nullopt;
+  for (size_t k = 0; k < entry_kinds; ++k)
+    if (name.substr(hash_digits) == ending_of(static_cast<EntryKind>(k))) return static_cast<EntryKind>(k);
+  return std::nullopt;
 }
 
 struct Entry {
   fs::file_time_type used;
   uint64_t bytes = 0;
   fs::path path;
+  EntryKind kind = EntryKind::code;
 };
 
 /// The entries and the abandoned workshops: only files whose names a cache gives; links are not followed.
@@ -161,10 +167,10 @@ struct Listing {
       std::error_code gone;  // another process may delete it at any time
       const fs::file_status status = at->symlink_status(gone);
       if (gone) continue;
-      if (is_entry_name(name) && fs::is_regular_file(status)) {
+      if (const auto kind = kind_of(name); kind && fs::is_regular_file(status)) {
         const fs::file_time_type used = at->last_write_time(gone);
         const uint64_t bytes = gone ? 0 : at->file_size(gone);
-        if (!gone) entries.push_back({used, bytes, at->path()});
+        if (!gone) entries.push_back({used, bytes, at->path(), *kind});
       } else if (support::TemporaryFolder::is_name(name) && fs::is_directory(status)) {
         const fs::file_time_type made = at->last_write_time(gone);
         if (!gone && now - made > oldest_workshop) abandoned.push_back(at->path());
@@ -174,7 +180,10 @@ struct Listing {
 
   CacheContents sum() const {
     CacheContents sum;
-    for (const Entry& entry : entries) sum.bytes += entry.bytes;
+    for (const Entry& entry : entries) {
+      sum.bytes += entry.bytes;
+      sum.of_kind[static_cast<size_t>(entry.kind)] += 1;
+    }
     sum.entries = entries.size();
     return sum;
   }
@@ -205,6 +214,17 @@ void tidy(const std::string& folder, const CacheLimit& limit) {
 }
 
 }  // namespace
+
+std::string_view name(EntryKind kind) {
+  switch (kind) {
+    case EntryKind::code: return "compiled C++";
+    case EntryKind::maps: return "maps of environments";
+    case EntryKind::probe: return "probe results";
+    case EntryKind::spirv: return "SPIR-V shaders";
+    case EntryKind::pipelines: return "pipelines of Vulkan drivers";
+  }
+  return "";
+}
 
 std::string Cache::usual_folder() {
   // The XDG base directory specification says that a relative path must be ignored.
@@ -312,6 +332,14 @@ bool Cache::store(const std::string& name, const std::string& path, Diagnostics&
       rename(path.c_str(), entry.c_str()) == 0)
     return true;
   return report_unwritable(folder_, diagnostics);
+}
+
+void Cache::keep(const std::string& name, std::string_view bytes) const {
+  Diagnostics unheard;
+  const auto made_in = workshop(unheard);
+  if (!made_in) return;
+  const std::string file = made_in->path() + "/entry";
+  if (write_file(file, bytes, unheard)) store(name, file, unheard);
 }
 
 bool write_file(const std::string& path, std::string_view text, Diagnostics& diagnostics) {

@@ -3,6 +3,7 @@
 // interrupted.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,14 +23,22 @@ struct CacheLimit {
 
 /// What an entry is.
 enum class EntryKind : uint8_t {
-  code,  ///< a shared object
-  maps   ///< of an environment (runtime/environment)
+  code,      ///< a shared object
+  maps,      ///< of an environment (runtime/environment)
+  probe,     ///< what the probe found about a Vulkan device
+  spirv,     ///< a shader for Vulkan
+  pipelines  ///< what a Vulkan driver keeps of the shaders that it compiled
 };
+inline constexpr size_t entry_kinds = 5;
+
+/// "compiled C++"
+std::string_view name(EntryKind kind);
 
 /// The contents of a cache.
 struct CacheContents {
   size_t entries = 0;
   uint64_t bytes = 0;
+  std::array<size_t, entry_kinds> of_kind{};  ///< entries, by EntryKind
 };
 
 class Cache {
@@ -46,6 +55,8 @@ class Cache {
   static std::string entry_name(const std::string& key, EntryKind kind = EntryKind::code);
 
   const std::string& folder() const { return folder_; }
+  /// Whether entries outlive this object.
+  bool is_lasting() const { return !temporary_; }
   CacheContents contents() const;
 
   /// The path of the entry; nothing if it is missing or damaged. The next store() replaces a damaged entry; one larger
@@ -61,6 +72,9 @@ class Cache {
   /// Turns a file of a workshop into the entry; it is on the disk before it appears under its name. Appends a checksum
   /// of its name and contents, which ELF and most other formats ignore.
   bool store(const std::string& name, const std::string& file, support::Diagnostics& diagnostics) const;
+
+  /// Makes the bytes an entry. Fails silently: an entry that cannot be kept is made again when it is needed.
+  void keep(const std::string& name, std::string_view bytes) const;
 
   /// Deletes all entries and all abandoned workshops; returns what is left.
   CacheContents clear() const;

@@ -109,15 +109,6 @@ class Source {
   std::string bytes_;
 };
 
-/// An entry that cannot be kept is no error: it is computed again.
-void keep(const Cache& cache, const std::string& entry, const Maps& maps) {
-  Diagnostics unheard;
-  const auto workshop = cache.workshop(unheard);
-  if (!workshop) return;
-  const std::string file = workshop->path() + "/maps";
-  if (backends::write_file(file, to_bytes(maps), unheard)) cache.store(entry, file, unheard);
-}
-
 }  // namespace
 
 std::optional<Made> make_environment(const scene::Environment& environment, const Options& options,
@@ -134,7 +125,7 @@ std::optional<Made> make_environment(const scene::Environment& environment, cons
   const auto pyramid = source.paint(environment, options.prefilter, diagnostics);
   if (!pyramid) return std::nullopt;
   Made made{prefilter(*pyramid, options.prefilter), false};
-  if (cache) keep(*cache, entry, made.maps);
+  if (cache) cache->keep(entry, to_bytes(made.maps));
   return made;
 }
 

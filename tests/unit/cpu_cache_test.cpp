@@ -2,6 +2,7 @@
 #include <csignal>
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <set>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -214,6 +215,27 @@ TEST(Cache, StaysWithinItsSizeLimit) {
   EXPECT_GT(cache->contents().bytes, 4000u);
   { const auto workshop = cache->workshop(diagnostics, {1000, 3000}); }
   EXPECT_EQ(cache->contents().entries, 1u);
+}
+
+TEST(Cache, CountsItsEntriesByKind) {
+  const TestFolder folder;
+  Diagnostics diagnostics;
+  const auto cache = Cache::open(folder.path(), diagnostics);
+  std::set<std::string_view> names;
+  for (size_t k = 0; k < backends::entry_kinds; ++k) {
+    const auto kind = static_cast<backends::EntryKind>(k);
+    EXPECT_TRUE(names.insert(backends::name(kind)).second) << "two kinds have one name";
+    for (size_t i = 0; i <= k; ++i)
+      cache->keep(Cache::entry_name(std::string(64, static_cast<char>('0' + i)), kind), "contents");
+  }
+  const CacheContents held = cache->contents();
+  size_t sum = 0;
+  for (size_t k = 0; k < backends::entry_kinds; ++k) {
+    EXPECT_EQ(held.of_kind[k], k + 1);
+    sum += held.of_kind[k];
+  }
+  EXPECT_EQ(held.entries, sum);
+  EXPECT_EQ(cache->clear().entries, 0u);
 }
 
 TEST(Cache, ReplacesPipesAndFoldersInPlaceOfEntries) {
