@@ -39,6 +39,25 @@ function(isoshade_library name)
   endif()
 endfunction()
 
+# isoshade_hash_sources(VARIABLE HEADER header NAMESPACE namespace FUNCTION name FILES file...)
+# Sets the variable to a source file, made when one of the files changes, that defines `std::string_view name()`: a hash of
+# their contents. Caches whose entries depend on what our code does have it in their keys, so that nobody has to count
+# versions by hand.
+function(isoshade_hash_sources variable)
+  cmake_parse_arguments(arg "" "HEADER;NAMESPACE;FUNCTION" "FILES" ${ARGN})
+  set(made ${CMAKE_CURRENT_BINARY_DIR}/${arg_FUNCTION}.cpp)
+  list(TRANSFORM arg_FILES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  list(JOIN arg_FILES "," files)
+  add_custom_command(
+    OUTPUT ${made}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${made} -DFILES=${files} -DHEADER=${arg_HEADER} -DNAMESPACE=${arg_NAMESPACE}
+            -DFUNCTION=${arg_FUNCTION} -P ${PROJECT_SOURCE_DIR}/cmake/hash_files.cmake
+    DEPENDS ${arg_FILES} ${PROJECT_SOURCE_DIR}/cmake/hash_files.cmake
+    COMMENT "Hashing sources: ${arg_FUNCTION}"
+    VERBATIM)
+  set(${variable} ${made} PARENT_SCOPE)
+endfunction()
+
 # isoshade_shared_library(NAME SOURCES file... LINKS target...)
 # A library that programs link, isoshade::NAME. It contains what it needs of the static ones and exports only what
 # include/isoshade declares: neither our inner interfaces nor the libraries that we link statically are part of its ABI.

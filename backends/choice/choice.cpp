@@ -31,6 +31,7 @@ std::unique_ptr<backends::Backend> create_vulkan(const Options& options, support
   const std::lock_guard lock(one_at_a_time);
   vulkan::VulkanOptions vulkan;
   vulkan.device = options.device;
+  vulkan.cache = options.cache;
   if (!options.division.empty())
     vulkan.division = options.division == "exact" ? driver::Division::exact : driver::Division::native;
   return vulkan::create(vulkan, diagnostics);

@@ -17,7 +17,7 @@ struct Options {
   int threads = 0;       ///< 0: one for each core
   std::string compiler;  ///< for generated C++; empty: $ISOSHADE_CXX, c++, g++, clang++
   support::Seconds build_timeout = support::default_time_limit;  ///< for each run of the compiler
-  std::string cache;     ///< the folder of compiled code; empty: the user's
+  std::string cache;     ///< the folder of the cache; empty: the user's
   std::string device;    ///< part of the name of a Vulkan device, or its number; empty: a CPU device if there is one
   std::string division;  ///< of Vulkan: "native" or "exact"; empty: as the probe decides
 };

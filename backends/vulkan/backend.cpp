@@ -96,6 +96,8 @@ std::string VulkanBackend::description() const {
 
 double VulkanBackend::build_seconds() const { return device_->build_seconds(); }
 
+std::optional<DeviceSeconds> VulkanBackend::device_seconds() const { return device_->seconds(); }
+
 std::optional<std::string> VulkanBackend::text_of(const Program& program, Diagnostics& diagnostics) const {
   if (!driver::within_limits(program, driver::Target::vulkan, division_, diagnostics)) return std::nullopt;
   return options_.glsl(program, division_);
@@ -268,12 +270,17 @@ bool VulkanBackend::evaluate(const Program& program, std::span<const int32_t> in
 
 std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, Diagnostics& diagnostics) {
   try {
-    auto device = Device::open(options.device, diagnostics);
+    auto device = Device::open(options, diagnostics);
     if (!device) return nullptr;
     std::unique_ptr<VulkanBackend> backend(new VulkanBackend(options, std::move(device)));
     const bool ran = backend->guarded(diagnostics, [&] {
-      auto probe = run_probe(*backend->device_, diagnostics);
-      if (!probe) return false;
+      Device& opened = *backend->device_;
+      auto probe = options.probe_anew ? std::nullopt : opened.disk_cache().probe(opened.identity());
+      if (!probe) {
+        probe = run_probe(opened, diagnostics);
+        if (!probe) return false;
+        opened.disk_cache().keep(*probe, opened.identity());
+      }
       backend->probe_ = std::move(*probe);
       return true;
     });

@@ -37,6 +37,17 @@ bool matches(const DeviceInfo& info, std::string_view selector);
 /// Reports no-device, with what to install.
 support::Diagnostic& report_unusable(std::string_view why, support::Diagnostics& diagnostics);
 
+/// How long the device took for what it ran, by its own clock.
+struct DeviceSeconds {
+  double vertices = 0;
+  double visibility = 0;
+  double shading = 0;
+  double layers = 0;  ///< of what is blended
+  double screen = 0;  ///< full-screen passes
+  double tables = 0;  ///< rows of eval programs, and the probe
+  double copies = 0;  ///< to and from the host
+};
+
 /// Where eval programs run. Pixels are computed in fragment shaders, positions in vertex shaders.
 enum class EvalStage : uint8_t { fragment, vertex };
 
@@ -46,6 +57,12 @@ struct VulkanOptions {
   std::string device;
   /// Accept a device that fails the probe; its images may differ.
   bool allow_unproven = false;
+  /// Run the probe even where the cache has its result.
+  bool probe_anew = false;
+  /// The folder of the cache; empty: the user's.
+  std::string cache;
+  /// For tests: treat the device as one with memory of its own, which the host fills by copies.
+  bool own_memory = false;
   /// Overrides the probe's choice.
   std::optional<driver::Division> division;
   /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
@@ -72,6 +89,8 @@ class VulkanBackend : public backends::HostBackend {
   const DeviceInfo& device() const;
   const Probe& probe() const { return probe_; }
   driver::Division division() const { return division_; }
+  /// The sums since the backend was created; nothing if the device has no clock.
+  std::optional<DeviceSeconds> device_seconds() const;
 
  protected:
   std::unique_ptr<backends::ViewRenderer> begin(const backends::ViewPass& pass, const backends::Layers& layers,
@@ -104,7 +123,7 @@ class VulkanBackend : public backends::HostBackend {
   driver::Division division_ = driver::Division::exact;
 };
 
-/// Opens a device and probes it. Null, with a diagnostic, if there is no such device, or if it fails a check and the
+/// Opens a device and probes it, unless the cache tells that it passed this probe before. Null, with a diagnostic, if there is no such device, or if it fails a check and the
 /// options do not allow that. Not thread-safe.
 std::unique_ptr<VulkanBackend> create(const VulkanOptions& options, support::Diagnostics& diagnostics);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening a device, and the memory of its arrays and attachments.
+// Opening a device, its descriptor sets and submissions.
 #include "backends/vulkan/device.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <limits>
 
 #include "backends/vulkan/device_impl.h"
 #include "compiler/support/assert.h"
@@ -12,10 +13,8 @@ namespace isoshade::vulkan {
 
 namespace {
 
-using Memory = vk::MemoryPropertyFlagBits;
 using Stage = vk::ShaderStageFlagBits;
 
-constexpr vk::MemoryPropertyFlags mapped = Memory::eHostVisible | Memory::eHostCoherent;
 constexpr size_t smallest_buffer = 256;
 
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, uint32_t family) {
@@ -55,21 +54,32 @@ vk::raii::PipelineLayout make_layout(const vk::raii::Device& device,
 }
 
 vk::raii::DescriptorPool make_descriptor_pool(const vk::raii::Device& device) {
-  const std::array sizes = {vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, binding_count - image_bindings},
-                            vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, image_bindings}};
+  const std::array sizes = {vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, max_sets * (binding_count - image_bindings)},
+                            vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, max_sets * image_bindings}};
   return {device, vk::DescriptorPoolCreateInfo{.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
-                                               .maxSets = 1,
+                                               .maxSets = max_sets,
                                                .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                                .pPoolSizes = sizes.data()}};
 }
 
+/// Whether every memory is the device's: the host can write there, and copies would gain nothing.
+bool shares_memory(const vk::PhysicalDeviceMemoryProperties& memory) {
+  for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (!(memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)) return false;
+  return true;
+}
+
 }  // namespace
 
-Device::Impl::Impl(std::unique_ptr<Instance> owner, int index)
-    : instance(std::move(owner)), physical(std::move(instance->devices[static_cast<size_t>(index)])) {
-  info = describe(physical, index);
+Device::Impl::Impl(std::unique_ptr<Instance> owner, int index, const VulkanOptions& options)
+    : instance(std::move(owner)),
+      physical(std::move(instance->devices[static_cast<size_t>(index)])),
+      info(describe(physical, index)),
+      identity(vulkan::identity(*instance, physical, info)),
+      disk_cache(options.cache) {
   limits = physical.getProperties().limits;
   memory = physical.getMemoryProperties();
+  own_memory = options.own_memory || !shares_memory(memory);
   const auto family = static_cast<uint32_t>(graphics_family(physical));
   device = make_device(physical, family);
   queue = device.getQueue(family, 0);
@@ -82,92 +92,36 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index)
   set_layout = make_set_layout(device);
   layout = make_layout(device, set_layout);
   descriptor_pool = make_descriptor_pool(device);
-  const vk::DescriptorSetLayout set_layout_handle = *set_layout;
-  set = std::move(vk::raii::DescriptorSets(device, {.descriptorPool = *descriptor_pool,
-                                                    .descriptorSetCount = 1,
-                                                    .pSetLayouts = &set_layout_handle})
-                      .front());
+  const std::vector<vk::DescriptorSetLayout> layouts(max_sets, *set_layout);
+  vk::raii::DescriptorSets made(
+      device, {.descriptorPool = *descriptor_pool, .descriptorSetCount = max_sets, .pSetLayouts = layouts.data()});
+  for (size_t i = 0; i < sets.size(); ++i) sets[i].set = std::move(made[i]);
   sampler = vk::raii::Sampler(
       device, vk::SamplerCreateInfo{.magFilter = vk::Filter::eNearest, .minFilter = vk::Filter::eNearest});
   samples_passed =
-      vk::raii::QueryPool(device, {.queryType = vk::QueryType::eOcclusion, .queryCount = 1});
-  for (Buffer& buffer : buffers) reserve(buffer, smallest_buffer, {});
-  reserve(zero, smallest_buffer, {});
-  std::memset(zero.data, 0, smallest_buffer);
+      vk::raii::QueryPool(device, {.queryType = vk::QueryType::eOcclusion, .queryCount = max_layers_at_once});
+  if (const uint32_t bits = physical.getQueueFamilyProperties()[family].timestampValidBits; bits > 0) {
+    timestamps =
+        vk::raii::QueryPool(device, {.queryType = vk::QueryType::eTimestamp, .queryCount = 2 * max_timed_steps});
+    timestamp_mask = std::numeric_limits<uint64_t>::max() >> (64 - bits);
+  }
+  constexpr std::array<char, smallest_buffer> zeros{};
+  for (Array& array : arrays) upload(array, zeros.data(), zeros.size(), 0);
+  upload(zero, zeros.data(), zeros.size(), 0);
+  reserve(output, smallest_buffer, own_memory ? BufferUse::device : BufferUse::shared);
   prepare_attachments(1, 1, true);
   no_target = vk::raii::Framebuffer(
       device, {.renderPass = *render_pass(Output::buffer, 0), .width = 1, .height = 1, .layers = 1});
+  open_pipeline_cache();
 }
 
-Buffer Device::Impl::make_buffer(size_t bytes, vk::MemoryPropertyFlags preferred) {
-  Buffer made;
-  made.buffer = vk::raii::Buffer(
-      device, {.size = bytes,
-               .usage = vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst});
-  const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();
-  made.memory = allocate(needs, mapped, preferred);
-  made.buffer.bindMemory(*made.memory, 0);
-  made.data = made.memory.mapMemory(0, VK_WHOLE_SIZE);
-  made.bytes = bytes;
-  return made;
-}
-
-Attachment Device::Impl::make_attachment(vk::Format format, int width, int height,
-                                         vk::ImageUsageFlags usage) {
-  const vk::Extent3D extent{static_cast<uint32_t>(width), static_cast<uint32_t>(height), 1};
-  const bool is_depth = format == depth_format;
-  Attachment made;
-  made.image =
-      vk::raii::Image(device, {.imageType = vk::ImageType::e2D,
-                               .format = format,
-                               .extent = extent,
-                               .mipLevels = 1,
-                               .arrayLayers = 1,
-                               .usage = usage | (is_depth ? vk::ImageUsageFlagBits::eDepthStencilAttachment
-                                                          : vk::ImageUsageFlagBits::eColorAttachment)});
-  made.memory = allocate(made.image.getMemoryRequirements(), {}, Memory::eDeviceLocal);
-  made.image.bindMemory(*made.memory, 0);
-  made.view = vk::raii::ImageView(device, {.image = *made.image,
-                                           .viewType = vk::ImageViewType::e2D,
-                                           .format = format,
-                                           .subresourceRange = whole(format)});
-  return made;
-}
-
-vk::raii::DeviceMemory Device::Impl::allocate(const vk::MemoryRequirements& needs,
-                                              vk::MemoryPropertyFlags required,
-                                              vk::MemoryPropertyFlags preferred) {
-  const auto allocate_from = [&](vk::MemoryPropertyFlags wanted) -> vk::raii::DeviceMemory {
-    for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-      if ((needs.memoryTypeBits >> i & 1) != 0 && (memory.memoryTypes[i].propertyFlags & wanted) == wanted)
-        return {device, {.allocationSize = needs.size, .memoryTypeIndex = i}};
-    return nullptr;
-  };
-  // The preferred memory is scarce on some devices (memory that host and device share), so it may be full.
-  try {
-    vk::raii::DeviceMemory made = allocate_from(required | preferred);
-    if (*made) return made;
-  } catch (const vk::OutOfDeviceMemoryError&) {
-    if (!preferred) throw;
-  }
-  vk::raii::DeviceMemory made = allocate_from(required);
-  if (!*made) throw std::runtime_error("no memory type fits");
-  return made;
-}
-
-void Device::Impl::reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags preferred) {
-  if (buffer.bytes >= bytes) return;
-  buffer = {};  // first, because both might not fit
-  buffer = make_buffer(bytes, preferred);
-}
-
-void Device::Impl::write_descriptors(const ImagesRead& images) {
+void Device::Impl::write_descriptors(vk::DescriptorSet set, const ImagesRead& images) {
   std::array<vk::DescriptorBufferInfo, binding_count> buffer_infos;
   std::array<vk::DescriptorImageInfo, binding_count> image_infos;
   std::array<vk::WriteDescriptorSet, binding_count> writes;
   const auto write_buffer = [&](uint32_t i, const Buffer& buffer) {
     buffer_infos[i] = vk::DescriptorBufferInfo{.buffer = *buffer.buffer, .range = VK_WHOLE_SIZE};
-    writes[i] = vk::WriteDescriptorSet{.dstSet = *set,
+    writes[i] = vk::WriteDescriptorSet{.dstSet = set,
                                        .dstBinding = i,
                                        .descriptorCount = 1,
                                        .descriptorType = vk::DescriptorType::eStorageBuffer,
@@ -176,14 +130,15 @@ void Device::Impl::write_descriptors(const ImagesRead& images) {
   const auto write_image = [&](uint32_t i, vk::ImageView view) {
     image_infos[i] = vk::DescriptorImageInfo{
         .sampler = *sampler, .imageView = view, .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
-    writes[i] = vk::WriteDescriptorSet{.dstSet = *set,
+    writes[i] = vk::WriteDescriptorSet{.dstSet = set,
                                        .dstBinding = i,
                                        .descriptorCount = 1,
                                        .descriptorType = vk::DescriptorType::eCombinedImageSampler,
                                        .pImageInfo = &image_infos[i]};
   };
-  for (uint32_t i = 0; i < storage_bindings; ++i) write_buffer(i, buffers[i]);
-  write_buffer(zero_binding, zero);
+  for (uint32_t i = 0; i < frame_bindings; ++i) write_buffer(i, arrays[i].buffer);
+  write_buffer(output_binding, output);
+  write_buffer(zero_binding, zero.buffer);
   write_image(ids_binding, images.ids);
   write_image(former_ids_binding, images.former_ids);
   write_image(former_depth_binding, images.former_depth);
@@ -191,9 +146,94 @@ void Device::Impl::write_descriptors(const ImagesRead& images) {
   device.updateDescriptorSets(writes, {});
 }
 
+void Device::Impl::read(const ImagesRead& images) {
+  const auto fits = [&](const DescriptorSet& set) { return set.generation == generation && set.images == images; };
+  auto found = std::ranges::find_if(sets, fits);
+  if (found == sets.end()) {
+    found = std::ranges::min_element(sets, {}, &DescriptorSet::recording);
+    support::assert_that(found->recording < recording, "a recording needs more descriptor sets than there are");
+    write_descriptors(*found->set, images);
+    found->images = images;
+    found->generation = generation;
+  }
+  found->recording = recording;
+  current_set = *found->set;
+}
+
+const vk::raii::CommandBuffer& Device::Impl::begin() {
+  const vk::ImageView ids = *attachments.ids.view;
+  return begin({ids, ids, ids, ids});
+}
+
+const vk::raii::CommandBuffer& Device::Impl::begin(const ImagesRead& images) {
+  commands.reset();
+  commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  ++recording;
+  timed.clear();
+  if (*timestamps) commands.resetQueryPool(*timestamps, 0, 2 * max_timed_steps);
+  read(images);
+  copy_pending();
+  return commands;
+}
+
+void Device::Impl::copy_pending() {
+  std::vector<Array*> waiting;
+  for (Array& array : arrays)
+    if (!array.pending.empty()) waiting.push_back(&array);
+  if (!zero.pending.empty()) waiting.push_back(&zero);
+  if (waiting.empty()) return;
+  const TimedStep step(*this, &DeviceSeconds::copies);
+  for (const Array* array : waiting) commands.copyBuffer(*array->staging.buffer, *array->buffer.buffer, array->pending);
+  const vk::MemoryBarrier barrier{.srcAccessMask = vk::AccessFlagBits::eTransferWrite,
+                                  .dstAccessMask = vk::AccessFlagBits::eShaderRead};
+  commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eAllGraphics, {}, barrier, {},
+                           {});
+}
+
+void Device::Impl::finish() {
+  const vk::MemoryBarrier to_host{.srcAccessMask = vk::AccessFlagBits::eMemoryWrite,
+                                  .dstAccessMask = vk::AccessFlagBits::eHostRead};
+  commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
+                           to_host, {}, {});
+  commands.end();
+  const vk::CommandBuffer handle = *commands;
+  queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &handle}, *fence);
+  const auto result = device.waitForFences(*fence, true, std::numeric_limits<uint64_t>::max());
+  if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not finish");
+  device.resetFences(*fence);
+  for (Array& array : arrays) array.pending.clear();
+  zero.pending.clear();
+  add_times();
+}
+
+void Device::Impl::add_times() {
+  if (timed.empty()) return;
+  const auto count = static_cast<uint32_t>(2 * timed.size());
+  const auto [result, times] = timestamps.getResults<uint64_t>(
+      0, count, count * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+  if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not tell the time");
+  for (size_t i = 0; i < timed.size(); ++i) {
+    const uint64_t ticks = (times[2 * i + 1] - times[2 * i]) & timestamp_mask;
+    seconds.*timed[i] += static_cast<double>(ticks) * 1e-9 * static_cast<double>(limits.timestampPeriod);
+  }
+}
+
+Device::Impl::TimedStep::TimedStep(Impl& device, double DeviceSeconds::*sum) : device_(device) {
+  if (!*device.timestamps || device.timed.size() == max_timed_steps) return;
+  index_ = static_cast<uint32_t>(device.timed.size());
+  device.timed.push_back(sum);
+  device.commands.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *device.timestamps, 2 * index_);
+}
+
+Device::Impl::TimedStep::~TimedStep() {
+  if (index_ < max_timed_steps)
+    device_.commands.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *device_.timestamps, 2 * index_ + 1);
+}
+
 Device::Device(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Device::~Device() {
+  impl_->keep_pipelines();
   if (!impl_->instance->validates) return;
   // The layers report leaked objects when the device is destroyed, too late for a diagnostic.
   const std::unique_ptr<Instance> instance = std::move(impl_->instance);
@@ -201,9 +241,9 @@ Device::~Device() {
   for (const std::string& message : instance->messages->take()) support::bug(message);
 }
 
-std::unique_ptr<Device> Device::open(std::string_view selector, support::Diagnostics& diagnostics) {
+std::unique_ptr<Device> Device::open(const VulkanOptions& options, support::Diagnostics& diagnostics) {
   auto instance = std::make_unique<Instance>();
-  const int index = choose(*instance, selector, diagnostics);
+  const int index = choose(*instance, options.device, diagnostics);
   if (index < 0) return nullptr;
   const vk::raii::PhysicalDevice& physical = instance->devices[static_cast<size_t>(index)];
   const std::vector<std::string> lacks = shortcomings(physical);
@@ -214,10 +254,15 @@ std::unique_ptr<Device> Device::open(std::string_view selector, support::Diagnos
     for (size_t i = 1; i < lacks.size(); ++i) report.note(lacks[i]);
     return nullptr;
   }
-  return std::unique_ptr<Device>(new Device(std::make_unique<Impl>(std::move(instance), index)));
+  return std::unique_ptr<Device>(new Device(std::make_unique<Impl>(std::move(instance), index, options)));
 }
 
 const DeviceInfo& Device::info() const { return impl_->info; }
+const std::string& Device::identity() const { return impl_->identity; }
+const DiskCache& Device::disk_cache() const { return impl_->disk_cache; }
+std::optional<DeviceSeconds> Device::seconds() const {
+  return *impl_->timestamps ? std::optional(impl_->seconds) : std::nullopt;
+}
 bool Device::validates() const { return impl_->instance->validates; }
 std::vector<std::string> Device::take_messages() { return impl_->instance->messages->take(); }
 size_t Device::max_buffer_bytes() const { return impl_->limits.maxStorageBufferRange; }
@@ -226,13 +271,6 @@ int Device::max_frame_side() const {
   const uint32_t side = std::min({impl_->limits.maxImageDimension2D, impl_->limits.maxFramebufferWidth,
                                   impl_->limits.maxFramebufferHeight, uint32_t{guard_band}});
   return static_cast<int>(side);
-}
-
-void Device::upload(lower::FrameBuffer buffer, const void* data, size_t bytes) {
-  if (bytes == 0) return;
-  Buffer& destination = impl_->buffers[static_cast<size_t>(buffer)];
-  impl_->reserve(destination, bytes, Memory::eDeviceLocal);
-  std::memcpy(destination.data, data, bytes);
 }
 
 }  // namespace isoshade::vulkan

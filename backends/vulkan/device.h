@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "backends/vulkan/backend.h"
+#include "backends/vulkan/disk_cache.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/diagnostics.h"
 
@@ -95,10 +96,13 @@ struct Layers {
 class Device {
  public:
   /// Null, with a diagnostic, if there is no such device or it lacks features that the shaders need.
-  static std::unique_ptr<Device> open(std::string_view selector, support::Diagnostics& diagnostics);
+  static std::unique_ptr<Device> open(const VulkanOptions& options, support::Diagnostics& diagnostics);
   ~Device();
 
   const DeviceInfo& info() const;
+  /// For keys of the cache: device, driver, processor and whatever else decides the results.
+  const std::string& identity() const;
+  const DiskCache& disk_cache() const;
   bool validates() const;
   /// Messages of the validation layers since the last call; empty without them.
   std::vector<std::string> take_messages();
@@ -113,8 +117,13 @@ class Device {
   /// The total duration of all calls of pipeline().
   double build_seconds() const;
 
-  /// Replaces the contents of a buffer that shaders read; at most max_buffer_bytes().
-  void upload(lower::FrameBuffer buffer, const void* data, size_t bytes);
+  /// How long the device took so far; nothing if it has no clock.
+  std::optional<DeviceSeconds> seconds() const;
+
+  /// Replaces the contents of a buffer that shaders read; at most max_buffer_bytes(). Writes only what differs from the
+  /// last upload to this buffer. `revision`: 0, or a number that no other contents of this buffer have; where the last
+  /// upload had the same, nothing is read or written.
+  void upload(lower::FrameBuffer buffer, const void* data, size_t bytes, uint64_t revision = 0);
 
   /// Runs vertex kernels, then copies the first words of the output buffer; at most max_buffer_bytes().
   void run_vertices(std::span<const Call> calls, std::span<int32_t> output);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <map>
 #include <unordered_map>
 
@@ -32,8 +31,26 @@ inline vk::ImageSubresourceRange whole(vk::Format format) {
 struct Buffer {
   vk::raii::DeviceMemory memory{nullptr};
   vk::raii::Buffer buffer{nullptr};
-  void* data = nullptr;  ///< mapped as long as the buffer exists
+  void* data = nullptr;      ///< mapped as long as the buffer exists; null if it is of BufferUse::device
+  bool host_cached = false;  ///< the host reads it fast
   size_t bytes = 0;
+};
+
+/// Decides the memory of a buffer.
+enum class BufferUse : uint8_t {
+  shared,   ///< shaders use it, the host reads and writes it: where both have the same memory
+  device,   ///< shaders use it, and copies move its contents from and to the host
+  staging,  ///< the host writes it, the device copies it
+  readback  ///< the device copies to it, the host reads it
+};
+
+/// An array that shaders read. It only grows.
+struct Array {
+  Buffer buffer;
+  Buffer staging;  ///< with the same contents, if the device has memory of its own
+  size_t held = 0;  ///< bytes of the last upload
+  uint64_t revision = 0;
+  std::vector<vk::BufferCopy> pending;  ///< from `staging`, before the next work
 };
 
 struct Attachment {
@@ -67,7 +84,24 @@ struct WindowAttachments {
 /// The images that shaders read. Those that a call does not read may be any.
 struct ImagesRead {
   vk::ImageView ids, former_ids, former_depth, former_color;
+  bool operator==(const ImagesRead&) const = default;
 };
+
+/// A descriptor set, and what it was written for.
+struct DescriptorSet {
+  vk::raii::DescriptorSet set{nullptr};
+  ImagesRead images{};
+  uint64_t generation = 0;  ///< Device::Impl::generation when it was written; 0: it was not
+  uint64_t recording = 0;   ///< the last one that uses it
+};
+/// One for the opaque triangles, two for layers in turn.
+inline constexpr uint32_t max_sets = 3;
+
+/// Layers that are drawn before the host looks whether the last one shows anything.
+inline constexpr uint32_t max_layers_at_once = 8;
+
+/// Steps of a recording whose time is taken.
+inline constexpr uint32_t max_timed_steps = 32;
 
 /// The attachments of tables of one record size; grows with the rows.
 struct TableAttachments {
@@ -78,14 +112,19 @@ struct TableAttachments {
 
 struct Device::Impl {
   /// Opens the device of this index, which must have no shortcomings().
-  Impl(std::unique_ptr<Instance> instance, int index);
+  Impl(std::unique_ptr<Instance> instance, int index, const VulkanOptions& options);
 
-  vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags required,
-                                  vk::MemoryPropertyFlags preferred);
-  Buffer make_buffer(size_t bytes, vk::MemoryPropertyFlags preferred);
+  struct Allocation {
+    vk::raii::DeviceMemory memory{nullptr};
+    vk::MemoryPropertyFlags properties{};
+  };
+  Allocation allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags required,
+                      vk::MemoryPropertyFlags preferred);
+  Buffer make_buffer(size_t bytes, BufferUse use);
   Attachment make_attachment(vk::Format format, int width, int height, vk::ImageUsageFlags usage);
-  /// A buffer that only grows, at least `bytes` long.
-  void reserve(Buffer& buffer, size_t bytes, vk::MemoryPropertyFlags preferred);
+  /// Makes it at least `bytes` long. Its contents are lost if it grows.
+  void reserve(Buffer& buffer, size_t bytes, BufferUse use);
+  void upload(Array& array, const void* data, size_t bytes, uint64_t revision);
 
   /// The render pass of an output; it clears every attachment and stores it. Made once.
   const vk::raii::RenderPass& render_pass(Output output, uint32_t attachments);
@@ -100,27 +139,39 @@ struct Device::Impl {
   void draw_group(const LayerGroup& group, const Attachment& depth, int x, int y);
   TableAttachments& prepare_table(uint32_t attachments, int height);
 
-  /// Points the descriptor set at the current buffers. It always writes every descriptor: lavapipe crashes on one that
-  /// is not written, even if no shader uses it.
-  void write_descriptors(const ImagesRead& images);
+  /// It always writes every descriptor: lavapipe crashes on one that is not written, even if no shader uses it.
+  void write_descriptors(vk::DescriptorSet set, const ImagesRead& images);
+  /// What is recorded from here on reads the current buffers and these images.
+  void read(const ImagesRead& images);
+
+  /// Begins a recording with copies of what was uploaded, and drops one that was not finished. No buffer or image may be
+  /// made until finish().
+  const vk::raii::CommandBuffer& begin(const ImagesRead& images);
+  /// Shaders read the ids of the window.
+  const vk::raii::CommandBuffer& begin();
+  /// Submits the recording and waits. Afterwards the host sees what the device wrote.
+  void finish();
+
+  class TimedStep;
+  void copy_pending();
+  void add_times();
+
+  /// The driver's own cache of what it compiled, kept on disk if the driver puts anything in it.
+  void open_pipeline_cache();
+  void keep_pipelines() noexcept;
+
   void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
   /// With the attachments' first pixel at (x, y) of the view.
   void record_at(const vk::raii::CommandBuffer& commands, std::span<const Call> calls, int x, int y) const;
 
-  /// Records, submits and waits. Afterwards the host sees what the device wrote. Shaders read the ids of the window.
-  template <class Record>
-  void submit(Record record) {
-    const vk::ImageView ids = *attachments.ids.view;
-    submit({ids, ids, ids, ids}, record);
-  }
-  template <class Record>
-  void submit(const ImagesRead& images, Record record);
-
   std::unique_ptr<Instance> instance;
   vk::raii::PhysicalDevice physical;
   DeviceInfo info;
+  std::string identity;
+  DiskCache disk_cache;
   vk::PhysicalDeviceLimits limits;
   vk::PhysicalDeviceMemoryProperties memory;
+  bool own_memory = false;  ///< the host fills arrays by copies; otherwise host and device share their memory
 
   vk::raii::Device device{nullptr};
   vk::raii::Queue queue{nullptr};
@@ -131,39 +182,45 @@ struct Device::Impl {
   vk::raii::DescriptorSetLayout set_layout{nullptr};
   vk::raii::PipelineLayout layout{nullptr};
   vk::raii::DescriptorPool descriptor_pool{nullptr};
-  vk::raii::DescriptorSet set{nullptr};
+  std::array<DescriptorSet, max_sets> sets;
+  vk::DescriptorSet current_set;
+  uint64_t generation = 1;  ///< a new number whenever a buffer or an image is made
+  uint64_t recording = 0;
   vk::raii::Sampler sampler{nullptr};
-  vk::raii::QueryPool samples_passed{nullptr};  ///< one occlusion query
+  vk::raii::QueryPool samples_passed{nullptr};  ///< occlusion, one for each of max_layers_at_once
 
-  std::array<Buffer, storage_bindings> buffers;
-  Buffer zero;  ///< always 0
+  vk::raii::QueryPool timestamps{nullptr};  ///< null without a clock
+  uint64_t timestamp_mask = 0;              ///< of valid bits
+  DeviceSeconds seconds;
+  std::vector<double DeviceSeconds::*> timed;  ///< of this recording
+
+  std::array<Array, frame_bindings> arrays;
+  Buffer output;  ///< words that vertex kernels write
+  Array zero;     ///< always 0
   Buffer readback;
   WindowAttachments attachments;
   vk::raii::Framebuffer no_target{nullptr};
   std::map<uint32_t, TableAttachments> tables;  ///< by the number of attachments
 
+  vk::raii::PipelineCache pipeline_cache{nullptr};
+  std::string kept_pipelines;  ///< what the cache on disk had
   std::map<std::pair<Output, uint32_t>, vk::raii::RenderPass> render_passes;
   std::vector<vk::raii::Pipeline> pipelines;
   std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
   double build_seconds = 0;
 };
 
-template <class Record>
-void Device::Impl::submit(const ImagesRead& images, Record record) {
-  write_descriptors(images);
-  commands.reset();
-  commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-  record(commands);
-  const vk::MemoryBarrier to_host{.srcAccessMask = vk::AccessFlagBits::eMemoryWrite,
-                                  .dstAccessMask = vk::AccessFlagBits::eHostRead};
-  commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
-                           to_host, {}, {});
-  commands.end();
-  const vk::CommandBuffer handle = *commands;
-  queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &handle}, *fence);
-  const auto result = device.waitForFences(*fence, true, std::numeric_limits<uint64_t>::max());
-  if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not finish");
-  device.resetFences(*fence);
-}
+/// Adds the time of what is recorded in its lifetime to a sum. Not inside of a render pass.
+class Device::Impl::TimedStep {
+ public:
+  TimedStep(Impl& device, double DeviceSeconds::*sum);
+  ~TimedStep();
+  TimedStep(const TimedStep&) = delete;
+  TimedStep& operator=(const TimedStep&) = delete;
+
+ private:
+  Impl& device_;
+  uint32_t index_ = max_timed_steps;  ///< of its timestamps; this is none
+};
 
 }  // namespace isoshade::vulkan

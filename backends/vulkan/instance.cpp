@@ -6,6 +6,11 @@
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <sys/auxv.h>
+#include <unistd.h>
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
 
 #include "backends/vulkan/limits.h"
 #include "compiler/support/visible.h"
@@ -43,6 +48,35 @@ std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return lower;
+}
+
+/// Family, model, stepping and features.
+std::string processor() {
+  std::string text;
+  const auto add = [&](unsigned long value) { text += std::to_string(value) + " "; };
+#if defined(__x86_64__)
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(0, &a, &b, &c, &d))
+    for (const unsigned part : {b, c, d}) add(part);  // the vendor
+  if (__get_cpuid(1, &a, &b, &c, &d))
+    for (const unsigned part : {a, c, d}) add(part);  // b has the number of the core
+  if (__get_cpuid_count(7, 0, &a, &b, &c, &d))
+    for (const unsigned part : {b, c, d}) add(part);
+#endif
+  add(getauxval(AT_HWCAP));
+  add(getauxval(AT_HWCAP2));
+  return text;
+}
+
+/// Variables that the loader, Mesa and NVIDIA's driver read, in the order of the environment.
+std::string driver_variables() {
+  constexpr std::string_view prefixes[] = {"VK_", "MESA_", "GALLIVM_", "LP_", "LVP_", "NIR_", "RADV_", "ANV_",
+                                           "INTEL_", "AMD_", "NVK_", "__GL_", "__VK_", "NODEVICE_SELECT"};
+  std::string text;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (std::ranges::any_of(prefixes, [&](std::string_view p) { return std::string_view(*variable).starts_with(p); }))
+      text += std::string(*variable) + "\n";
+  return text;
 }
 
 bool is_number(std::string_view text) {
@@ -105,6 +139,24 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& device, int index) {
     info.driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
   }
   return info;
+}
+
+std::string identity(const Instance& instance, const vk::raii::PhysicalDevice& device, const DeviceInfo& info) {
+  const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
+  const vk::PhysicalDeviceProperties& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
+  const auto& ids = chain.get<vk::PhysicalDeviceIDProperties>();
+  std::string text = info.name + "\n" + info.driver + "\n";
+  const auto add_bytes = [&](const auto& bytes) {
+    for (const uint8_t byte : bytes) text += std::to_string(byte) + " ";
+    text += "\n";
+  };
+  for (const uint32_t part : {properties.vendorID, properties.deviceID, properties.apiVersion, properties.driverVersion,
+                              instance.context.enumerateInstanceVersion()})
+    text += std::to_string(part) + "\n";
+  add_bytes(properties.pipelineCacheUUID);
+  add_bytes(ids.deviceUUID);
+  add_bytes(ids.driverUUID);
+  return text + processor() + "\n" + driver_variables();
 }
 
 support::Diagnostic& report_unusable(std::string_view why, support::Diagnostics& diagnostics) {

@@ -49,6 +49,11 @@ bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, int index);
 
+/// What decides how the device computes, as far as it can be asked: the device, its driver, versions of both, of the loader
+/// and of the API, and, because software devices compile for it, the processor; and the variables of the environment that
+/// drivers and the loader read. For the keys of caches.
+std::string identity(const Instance& instance, const vk::raii::PhysicalDevice& device, const DeviceInfo& info);
+
 /// The index of the device that `selector` selects, see VulkanOptions::device; -1 if there is none, with a diagnostic
 /// that lists the devices.
 int choose(const Instance& instance, std::string_view selector, support::Diagnostics& diagnostics);

@@ -94,7 +94,7 @@ class PassEncoder {
 
 void Device::Impl::record(const vk::raii::CommandBuffer& to, const Call& call) const {
   to.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
-  to.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, *set, {});
+  to.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, current_set, {});
   to.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                          call.push);
   // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
@@ -111,13 +111,21 @@ void Device::Impl::record(const vk::raii::CommandBuffer& to, const Call& call) c
 }
 
 void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output) {
-  Buffer& results = impl_->buffers[output_binding];
-  impl_->reserve(results, output.size_bytes(), vk::MemoryPropertyFlagBits::eHostCached);
-  impl_->submit([&](const vk::raii::CommandBuffer& commands) {
+  const bool own_memory = impl_->own_memory;
+  impl_->reserve(impl_->output, output.size_bytes(), own_memory ? BufferUse::device : BufferUse::shared);
+  if (own_memory) impl_->reserve(impl_->readback, output.size_bytes(), BufferUse::readback);
+  const vk::raii::CommandBuffer& commands = impl_->begin();
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::vertices);
     const PassEncoder pass(commands, impl_->render_pass(Output::buffer, 0), impl_->no_target, area(1, 1), {});
     for (const Call& call : calls) impl_->record(commands, call);
-  });
-  std::memcpy(output.data(), results.data, output.size_bytes());
+  }
+  if (own_memory) {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
+    commands.copyBuffer(*impl_->output.buffer, *impl_->readback.buffer, vk::BufferCopy{.size = output.size_bytes()});
+  }
+  impl_->finish();
+  std::memcpy(output.data(), own_memory ? impl_->readback.data : impl_->output.data, output.size_bytes());
 }
 
 vk::raii::Framebuffer Device::Impl::make_framebuffer(Output output, std::span<const vk::ImageView> views, int width,
@@ -184,31 +192,44 @@ void Device::Impl::draw_group(const LayerGroup& group, const Attachment& depth, 
   const LayerAttachments& made = attachments.layers;
   const vk::Rect2D group_area = area(moved(group.area, x, y));
   const Attachment* const ids[] = {&made.ids, &attachments.ids};
-  std::vector<Call> visibility = group.visibility;
-  for (uint32_t number = 0; number < group.count; ++number) {
+  const auto images = [&](size_t turn) {
+    return ImagesRead{*ids[turn]->view, *ids[1 - turn]->view, *depth.view, *made.backdrop.view};
+  };
+  const auto draw_layer = [&](uint32_t number, uint32_t query) {
     const size_t turn = number % 2;
+    read(images(turn));
     // The first layer begins with the first triangle, a later one in each pixel after that of the layer before.
+    std::vector<Call> visibility = group.visibility;
     for (Call& call : visibility) call.push.first = number == 0 ? static_cast<int32_t>(group.first) : -1;
-    const ImagesRead read{*ids[turn]->view, *ids[1 - turn]->view, *depth.view, *made.backdrop.view};
-    submit(read, [&](const vk::raii::CommandBuffer& commands) {
-      commands.resetQueryPool(*samples_passed, 0, 1);
-      {
-        const std::array<vk::ClearValue, 2> nothing{};
-        const PassEncoder pass(commands, render_pass(Output::visibility, 1), made.visibility[turn], group_area, nothing);
-        commands.beginQuery(*samples_passed, 0, {});
-        record_at(commands, visibility, x, y);
-        commands.endQuery(*samples_passed, 0);
-      }
-      copy_backdrop(commands, attachments.color.image, made.backdrop.image, group_area);
-      const bool deep = group.writes_depth;
-      const PassEncoder pass(commands, render_pass(deep ? Output::deep_layer : Output::layer, deep ? 2 : 1),
-                             deep ? made.deep_blending : made.blending, group_area, {});
-      record_at(commands, group.blending, x, y);
-    });
+    {
+      const std::array<vk::ClearValue, 2> nothing{};
+      const PassEncoder pass(commands, render_pass(Output::visibility, 1), made.visibility[turn], group_area, nothing);
+      commands.beginQuery(*samples_passed, query, {});
+      record_at(commands, visibility, x, y);
+      commands.endQuery(*samples_passed, query);
+    }
+    copy_backdrop(commands, attachments.color.image, made.backdrop.image, group_area);
+    const bool deep = group.writes_depth;
+    const PassEncoder pass(commands, render_pass(deep ? Output::deep_layer : Output::layer, deep ? 2 : 1),
+                           deep ? made.deep_blending : made.blending, group_area, {});
+    record_at(commands, group.blending, x, y);
+  };
+  // A device with memory of its own waits for the host longer than it takes for a layer that shows nothing.
+  const uint32_t at_once = own_memory ? max_layers_at_once : 1;
+  for (uint32_t number = 0; number < group.count;) {
+    const uint32_t end = std::min(number + at_once, group.count);
+    {
+      const TimedStep step(*this, &DeviceSeconds::layers);
+      commands.resetQueryPool(*samples_passed, 0, end - number);
+      for (uint32_t layer = number; layer < end; ++layer) draw_layer(layer, layer - number);
+    }
+    finish();
     const auto [result, passed] = samples_passed.getResult<uint64_t>(
-        0, 1, sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+        end - number - 1, 1, sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     if (result != vk::Result::eSuccess) throw std::runtime_error("the device did not count the pixels of a layer");
+    begin(images(end % 2));
     if (passed == 0) return;
+    number = end;
   }
 }
 
@@ -227,17 +248,18 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
   const size_t depth_at =
       has_color ? static_cast<size_t>(band) * static_cast<size_t>(width) * pixel_bytes : 0;
-  impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
-                 vk::MemoryPropertyFlagBits::eHostCached);
+  impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes, BufferUse::readback);
 
   const auto draw_opaque = [&](const vk::raii::CommandBuffer& commands) {
     {
+      const Impl::TimedStep step(*impl_, &DeviceSeconds::visibility);
       const std::array<vk::ClearValue, 2> nothing{};
       const PassEncoder pass(commands, impl_->render_pass(Output::visibility, 1), attachments.visibility, all,
                              nothing);
       impl_->record_at(commands, visibility, origin_x, origin_y);
     }
     if (!has_color) return;
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::shading);
     const vk::ClearValue backdrop{
         vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
     const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading, all, {&backdrop, 1});
@@ -246,32 +268,33 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
   const bool deep = layers.copy_depth.has_value();
   const Attachment& depth = deep ? attachments.layers.depth : attachments.depth;
   const vk::Format format_of_depth = deep ? layer_depth_format : depth_format;
+  const vk::ImageView ids = *attachments.ids.view;
+  const vk::raii::CommandBuffer& commands = impl_->begin({ids, ids, has_layers ? *attachments.depth.view : ids, ids});
+  draw_opaque(commands);
   if (has_layers) {
-    const vk::ImageView ids = *attachments.ids.view;
-    impl_->submit({ids, ids, *attachments.depth.view, ids}, [&](const vk::raii::CommandBuffer& commands) {
-      draw_opaque(commands);
-      change_layout(commands, attachments.depth.image, depth_format, vk::ImageLayout::eTransferSrcOptimal,
-                    vk::ImageLayout::eShaderReadOnlyOptimal);
-      if (!deep) return;
+    change_layout(commands, attachments.depth.image, depth_format, vk::ImageLayout::eTransferSrcOptimal,
+                  vk::ImageLayout::eShaderReadOnlyOptimal);
+    if (deep) {
       const vk::ClearValue nothing{};
       const PassEncoder pass(commands, impl_->render_pass(Output::depth_copy, 1), attachments.layers.depth_copying, all,
                              {&nothing, 1});
       impl_->record_at(commands, {&*layers.copy_depth, 1}, origin_x, origin_y);
-    });
+    }
     for (const LayerGroup& group : layers.groups) impl_->draw_group(group, depth, origin_x, origin_y);
+    change_layout(commands, depth.image, format_of_depth, vk::ImageLayout::eShaderReadOnlyOptimal,
+                  vk::ImageLayout::eTransferSrcOptimal);
   }
 
   for (int first = 0; first < height; first += band) {
     const int rows = std::min(band, height - first);
-    impl_->submit([&](const vk::raii::CommandBuffer& commands) {
-      if (first == 0 && !has_layers) draw_opaque(commands);
-      if (first == 0 && has_layers)
-        change_layout(commands, depth.image, format_of_depth, vk::ImageLayout::eShaderReadOnlyOptimal,
-                      vk::ImageLayout::eTransferSrcOptimal);
+    if (first > 0) impl_->begin();
+    {
+      const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
       const Window lines{margin, margin + first, width, rows};
       if (has_color) copy(commands, attachments.color.image, color_format, lines, impl_->readback, 0);
       copy(commands, depth.image, format_of_depth, lines, impl_->readback, depth_at);
-    });
+    }
+    impl_->finish();
     const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
     const size_t pixels = static_cast<size_t>(rows) * static_cast<size_t>(width);
     const char* data = static_cast<const char*>(impl_->readback.data);
@@ -286,21 +309,24 @@ void Device::run_screen(PipelineIndex pipeline, int width, int height, int first
   const size_t row_bytes = static_cast<size_t>(width) * pixel_bytes;
   const int band =
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
-  impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes,
-                 vk::MemoryPropertyFlagBits::eHostCached);
+  impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes, BufferUse::readback);
   const Call call{
       .pipeline = pipeline, .push = {.origin_y = first_row}, .scissor = {0, first_row, width, height}};
   for (int first = 0; first < height; first += band) {
     const int rows = std::min(band, height - first);
-    impl_->submit([&](const vk::raii::CommandBuffer& commands) {
-      if (first == 0) {
-        const vk::ClearValue nothing{};
-        const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading,
-                               area(width, height), {&nothing, 1});
-        impl_->record(commands, call);
-      }
+    const vk::raii::CommandBuffer& commands = impl_->begin();
+    if (first == 0) {
+      const Impl::TimedStep step(*impl_, &DeviceSeconds::screen);
+      const vk::ClearValue nothing{};
+      const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading,
+                             area(width, height), {&nothing, 1});
+      impl_->record(commands, call);
+    }
+    {
+      const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
       copy(commands, attachments.color.image, color_format, {0, first, width, rows}, impl_->readback, 0);
-    });
+    }
+    impl_->finish();
     std::memcpy(rgba.data() + static_cast<size_t>(first) * static_cast<size_t>(width) * 4,
                 impl_->readback.data, static_cast<size_t>(rows) * row_bytes);
   }
@@ -333,22 +359,26 @@ void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows
   const int height = static_cast<int>((rows + table_width - 1) / table_width);
   const TableAttachments& table = impl_->prepare_table(attachments, height);
   const size_t attachment_bytes = static_cast<size_t>(height) * table_width * pixel_bytes;
-  impl_->reserve(impl_->readback, attachments * attachment_bytes, vk::MemoryPropertyFlagBits::eHostCached);
+  impl_->reserve(impl_->readback, attachments * attachment_bytes, BufferUse::readback);
 
   Call call{.pipeline = pipeline, .scissor = {0, 0, table_width, height}};
   call.push.count = static_cast<int32_t>(rows);
   call.push.width = table_width;
-  impl_->submit([&](const vk::raii::CommandBuffer& commands) {
-    {
-      const std::vector<vk::ClearValue> nothing(attachments, vk::ClearValue{});
-      const PassEncoder pass(commands, impl_->render_pass(Output::words, attachments), table.framebuffer,
-                             area(table_width, height), nothing);
-      impl_->record(commands, call);
-    }
+  const vk::raii::CommandBuffer& commands = impl_->begin();
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::tables);
+    const std::vector<vk::ClearValue> nothing(attachments, vk::ClearValue{});
+    const PassEncoder pass(commands, impl_->render_pass(Output::words, attachments), table.framebuffer,
+                           area(table_width, height), nothing);
+    impl_->record(commands, call);
+  }
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
     for (uint32_t i = 0; i < attachments; ++i)
       copy(commands, table.attachments[i].image, words_format, {0, 0, table_width, height}, impl_->readback,
            i * attachment_bytes);
-  });
+  }
+  impl_->finish();
 
   const char* data = static_cast<const char*>(impl_->readback.data);
   for (size_t word = 0; word < record_words; word += 4) {

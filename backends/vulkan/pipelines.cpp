@@ -6,7 +6,6 @@
 #include "backends/vulkan/device_impl.h"
 #include "compiler/support/assert.h"
 #include "compiler/targets/glsl/glsl.h"
-#include "compiler/targets/glsl/spirv.h"
 
 namespace isoshade::vulkan {
 
@@ -178,7 +177,7 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
   const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = static_cast<uint32_t>(by_call.size()),
                                                    .pDynamicStates = by_call.data()};
 
-  return {device, nullptr,
+  return {device, pipeline_cache,
           vk::GraphicsPipelineCreateInfo{.stageCount = static_cast<uint32_t>(stages.size()),
                                          .pStages = stages.data(),
                                          .pVertexInputState = &vertex_input,
@@ -193,6 +192,24 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
                                          .renderPass = *render_pass(source.output, source.attachments)}};
 }
 
+void Device::Impl::open_pipeline_cache() {
+  kept_pipelines = disk_cache.pipelines(identity);
+  pipeline_cache = vk::raii::PipelineCache(
+      device, {.initialDataSize = kept_pipelines.size(), .pInitialData = kept_pipelines.data()});
+}
+
+void Device::Impl::keep_pipelines() noexcept {
+  constexpr size_t header_bytes = 16 + VK_UUID_SIZE;
+  try {
+    const std::vector<uint8_t> bytes = pipeline_cache.getData();
+    const std::string_view data(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    // lavapipe gives the header alone.
+    if (data.size() > header_bytes && data != kept_pipelines) disk_cache.keep_pipelines(data, identity);
+  } catch (const std::exception&) {
+    // The driver compiles again.
+  }
+}
+
 double Device::build_seconds() const { return impl_->build_seconds; }
 
 std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
@@ -202,13 +219,12 @@ std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
   if (const auto found = impl_->pipeline_of.find(source_key); found != impl_->pipeline_of.end())
     return found->second;
 
-  const auto vertex =
-      glsl::compile_spirv(source.vertex_glsl, glsl::ShaderKind::vertex, diagnostics, source.what);
+  const DiskCache& disk = impl_->disk_cache;
+  const auto vertex = disk.spirv(source.vertex_glsl, glsl::ShaderKind::vertex, diagnostics, source.what);
   if (!vertex) return std::nullopt;
   std::optional<std::vector<uint32_t>> fragment{std::in_place};
   if (source.output != Output::buffer)
-    fragment =
-        glsl::compile_spirv(source.fragment_glsl, glsl::ShaderKind::fragment, diagnostics, source.what);
+    fragment = disk.spirv(source.fragment_glsl, glsl::ShaderKind::fragment, diagnostics, source.what);
   if (!fragment) return std::nullopt;
 
   impl_->pipelines.push_back(impl_->make_pipeline(source, *vertex, *fragment));

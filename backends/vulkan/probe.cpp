@@ -177,6 +177,36 @@ std::optional<Probe> run_probe(Device& device, support::Diagnostics& diagnostics
   return probe;
 }
 
+std::string to_text(const Probe& probe) {
+  std::string text = "division " + std::string(driver::name(probe.division)) + "\n";
+  for (const Check& check : probe.checks) text += check.name + "\t" + check.detail + "\n";
+  return text;
+}
+
+std::optional<Probe> probe_from_text(std::string_view text) {
+  Probe probe;
+  bool is_first = true;
+  while (!text.empty()) {
+    const size_t end = text.find('\n');
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    if (is_first) {
+      for (const driver::Division division : {driver::Division::native, driver::Division::exact}) {
+        if (line != "division " + std::string(driver::name(division))) continue;
+        probe.division = division;
+        is_first = false;
+      }
+      if (is_first) return std::nullopt;
+      continue;
+    }
+    const size_t tab = line.find('\t');
+    if (tab == 0 || tab == std::string_view::npos) return std::nullopt;
+    probe.checks.push_back({std::string(line.substr(0, tab)), true, std::string(line.substr(tab + 1))});
+  }
+  return probe.checks.empty() ? std::nullopt : std::optional(std::move(probe));
+}
+
 void report_unproven(const Probe& probe, const std::string& device, support::Diagnostics& diagnostics) {
   support::Diagnostic* report = nullptr;
   for (const Check& check : probe.checks) {

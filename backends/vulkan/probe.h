@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/driver/program.h"
@@ -24,6 +25,7 @@ struct Probe {
   /// Native if the device rounds every probed quotient and root correctly.
   driver::Division division = driver::Division::exact;
   std::vector<Check> checks;
+  bool cached = false;  ///< an earlier run of isoshade made the checks
 
   /// Whether images of the device have the bits of every other device.
   bool passed() const {
@@ -33,6 +35,13 @@ struct Probe {
 
 /// Throws std::exception if Vulkan fails; returns nothing, with a diagnostic, if a shader does not compile.
 std::optional<Probe> run_probe(Device& device, support::Diagnostics& diagnostics);
+
+/// The result of a device that passed, as text, and back: nothing if the text is no such result.
+std::string to_text(const Probe& probe);
+std::optional<Probe> probe_from_text(std::string_view text);
+
+/// A hash of the sources on which the result depends.
+std::string_view hash_of_probe_sources();
 
 /// Reports unproven-device with the checks that failed.
 void report_unproven(const Probe& probe, const std::string& device, support::Diagnostics& diagnostics);

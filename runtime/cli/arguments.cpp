@@ -292,14 +292,15 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   CacheArguments cache;
   CLI::App* cache_app =
-      app.add_subcommand("cache", "Print the folder of the cache of compiled C++ and its size");
+      app.add_subcommand("cache", "Print the folder of the cache, its size and what it holds");
   cache_app->add_flag("--clear", cache.clear,
-                      "Delete all entries; they are compiled again when needed");
+                      "Delete all entries; they are made again when needed");
 
   DevicesArguments devices;
   CLI::App* devices_app =
       app.add_subcommand("devices", "List the Vulkan devices and the result of each probe check");
   devices_app->add_option("--device", devices.choice.device, "Only this device");
+  devices_app->add_flag("--probe", devices.probe, "Run the probe even where the cache has its result");
 
   NodesArguments nodes;
   CLI::App* nodes_app = app.add_subcommand(

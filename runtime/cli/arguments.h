@@ -168,6 +168,7 @@ struct CacheArguments {
 
 struct DevicesArguments {
   BackendChoice choice;
+  bool probe = false;  ///< also where the cache has its result
 };
 
 struct NodesArguments {

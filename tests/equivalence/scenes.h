@@ -95,10 +95,11 @@ inline std::unique_ptr<backends::Backend> cpu_backend(const std::string& lanes =
 
 #ifdef ISOSHADE_VULKAN
 inline std::unique_ptr<backends::Backend> vulkan_backend(
-    std::optional<driver::Division> division = std::nullopt) {
+    std::optional<driver::Division> division = std::nullopt, bool own_memory = false) {
   support::Diagnostics diagnostics;
   vulkan::VulkanOptions options;
   options.division = division;
+  options.own_memory = own_memory;
   auto backend = vulkan::create(options, diagnostics);
   if (backend == nullptr) ADD_FAILURE() << diagnostics.text();
   return backend;

@@ -285,6 +285,21 @@ TEST_F(CliProcess, CachePrintsItsFolderAndClears) {
   EXPECT_EQ(read(folder_ / "cache/isoshade/photo.jpg"), "precious");
 }
 
+TEST_F(CliProcess, DevicesTellsWhetherTheProbeRanNow) {
+  const Outcome first = run_command(command("devices --device 0"));
+  if (first.exit != 0) GTEST_SKIP() << "no Vulkan device: " << first.text;
+  if (first.text.find("FAILED") != std::string::npos) GTEST_SKIP() << "the device fails the probe: " << first.text;
+  EXPECT_NE(first.text.find("probe run now"), std::string::npos) << first.text;
+  const std::string again = run_command(command("devices --device 0")).text;
+  EXPECT_NE(again.find("its result is cached"), std::string::npos) << again;
+  EXPECT_EQ(again.substr(again.find("ok ")), first.text.substr(first.text.find("ok "))) << "the same checks";
+  const std::string anew = run_command(command("devices --device 0 --probe")).text;
+  EXPECT_NE(anew.find("probe run now"), std::string::npos) << anew;
+  const std::string told = run_command(command("cache")).text;
+  EXPECT_NE(told.find("probe results: 1\n"), std::string::npos) << told;
+  EXPECT_NE(told.find("SPIR-V shaders: "), std::string::npos) << told;
+}
+
 TEST_F(CliProcess, AnUnsafeCacheIsReportedAndNotUsed) {
   fs::create_directories(folder_ / "cache/isoshade");
   fs::permissions(folder_ / "cache/isoshade", fs::perms::all);

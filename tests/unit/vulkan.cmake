@@ -12,6 +12,7 @@ if(ISOSHADE_VULKAN)
   isoshade_test(vulkan_test
     SOURCES
       unit/vulkan_backend_test.cpp
+      unit/vulkan_cache_test.cpp
       unit/vulkan_device_test.cpp
       unit/vulkan_probe_test.cpp
     LINKS isoshade_vulkan

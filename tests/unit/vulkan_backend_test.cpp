@@ -30,8 +30,15 @@ void main() {
 )";
 }
 
-TEST(VulkanTransform, ReturnsTheVerticesOfEachDrawInOrder) {
-  HandWritten hand(Texts{{"move", transform_glsl()}});
+/// Whether the device is treated as one with memory of its own, which the host fills by copies.
+const auto memories = testing::Bool();
+std::string name_of_memory(const testing::TestParamInfo<bool>& own) { return own.param ? "own_memory" : "shared_memory"; }
+
+class VulkanTransform : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Memory, VulkanTransform, memories, name_of_memory);
+
+TEST_P(VulkanTransform, ReturnsTheVerticesOfEachDrawInOrder) {
+  HandWritten hand(Texts{{"move", transform_glsl()}}, EvalStage::fragment, GetParam());
   const driver::Program move = named("move", Stage::vertex);
   Frame frame;
   frame.programs = {&move};
@@ -164,11 +171,12 @@ struct Rectangles {
   }
 };
 
-class VulkanDraw : public testing::Test {
+class VulkanDraw : public testing::TestWithParam<bool> {
  protected:
   HandWritten hand{Texts{{"depth", depth_glsl()},
                          {"red", pixel_glsl("0.25")},
-                         {"nan", pixel_glsl("intBitsToFloat(0x7fc00000)")}}};
+                         {"nan", pixel_glsl("intBitsToFloat(0x7fc00000)")}},
+                   EvalStage::fragment, GetParam()};
 
   void expect_identical(const Rectangles& scene) {
     Image image;
@@ -186,7 +194,9 @@ class VulkanDraw : public testing::Test {
   }
 };
 
-TEST_F(VulkanDraw, DrawsTheNearestTriangleAtAnySize) {
+INSTANTIATE_TEST_SUITE_P(Memory, VulkanDraw, memories, name_of_memory);
+
+TEST_P(VulkanDraw, DrawsTheNearestTriangleAtAnySize) {
   for (const auto& [width, height] : {std::pair{1, 1}, {64, 64}, {37, 5}, {129, 200}, {1921, 3}}) {
     expect_identical({width,
                       height,
@@ -199,18 +209,46 @@ TEST_F(VulkanDraw, DrawsTheNearestTriangleAtAnySize) {
   }
 }
 
-TEST_F(VulkanDraw, DrawsTheBackgroundWithoutTriangles) {
+TEST_P(VulkanDraw, DrawsTheBackgroundWithoutTriangles) {
   expect_identical({64, 48, {}});
   expect_identical({64, 48, {{100, 100, 200, 200, 0.5f, 0}, {-80, -30, 0, 900, 0.5f, 1}}});
 }
 
 /// 2048 x 2048 pixels come back in more than one band.
-TEST_F(VulkanDraw, ReadsLargeImagesBackInBands) {
+TEST_P(VulkanDraw, ReadsLargeImagesBackInBands) {
   static_assert(size_t{2048} * 2048 * 20 > max_readback_bytes);
   expect_identical({2048, 2048, {{1000, 1500, 2048, 2048, 0.5f, 0}}});
 }
 
-TEST_F(VulkanDraw, RejectsFramesBeyondTheGuardBand) {
+/// Only blocks of an array that differ from what the device has are written.
+TEST_P(VulkanDraw, ShowsEveryChangeOfALargeArray) {
+  std::vector<Rectangles::Item> items;
+  for (int i = 0; i < 2000; ++i) items.push_back({i % 50, i / 50, i % 50 + 1, i / 50 + 1, 0.5f, 0});
+  expect_identical({50, 40, items});
+  for (const size_t changed : {size_t{1999}, size_t{0}, size_t{1000}}) {
+    items[changed].program = 1;
+    expect_identical({50, 40, items});
+  }
+  items.resize(1500);
+  expect_identical({50, 40, items});
+  items.resize(5000, {3, 3, 9, 9, 0.75f, 1});  // the array grows
+  expect_identical({50, 40, items});
+}
+
+TEST_P(VulkanDraw, CountsTheSecondsOfTheDevice) {
+  const auto before = hand.backend->device_seconds();
+  if (!before) GTEST_SKIP() << "the device has no clock";
+  expect_identical({300, 300, {{0, 0, 300, 300, 0.5f, 0}}});
+  const auto after = hand.backend->device_seconds();
+  EXPECT_GT(after->visibility, before->visibility);
+  EXPECT_GT(after->shading, before->shading);
+  EXPECT_GT(after->copies, before->copies);
+  EXPECT_LT(after->shading, before->shading + 60);
+  EXPECT_EQ(after->screen, before->screen);
+  EXPECT_EQ(after->layers, before->layers);
+}
+
+TEST_P(VulkanDraw, RejectsFramesBeyondTheGuardBand) {
   Rectangles scene(1, 1, {});
   scene.frame.views[0].target.width = guard_band + 1;
   Image image;
@@ -221,7 +259,7 @@ TEST_F(VulkanDraw, RejectsFramesBeyondTheGuardBand) {
   EXPECT_NE(hand.diagnostics.text().find("at most 8192"), std::string::npos) << hand.diagnostics.text();
 }
 
-TEST_F(VulkanDraw, ReportsShaderErrorsAndContinues) {
+TEST_P(VulkanDraw, ReportsShaderErrorsAndContinues) {
   const Rectangles scene(8, 8, {{0, 0, 8, 8, 0.5f, 0}});
   hand.texts["red"] = "#version 450\nvoid main() { nothing(); }\n";
   Image image;

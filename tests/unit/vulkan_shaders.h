@@ -45,10 +45,12 @@ struct HandWritten {
   support::Diagnostics diagnostics;
   std::unique_ptr<VulkanBackend> backend;
 
-  explicit HandWritten(Texts by_name, EvalStage stage = EvalStage::fragment) : texts(std::move(by_name)) {
+  explicit HandWritten(Texts by_name, EvalStage stage = EvalStage::fragment, bool own_memory = false)
+      : texts(std::move(by_name)) {
     setenv("ISOSHADE_VALIDATION", "1", 1);
     VulkanOptions options;
     options.eval_stage = stage;
+    options.own_memory = own_memory;
     options.glsl = [this](const driver::Program& program, driver::Division) {
       return texts.at(program.stage == driver::Stage::depth ? "depth" : program.name);
     };

@@ -152,6 +152,14 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
   return spirv;
 }
 
+std::string spirv_compiler() {
+  const glslang::Version version = glslang::GetVersion();
+  std::string text = "glslang";
+  for (const int part : {version.major, version.minor, version.patch}) text += " " + std::to_string(part);
+  return text + " " + version.flavor + "\n" + spvSoftwareVersionDetailsString() + "\n" +
+         std::string(hash_of_spirv_source());
+}
+
 std::optional<size_t> count_contractible(const std::string& glsl, ShaderKind kind,
                                          support::Diagnostics& diagnostics) {
   std::string error;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/support/diagnostics.h"
@@ -27,6 +28,13 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
                                                    support::Diagnostics& diagnostics,
                                                    const std::string& what = "a shader",
                                                    Contract contract = Contract::within);
+
+/// What decides the words that compile_spirv() makes of a text, beside the text and its kind: the versions of glslang and
+/// SPIRV-Tools, and the source of compile_spirv() with its options. For the keys of caches.
+std::string spirv_compiler();
+
+/// A hash of the file that defines compile_spirv().
+std::string_view hash_of_spirv_source();
 
 /// How many operations on floats the text leaves to a compiler that follows `precise` to contract, or nothing where it
 /// does not compile. Of our texts none: users compile them by compilers of their own. May take exponential time.
