@@ -42,11 +42,12 @@ class HostBackend : public Backend {
   virtual bool screen(const ScreenPass& pass, const Layers& layers, int first_row, int rows,
                       std::vector<float>& rgba, support::Diagnostics& diagnostics) = 0;
 
+  support::Array<float> layers_;
+
  private:
   bool process(const ScreenPass& pass, int first_row, Image& samples, support::Diagnostics& diagnostics);
   void store(const Image& image, const Drawing& drawing, int first_row);
 
-  support::Array<float> layers_;
   bool is_finite_ = true;
 };
 

@@ -200,6 +200,57 @@ bool VulkanBackend::check_size(int width, int height, Diagnostics& diagnostics) 
   return false;
 }
 
+bool VulkanBackend::reserve(size_t floats, Diagnostics& diagnostics) {
+  made_finite_ = true;
+  if (!HostBackend::reserve(floats, diagnostics)) return false;
+  on_device_ = floats * sizeof(float) <= device_->max_buffer_bytes();
+  if (!on_device_) return true;
+  return guarded(diagnostics, [&] {
+    device_->reserve_layers(floats * sizeof(float));
+    return true;
+  });
+}
+
+void VulkanBackend::write(size_t first, std::span<const float> floats) {
+  if (on_device_)
+    device_->write_layers(first * sizeof(float), floats.data(), floats.size_bytes());
+  else
+    HostBackend::write(first, floats);
+}
+
+std::span<const float> VulkanBackend::read(const backends::Slot& slot) {
+  if (on_device_)
+    device_->read_layers(slot.first * sizeof(float), layers_.data() + slot.first, slot.size() * sizeof(float));
+  return HostBackend::read(slot);
+}
+
+std::optional<PipelineIndex> VulkanBackend::screen_pipeline(const Program& program, Diagnostics& diagnostics) {
+  auto text = text_of(program, diagnostics);
+  if (!text) return std::nullopt;
+  PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
+  source.what = driver::description(program);
+  return device_->pipeline(source, diagnostics);
+}
+
+bool VulkanBackend::post(std::span<const backends::ScreenPass> passes, const backends::Slot& made,
+                         Diagnostics& diagnostics) {
+  if (!on_device_) return HostBackend::post(passes, made, diagnostics);
+  return guarded(diagnostics, [&] {
+    if (!check_size(made.width, made.height, diagnostics) || !device_->prepare_check(diagnostics)) return false;
+    for (const backends::ScreenPass& pass : passes) {
+      const std::vector<int32_t> records = backends::image_records(pass.width, pass.height, pass.images);
+      const auto upload = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
+        return upload_array(*device_, buffer, words, nullptr, diagnostics);
+      };
+      if (!backends::for_each_array(pass, {{}, records}, upload)) return false;
+      const auto pipeline = screen_pipeline(*pass.program, diagnostics);
+      if (!pipeline) return false;
+      if (!device_->run_screen(*pipeline, made.width, made.height, made.first * sizeof(float))) made_finite_ = false;
+    }
+    return true;
+  });
+}
+
 bool VulkanBackend::screen(const backends::ScreenPass& pass, const backends::Layers& layers, int first_row, int rows,
                            std::vector<float>& rgba, Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
@@ -208,11 +259,7 @@ bool VulkanBackend::screen(const backends::ScreenPass& pass, const backends::Lay
     };
     if (!check_size(pass.width, first_row + rows, diagnostics) || !backends::for_each_array(pass, layers, upload))
       return false;
-    auto text = text_of(*pass.program, diagnostics);
-    if (!text) return false;
-    PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
-    source.what = driver::description(*pass.program);
-    const auto pipeline = device_->pipeline(source, diagnostics);
+    const auto pipeline = screen_pipeline(*pass.program, diagnostics);
     if (!pipeline) return false;
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(rows));
     device_->run_screen(*pipeline, pass.width, rows, first_row, rgba);

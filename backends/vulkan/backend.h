@@ -81,6 +81,14 @@ class VulkanBackend : public backends::HostBackend {
   std::string description() const override;
   double build_seconds() const override;
 
+  // The images stay on the device, unless they take more than shaders can read.
+  bool reserve(size_t floats, support::Diagnostics& diagnostics) override;
+  void write(size_t first, std::span<const float> floats) override;
+  std::span<const float> read(const backends::Slot& slot) override;
+  bool is_finite() override { return made_finite_ && HostBackend::is_finite(); }
+  bool draw(const backends::Drawing& drawing, support::Diagnostics& diagnostics) override;
+  bool post(std::span<const backends::ScreenPass> passes, const backends::Slot& made,
+            support::Diagnostics& diagnostics) override;
   bool transform(const backends::ViewPass& pass, support::Array<float>& clip,
                  support::Diagnostics& diagnostics) override;
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
@@ -117,8 +125,12 @@ class VulkanBackend : public backends::HostBackend {
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
                         support::Diagnostics& diagnostics);
 
+  std::optional<uint32_t> screen_pipeline(const driver::Program& program, support::Diagnostics& diagnostics);
+
   VulkanOptions options_;
   std::unique_ptr<Device> device_;
+  bool on_device_ = false;  ///< where the images of this frame are
+  bool made_finite_ = true;
   Probe probe_;
   driver::Division division_ = driver::Division::exact;
 };

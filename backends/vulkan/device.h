@@ -134,6 +134,24 @@ class Device {
   void render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
               const float (&background)[4], const Window& window, backends::Image& image);
 
+  // The images of a frame lie in the array `layers` and stay on the device.
+
+  /// Makes the array this long, at most max_buffer_bytes(); what was in it is lost.
+  void reserve_layers(size_t bytes);
+  void write_layers(size_t first, const void* data, size_t bytes);
+  void read_layers(size_t first, void* data, size_t bytes);
+  /// Before the first of the following calls. False if the check's shader does not compile.
+  bool prepare_check(support::Diagnostics& diagnostics);
+  /// Where images go: their first bytes in `layers`.
+  struct Places {
+    size_t depth = 0, color = 0;
+  };
+  /// As render(), but the images go to `layers`. Returns whether the color is finite.
+  bool render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
+              const float (&background)[4], const Window& window, bool has_color, const Places& places);
+  /// As below over a whole image, which goes to `layers`. Returns whether it is finite.
+  bool run_screen(PipelineIndex pipeline, int width, int height, size_t place);
+
   /// Runs a full-screen pipeline of Output::color over rows of an image: `rgba` has 4 floats a pixel, rows top down. The
   /// last row is below max_frame_side().
   void run_screen(PipelineIndex pipeline, int width, int height, int first_row, std::span<float> rgba);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <list>
 #include <map>
 #include <unordered_map>
 
@@ -97,6 +98,9 @@ struct DescriptorSet {
 /// One for the opaque triangles, two for layers in turn.
 inline constexpr uint32_t max_sets = 3;
 
+/// Attachments of so many other sizes are kept: the views and posts of a frame take turns.
+inline constexpr size_t max_other_attachments = 7;
+
 /// Layers that are drawn before the host looks whether the last one shows anything.
 inline constexpr uint32_t max_layers_at_once = 8;
 
@@ -132,6 +136,7 @@ struct Device::Impl {
                                    std::span<const uint32_t> fragment);
 
   void prepare_attachments(int width, int height, bool has_color, bool has_layers = false);
+  void make_attachments(int width, int height, bool has_color, bool has_layers);
   void prepare_layers();
   vk::raii::Framebuffer make_framebuffer(Output output, std::span<const vk::ImageView> views, int width, int height);
   /// Draws a group over what is there. `depth`: what its triangles are tested against; (x, y): the pixel of the view at the
@@ -159,6 +164,20 @@ struct Device::Impl {
   /// The driver's own cache of what it compiled, kept on disk if the driver puts anything in it.
   void open_pipeline_cache();
   void keep_pipelines() noexcept;
+
+  Array& layers();
+  /// What is recorded from here on waits for all that was recorded before.
+  void wait_for_all() const;
+  void reserve_check();
+  bool finish_with_check(size_t first, size_t floats);
+  /// Begins a recording that draws a view; its images are then to be copied.
+  struct DrawnView {
+    const Attachment* depth = nullptr;
+    vk::Format depth_format{};
+    int margin = 0;  ///< of the attachments before the window
+  };
+  DrawnView record_view(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
+                        const float (&background)[4], const Window& window, bool has_color);
 
   void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
   /// With the attachments' first pixel at (x, y) of the view.
@@ -199,6 +218,7 @@ struct Device::Impl {
   Array zero;     ///< always 0
   Buffer readback;
   WindowAttachments attachments;
+  std::list<WindowAttachments> other_attachments;  ///< of other sizes, those used last in front
   vk::raii::Framebuffer no_target{nullptr};
   std::map<uint32_t, TableAttachments> tables;  ///< by the number of attachments
 
@@ -207,6 +227,7 @@ struct Device::Impl {
   std::map<std::pair<Output, uint32_t>, vk::raii::RenderPass> render_passes;
   std::vector<vk::raii::Pipeline> pipelines;
   std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
+  std::optional<PipelineIndex> finite_check;
   double build_seconds = 0;
 };
 

@@ -25,7 +25,8 @@ struct Kind {
 Kind kind_of(BufferUse use) {
   using Usage = vk::BufferUsageFlagBits;
   switch (use) {
-    case BufferUse::shared: return {Usage::eStorageBuffer, mapped, Memory::eDeviceLocal | Memory::eHostCached};
+    case BufferUse::shared:
+      return {Usage::eStorageBuffer | Usage::eTransferDst | Usage::eTransferSrc, mapped, Memory::eDeviceLocal | Memory::eHostCached};
     case BufferUse::device:
       return {Usage::eStorageBuffer | Usage::eTransferDst | Usage::eTransferSrc, {}, Memory::eDeviceLocal};
     case BufferUse::staging: return {Usage::eTransferSrc, mapped, Memory::eHostCached};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "backends/vulkan/device_impl.h"
 #include "compiler/support/assert.h"
@@ -140,11 +141,33 @@ vk::raii::Framebuffer Device::Impl::make_framebuffer(Output output, std::span<co
 }
 
 void Device::Impl::prepare_attachments(int width, int height, bool has_color, bool has_layers) {
-  WindowAttachments& made = attachments;
-  if (made.width == width && made.height == height && (made.has_color || !has_color) &&
-      (made.has_layers || !has_layers))
-    return;
+  const auto fits = [&](const WindowAttachments& made) {
+    return made.width == width && made.height == height && (made.has_color || !has_color) &&
+           (made.has_layers || !has_layers);
+  };
+  if (fits(attachments)) return;
+  const auto is_of_size = [&](const WindowAttachments& made) { return made.width == width && made.height == height; };
+  if (attachments.width > 0 && !is_of_size(attachments)) other_attachments.push_front(std::exchange(attachments, {}));
+  const auto found = std::ranges::find_if(other_attachments, is_of_size);
+  if (found != other_attachments.end()) {
+    attachments = std::move(*found);
+    other_attachments.erase(found);
+    if (fits(attachments)) return;
+  }
+  if (other_attachments.size() > max_other_attachments) other_attachments.pop_back();
+  const bool had_color = attachments.has_color, had_layers = attachments.has_layers;
+  try {
+    make_attachments(width, height, has_color || had_color, has_layers || had_layers);
+  } catch (const vk::OutOfDeviceMemoryError&) {
+    if (other_attachments.empty()) throw;
+    other_attachments.clear();
+    make_attachments(width, height, has_color, has_layers);
+  }
+}
+
+void Device::Impl::make_attachments(int width, int height, bool has_color, bool has_layers) {
   using Usage = vk::ImageUsageFlagBits;
+  WindowAttachments& made = attachments;
   made = {};  // first, because both might not fit
   made.ids = make_attachment(ids_format, width, height, Usage::eSampled);
   made.depth = make_attachment(depth_format, width, height,
@@ -233,66 +256,68 @@ void Device::Impl::draw_group(const LayerGroup& group, const Attachment& depth, 
   }
 }
 
+Device::Impl::DrawnView Device::Impl::record_view(std::span<const Call> visibility, std::span<const Call> color,
+                                                  const Layers& layers, const float (&background)[4],
+                                                  const Window& window, bool has_color) {
+  const int margin = window.x > 0 || window.y > 0 ? margin_of_windows : 0;
+  const int origin_x = window.x - margin, origin_y = window.y - margin;
+  const bool has_layers = !layers.groups.empty();
+  prepare_attachments(window.width + margin, window.height + margin, has_color, has_layers);
+  const vk::Rect2D all = area(attachments.width, attachments.height);
+
+  const bool deep = layers.copy_depth.has_value();
+  const DrawnView drawn{deep ? &attachments.layers.depth : &attachments.depth, deep ? layer_depth_format : depth_format,
+                        margin};
+  const vk::ImageView ids = *attachments.ids.view;
+  begin({ids, ids, has_layers ? *attachments.depth.view : ids, ids});
+  {
+    const TimedStep step(*this, &DeviceSeconds::visibility);
+    const std::array<vk::ClearValue, 2> nothing{};
+    const PassEncoder pass(commands, render_pass(Output::visibility, 1), attachments.visibility, all, nothing);
+    record_at(commands, visibility, origin_x, origin_y);
+  }
+  if (has_color) {
+    const TimedStep step(*this, &DeviceSeconds::shading);
+    const vk::ClearValue backdrop{
+        vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
+    const PassEncoder pass(commands, render_pass(Output::color, 1), attachments.shading, all, {&backdrop, 1});
+    record_at(commands, color, origin_x, origin_y);
+  }
+  if (!has_layers) return drawn;
+  change_layout(commands, attachments.depth.image, depth_format, vk::ImageLayout::eTransferSrcOptimal,
+                vk::ImageLayout::eShaderReadOnlyOptimal);
+  if (deep) {
+    const vk::ClearValue nothing{};
+    const PassEncoder pass(commands, render_pass(Output::depth_copy, 1), attachments.layers.depth_copying, all,
+                           {&nothing, 1});
+    record_at(commands, {&*layers.copy_depth, 1}, origin_x, origin_y);
+  }
+  for (const LayerGroup& group : layers.groups) draw_group(group, *drawn.depth, origin_x, origin_y);
+  change_layout(commands, drawn.depth->image, drawn.depth_format, vk::ImageLayout::eShaderReadOnlyOptimal,
+                vk::ImageLayout::eTransferSrcOptimal);
+  return drawn;
+}
+
 void Device::render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
                     const float (&background)[4], const Window& window, backends::Image& image) {
   const int width = window.width, height = window.height;
   const bool has_color = !image.rgba.empty();
-  const int margin = window.x > 0 || window.y > 0 ? margin_of_windows : 0;
-  const int origin_x = window.x - margin, origin_y = window.y - margin;
-  const bool has_layers = !layers.groups.empty();
-  impl_->prepare_attachments(width + margin, height + margin, has_color, has_layers);
-  const WindowAttachments& attachments = impl_->attachments;
-  const vk::Rect2D all = area(attachments.width, attachments.height);
   const size_t row_bytes = static_cast<size_t>(width) * ((has_color ? pixel_bytes : 0) + depth_bytes);
   const int band =
       static_cast<int>(std::clamp<size_t>(max_readback_bytes / row_bytes, 1, static_cast<size_t>(height)));
   const size_t depth_at =
       has_color ? static_cast<size_t>(band) * static_cast<size_t>(width) * pixel_bytes : 0;
   impl_->reserve(impl_->readback, static_cast<size_t>(band) * row_bytes, BufferUse::readback);
-
-  const auto draw_opaque = [&](const vk::raii::CommandBuffer& commands) {
-    {
-      const Impl::TimedStep step(*impl_, &DeviceSeconds::visibility);
-      const std::array<vk::ClearValue, 2> nothing{};
-      const PassEncoder pass(commands, impl_->render_pass(Output::visibility, 1), attachments.visibility, all,
-                             nothing);
-      impl_->record_at(commands, visibility, origin_x, origin_y);
-    }
-    if (!has_color) return;
-    const Impl::TimedStep step(*impl_, &DeviceSeconds::shading);
-    const vk::ClearValue backdrop{
-        vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
-    const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading, all, {&backdrop, 1});
-    impl_->record_at(commands, color, origin_x, origin_y);
-  };
-  const bool deep = layers.copy_depth.has_value();
-  const Attachment& depth = deep ? attachments.layers.depth : attachments.depth;
-  const vk::Format format_of_depth = deep ? layer_depth_format : depth_format;
-  const vk::ImageView ids = *attachments.ids.view;
-  const vk::raii::CommandBuffer& commands = impl_->begin({ids, ids, has_layers ? *attachments.depth.view : ids, ids});
-  draw_opaque(commands);
-  if (has_layers) {
-    change_layout(commands, attachments.depth.image, depth_format, vk::ImageLayout::eTransferSrcOptimal,
-                  vk::ImageLayout::eShaderReadOnlyOptimal);
-    if (deep) {
-      const vk::ClearValue nothing{};
-      const PassEncoder pass(commands, impl_->render_pass(Output::depth_copy, 1), attachments.layers.depth_copying, all,
-                             {&nothing, 1});
-      impl_->record_at(commands, {&*layers.copy_depth, 1}, origin_x, origin_y);
-    }
-    for (const LayerGroup& group : layers.groups) impl_->draw_group(group, depth, origin_x, origin_y);
-    change_layout(commands, depth.image, format_of_depth, vk::ImageLayout::eShaderReadOnlyOptimal,
-                  vk::ImageLayout::eTransferSrcOptimal);
-  }
-
+  const auto drawn = impl_->record_view(visibility, color, layers, background, window, has_color);
   for (int first = 0; first < height; first += band) {
     const int rows = std::min(band, height - first);
     if (first > 0) impl_->begin();
     {
       const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
-      const Window lines{margin, margin + first, width, rows};
-      if (has_color) copy(commands, attachments.color.image, color_format, lines, impl_->readback, 0);
-      copy(commands, depth.image, format_of_depth, lines, impl_->readback, depth_at);
+      const Window lines{drawn.margin, drawn.margin + first, width, rows};
+      if (has_color)
+        copy(impl_->commands, impl_->attachments.color.image, color_format, lines, impl_->readback, 0);
+      copy(impl_->commands, drawn.depth->image, drawn.depth_format, lines, impl_->readback, depth_at);
     }
     impl_->finish();
     const size_t pixel = static_cast<size_t>(first) * static_cast<size_t>(width);
@@ -301,6 +326,45 @@ void Device::render(std::span<const Call> visibility, std::span<const Call> colo
     if (has_color) std::memcpy(image.rgba.data() + 4 * pixel, data, pixels * pixel_bytes);
     std::memcpy(image.depth.data() + pixel, data + depth_at, pixels * depth_bytes);
   }
+}
+
+bool Device::render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
+                    const float (&background)[4], const Window& window, bool has_color, const Places& places) {
+  impl_->reserve_check();
+  const auto drawn = impl_->record_view(visibility, color, layers, background, window, has_color);
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
+    const Window lines{drawn.margin, drawn.margin, window.width, window.height};
+    impl_->wait_for_all();
+    copy(impl_->commands, drawn.depth->image, drawn.depth_format, lines, impl_->layers().buffer, places.depth);
+    if (has_color)
+      copy(impl_->commands, impl_->attachments.color.image, color_format, lines, impl_->layers().buffer, places.color);
+  }
+  if (!has_color) {
+    impl_->finish();
+    return true;
+  }
+  const size_t floats = size_t{4} * static_cast<size_t>(window.width) * static_cast<size_t>(window.height);
+  return impl_->finish_with_check(places.color / sizeof(float), floats);
+}
+
+bool Device::run_screen(PipelineIndex pipeline, int width, int height, size_t place) {
+  impl_->prepare_attachments(width, height, true);
+  impl_->reserve_check();
+  const vk::raii::CommandBuffer& commands = impl_->begin();
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::screen);
+    const vk::ClearValue nothing{};
+    const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), impl_->attachments.shading,
+                           area(width, height), {&nothing, 1});
+    impl_->record(commands, {.pipeline = pipeline, .scissor = {0, 0, width, height}});
+  }
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
+    impl_->wait_for_all();
+    copy(commands, impl_->attachments.color.image, color_format, {0, 0, width, height}, impl_->layers().buffer, place);
+  }
+  return impl_->finish_with_check(place / sizeof(float), size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height));
 }
 
 void Device::run_screen(PipelineIndex pipeline, int width, int height, int first_row, std::span<float> rgba) {

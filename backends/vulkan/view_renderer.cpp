@@ -123,34 +123,53 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   bool draw(const Window& window, std::span<const int32_t> triangles, backends::Image& image,
             Diagnostics& diagnostics) override {
     return backend_.guarded(diagnostics, [&] {
-      const bool has_color = pass_.view.target.has_color;
-      const int light_count = pass_.frame.light_count;
-      if (!backend_.check_size(window.width, window.height, diagnostics)) return false;
-      if (!triangles.empty() && !upload(triangles, diagnostics)) return false;
-      const auto count = static_cast<uint32_t>(triangles.size() / lower::triangle_word::stride);
-      const auto opaque = static_cast<uint32_t>(raster::opaque_count(triangles.data(), static_cast<int>(count)));
-      std::vector<Call> visibility, color;
-      if (!add_visibility(triangles, {0, opaque, window}, false, visibility, diagnostics)) return false;
-      std::vector<Box> bounds;
-      if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles.first(opaque * stride));
-      for (size_t p = 0; p < bounds.size(); ++p) {
-        if (bounds[p].empty()) continue;
-        if (!shading_[p]) shading_[p] = pixel_pipeline(*pass_.frame.programs[p], diagnostics);
-        if (!shading_[p]) return false;
-        color.push_back({.pipeline = *shading_[p],
-                         .push = {.light_count = light_count, .program = static_cast<int32_t>(p)},
-                         .scissor = window_of(bounds[p])});
-      }
-      Layers layers;
-      if (opaque < count && !add_layers(window, triangles, opaque, count, layers, diagnostics)) return false;
-      image.resize(window.width, window.height, has_color);
-      backend_.device_->render(visibility, color, layers, pass_.view.background, window, image);
+      Calls calls;
+      if (!prepare(window, triangles, calls, diagnostics)) return false;
+      image.resize(window.width, window.height, pass_.view.target.has_color);
+      backend_.device_->render(calls.visibility, calls.color, calls.layers, pass_.view.background, window, image);
+      return true;
+    });
+  }
+
+  /// Draws to the array `layers`. `is_finite` tells whether the color is finite.
+  bool draw(const Window& window, std::span<const int32_t> triangles, const Device::Places& places, bool& is_finite,
+            Diagnostics& diagnostics) {
+    return backend_.guarded(diagnostics, [&] {
+      Calls calls;
+      if (!prepare(window, triangles, calls, diagnostics) || !backend_.device_->prepare_check(diagnostics)) return false;
+      is_finite = backend_.device_->render(calls.visibility, calls.color, calls.layers, pass_.view.background, window,
+                                           pass_.view.target.has_color, places);
       return true;
     });
   }
 
  private:
   static constexpr size_t stride = lower::triangle_word::stride;
+
+  struct Calls {
+    std::vector<Call> visibility, color;
+    Layers layers;
+  };
+  bool prepare(const Window& window, std::span<const int32_t> triangles, Calls& calls, Diagnostics& diagnostics) {
+    const bool has_color = pass_.view.target.has_color;
+    const int light_count = pass_.frame.light_count;
+    if (!backend_.check_size(window.width, window.height, diagnostics)) return false;
+    if (!triangles.empty() && !upload(triangles, diagnostics)) return false;
+    const auto count = static_cast<uint32_t>(triangles.size() / lower::triangle_word::stride);
+    const auto opaque = static_cast<uint32_t>(raster::opaque_count(triangles.data(), static_cast<int>(count)));
+    if (!add_visibility(triangles, {0, opaque, window}, false, calls.visibility, diagnostics)) return false;
+    std::vector<Box> bounds;
+    if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles.first(opaque * stride));
+    for (size_t p = 0; p < bounds.size(); ++p) {
+      if (bounds[p].empty()) continue;
+      if (!shading_[p]) shading_[p] = pixel_pipeline(*pass_.frame.programs[p], diagnostics);
+      if (!shading_[p]) return false;
+      calls.color.push_back({.pipeline = *shading_[p],
+                             .push = {.light_count = light_count, .program = static_cast<int32_t>(p)},
+                             .scissor = window_of(bounds[p])});
+    }
+    return opaque == count || add_layers(window, triangles, opaque, count, calls.layers, diagnostics);
+  }
 
   struct Range {
     uint32_t begin, end;  ///< numbers of triangles
@@ -254,6 +273,37 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   /// By the program, and whether its triangles write depth.
   std::map<std::pair<size_t, bool>, std::optional<PipelineIndex>> blending_;
 };
+
+bool VulkanBackend::draw(const backends::Drawing& drawing, Diagnostics& diagnostics) {
+  if (!on_device_) return HostBackend::draw(drawing, diagnostics);
+  const backends::View& view = drawing.pass.view;
+  if (drawing.side > 1) {
+    // Samples become pixels in the memory of the host, and the device's array is overwritten on the way.
+    std::vector<backends::Slot> kept;
+    for (const backends::ImageRead& image : drawing.pass.images) {
+      if (image.slot.exists()) kept.push_back(image.slot);
+      if (image.camera != backends::ImageRead::no_camera)
+        kept.push_back({image.camera, lower::view_word::camera_words, 1, 1});
+    }
+    for (const backends::Slot& slot : kept) read(slot);
+    if (!HostBackend::draw(drawing, diagnostics)) return false;
+    kept.insert(kept.end(), {drawing.depth, drawing.color});
+    return guarded(diagnostics, [&] {
+      device_->reserve_layers(layers_.size() * sizeof(float));
+      for (const backends::Slot& slot : kept)
+        device_->write_layers(slot.first * sizeof(float), layers_.data() + slot.first, slot.size() * sizeof(float));
+      return true;
+    });
+  }
+  const std::vector<int32_t> records =
+      backends::image_records(view.target.width, view.target.height, drawing.pass.images);
+  bool is_finite = true;
+  VulkanViewRenderer renderer(*this, drawing.pass, {{}, records}, drawing.vertices);
+  const Device::Places places{drawing.depth.first * sizeof(float), drawing.color.first * sizeof(float)};
+  if (!renderer.draw(drawing.window, drawing.triangles, places, is_finite, diagnostics)) return false;
+  made_finite_ = made_finite_ && is_finite;
+  return drawing.posts.empty() || post(drawing.posts, drawing.color, diagnostics);
+}
 
 std::unique_ptr<backends::ViewRenderer> VulkanBackend::begin(const ViewPass& pass, const backends::Layers& layers,
                                                              std::span<const float> vertices, Diagnostics&) {
