@@ -154,11 +154,13 @@ bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip,
       std::optional<PipelineIndex>& pipeline = pipelines[draws[d].vertex_program];
       if (pipeline) continue;
       const Program& program = *frame.programs[draws[d].vertex_program];
-      auto text = text_of(program, diagnostics);
-      if (!text) return false;
-      PipelineSource source{Output::buffer, 0, std::move(*text), {}};
-      source.what = driver::description(program);
-      pipeline = device_->pipeline(source, diagnostics);
+      pipeline = pipeline_of(program, Use::vertices, [&]() -> std::optional<PipelineIndex> {
+        auto text = text_of(program, diagnostics);
+        if (!text) return std::nullopt;
+        PipelineSource source{Output::buffer, 0, std::move(*text), {}};
+        source.what = driver::description(program);
+        return device_->pipeline(source, diagnostics);
+      });
       if (!pipeline) return false;
     }
 
@@ -224,12 +226,23 @@ std::span<const float> VulkanBackend::read(const backends::Slot& slot) {
   return HostBackend::read(slot);
 }
 
+std::optional<PipelineIndex> VulkanBackend::pipeline_of(const Program& program, Use use,
+                                                        const std::function<std::optional<PipelineIndex>()>& make) {
+  const std::pair key{program.number, use};
+  if (const auto found = pipeline_of_program_.find(key); found != pipeline_of_program_.end()) return found->second;
+  const std::optional<PipelineIndex> made = make();
+  if (made && program.number != 0) pipeline_of_program_[key] = *made;
+  return made;
+}
+
 std::optional<PipelineIndex> VulkanBackend::screen_pipeline(const Program& program, Diagnostics& diagnostics) {
-  auto text = text_of(program, diagnostics);
-  if (!text) return std::nullopt;
-  PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
-  source.what = driver::description(program);
-  return device_->pipeline(source, diagnostics);
+  return pipeline_of(program, Use::screen, [&]() -> std::optional<PipelineIndex> {
+    auto text = text_of(program, diagnostics);
+    if (!text) return std::nullopt;
+    PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
+    source.what = driver::description(program);
+    return device_->pipeline(source, diagnostics);
+  });
 }
 
 bool VulkanBackend::post(std::span<const backends::ScreenPass> passes, const backends::Slot& made,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -125,10 +126,16 @@ class VulkanBackend : public backends::HostBackend {
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
                         support::Diagnostics& diagnostics);
 
+  /// How a pipeline uses a program.
+  enum class Use : uint8_t { vertices, screen, blending, deep_blending, visibility, visibility_over, visibility_in_layers };
+  /// The pipeline of a program, from `make` where it is not known yet.
+  std::optional<uint32_t> pipeline_of(const driver::Program& program, Use use,
+                                      const std::function<std::optional<uint32_t>()>& make);
   std::optional<uint32_t> screen_pipeline(const driver::Program& program, support::Diagnostics& diagnostics);
 
   VulkanOptions options_;
   std::unique_ptr<Device> device_;
+  std::map<std::pair<uint64_t, Use>, uint32_t> pipeline_of_program_;  ///< by Program::number
   bool on_device_ = false;  ///< where the images of this frame are
   bool made_finite_ = true;
   Probe probe_;

@@ -162,7 +162,7 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles.first(opaque * stride));
     for (size_t p = 0; p < bounds.size(); ++p) {
       if (bounds[p].empty()) continue;
-      if (!shading_[p]) shading_[p] = pixel_pipeline(*pass_.frame.programs[p], diagnostics);
+      if (!shading_[p]) shading_[p] = backend_.screen_pipeline(*pass_.frame.programs[p], diagnostics);
       if (!shading_[p]) return false;
       calls.color.push_back({.pipeline = *shading_[p],
                              .push = {.light_count = light_count, .program = static_cast<int32_t>(p)},
@@ -231,34 +231,34 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   std::optional<PipelineIndex> visibility_pipeline(const Run& run, bool in_layers, Diagnostics& diagnostics) {
     std::optional<PipelineIndex>& pipeline = visibility_[{run.cutout, run.over && !in_layers, in_layers}];
     if (pipeline) return pipeline;
-    PipelineSource source{Output::visibility, 1, triangle_vertex(), {}, run.over && !in_layers};
+    using Use = VulkanBackend::Use;
     const driver::Program& program = run.cutout != nullptr ? *run.cutout : driver::depth_program();
-    if (run.cutout != nullptr) {
-      if (!driver::within_limits(program, driver::Target::vulkan, backend_.division_, diagnostics)) return std::nullopt;
-      source.what = driver::description(program);
-    }
-    source.fragment_glsl = in_layers ? driver::glsl_of_layer(program, backend_.division_)
-                                     : backend_.options_.glsl(program, backend_.division_);
-    return pipeline = backend_.device_->pipeline(source, diagnostics);
-  }
-
-  std::optional<PipelineIndex> pixel_pipeline(const driver::Program& program, Diagnostics& diagnostics) {
-    auto text = backend_.text_of(program, diagnostics);
-    if (!text) return std::nullopt;
-    PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
-    source.what = driver::description(program);
-    return backend_.device_->pipeline(source, diagnostics);
+    const Use use = in_layers ? Use::visibility_in_layers : run.over ? Use::visibility_over : Use::visibility;
+    return pipeline = backend_.pipeline_of(program, use, [&]() -> std::optional<PipelineIndex> {
+      PipelineSource source{Output::visibility, 1, triangle_vertex(), {}, use == Use::visibility_over};
+      if (run.cutout != nullptr) {
+        if (!driver::within_limits(program, driver::Target::vulkan, backend_.division_, diagnostics)) return std::nullopt;
+        source.what = driver::description(program);
+      }
+      source.fragment_glsl = in_layers ? driver::glsl_of_layer(program, backend_.division_)
+                                       : backend_.options_.glsl(program, backend_.division_);
+      return backend_.device_->pipeline(source, diagnostics);
+    });
   }
 
   std::optional<PipelineIndex> blend_pipeline(const driver::Program& program, bool writes_depth,
                                               Diagnostics& diagnostics) {
-    auto text = backend_.text_of(program, diagnostics);
-    if (!text) return std::nullopt;
-    if (writes_depth) text = driver::glsl_of_layer(program, backend_.division_);
-    PipelineSource source{writes_depth ? Output::deep_layer : Output::layer, writes_depth ? 2u : 1u,
-                          full_screen_vertex(), std::move(*text)};
-    source.what = driver::description(program);
-    return backend_.device_->pipeline(source, diagnostics);
+    using Use = VulkanBackend::Use;
+    const Use use = writes_depth ? Use::deep_blending : Use::blending;
+    return backend_.pipeline_of(program, use, [&]() -> std::optional<PipelineIndex> {
+      auto text = backend_.text_of(program, diagnostics);
+      if (!text) return std::nullopt;
+      if (writes_depth) text = driver::glsl_of_layer(program, backend_.division_);
+      PipelineSource source{writes_depth ? Output::deep_layer : Output::layer, writes_depth ? 2u : 1u,
+                            full_screen_vertex(), std::move(*text)};
+      source.what = driver::description(program);
+      return backend_.device_->pipeline(source, diagnostics);
+    });
   }
 
   VulkanBackend& backend_;

@@ -312,36 +312,42 @@ class FrameRenderer {
   std::vector<bool> finite_;  ///< of each image of the chain, in a search
 };
 
-std::optional<scene::ImageView> Renderer::render(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics) {
+bool Renderer::draw(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics) {
   const FrameLayout layout(plan);
-  if (!check_images(plan, layout, diagnostics)) return std::nullopt;
+  if (!check_images(plan, layout, diagnostics)) return false;
   stats = {};
   stats.samples = plan.samples;
   stats.fused_posts = static_cast<int64_t>(layout.fused());
   stats.kept_images = plan.posts.steps.empty() ? 0 : static_cast<int64_t>(layout.most_images);
   const FrameLayout* used = &layout;
   std::optional<FrameLayout> apart;
-  if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false)) return std::nullopt;
+  if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false)) return false;
   if (!backend_.is_finite()) {
     used = &apart.emplace(plan, true);
     DrawStats searched;
     if (!check_images(plan, *used, diagnostics) ||
         !FrameRenderer(plan, *used, *this, searched, diagnostics).run(true))
-      return std::nullopt;
+      return false;
     stats.non_finite = std::move(searched.non_finite);
   }
-  const Slot &color = used->images[static_cast<size_t>(plan.posts.result)], &depth = used->views.back().depth;
-  return scene::ImageView{color.width, color.height, backend_.read(color), backend_.read(depth)};
+  color_ = used->images[static_cast<size_t>(plan.posts.result)];
+  depth_ = used->views.back().depth;
+  return true;
+}
+
+scene::ImageView Renderer::image() {
+  return {color_.width, color_.height, backend_.read(color_), backend_.read(depth_)};
 }
 
 bool render(const Plan& plan, backends::Backend& backend, backends::Image& image, DrawStats& stats,
             support::Diagnostics& diagnostics) {
-  const auto drawn = Renderer(backend).render(plan, stats, diagnostics);
-  if (!drawn) return false;
-  image.width = drawn->width;
-  image.height = drawn->height;
-  image.rgba.assign(drawn->rgba.begin(), drawn->rgba.end());
-  image.depth.assign(drawn->depth.begin(), drawn->depth.end());
+  Renderer renderer(backend);
+  if (!renderer.draw(plan, stats, diagnostics)) return false;
+  const scene::ImageView drawn = renderer.image();
+  image.width = drawn.width;
+  image.height = drawn.height;
+  image.rgba.assign(drawn.rgba.begin(), drawn.rgba.end());
+  image.depth.assign(drawn.depth.begin(), drawn.depth.end());
   return true;
 }
 

@@ -16,10 +16,11 @@ class Renderer {
   explicit Renderer(backends::Backend& backend) : backend_(backend) {}
 
   /// Draws the views in their order (vertex programs, clipping and snapping, pixel programs), then runs the posts over the
-  /// picture. Every backend takes the same steps on the same numbers. The image is valid until the backend draws again.
-  /// If a pixel is not finite, the frame is drawn once more, step by step, to find what made it so. Reports errors of the
-  /// device.
-  std::optional<scene::ImageView> render(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics);
+  /// picture. Every backend takes the same steps on the same numbers. If a pixel is not finite, the frame is drawn once
+  /// more, step by step, to find what made it so. Reports errors of the device.
+  bool draw(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics);
+  /// The picture that was drawn last; valid until the backend is used again. A device of its own gives it back only now.
+  scene::ImageView image();
 
  private:
   friend class FrameRenderer;
@@ -27,6 +28,7 @@ class Renderer {
   support::Array<float> clip_, clip_before_;
   std::vector<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
   std::vector<int32_t> triangles_;
+  backends::Slot color_, depth_;  ///< of the picture that was drawn last
 };
 
 /// Draws one frame; `image` receives a copy.
