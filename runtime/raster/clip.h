@@ -4,10 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "compiler/interface/pass_state.h"
+#include "compiler/support/memory.h"
+#include "runtime/raster/viewport.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::raster {
 
@@ -40,14 +44,61 @@ struct Surface {
   DepthBias bias = {};
 };
 
-/// Appends the surface's triangles to `triangles` (records of lower/frame_layout.h), in the order of its indices, and
-/// the records of the vertices that clipping makes to `vertices`. Width and height are 1 to 8192 pixels.
+/// Makes the triangles of a view. Keeps its memory for the next one.
+///
+/// `triangles` receives those of all surfaces (records of lower/frame_layout.h), in the order of the surfaces and of their
+/// indices; the records of the vertices that clipping makes are appended to `vertices`. Both have the same bits for any
+/// number of threads and lanes. Width and height are 1 to 8192 pixels.
 ///
 /// Drops triangles that are culled, have no area, cover no pixel centre of the image, or have a vertex that is not
-/// finite. Clips at the near and the far plane, 2048 pixels left of and above the image's first pixel, and 8190 pixels (or the
-/// image's size, if greater) right of and below it. Triangles that share an edge share both ends of what clipping
+/// finite. Clips at the near and the far plane, 2048 pixels left of and above the image's first pixel, and 8190 pixels (or
+/// the image's size, if greater) right of and below it. Triangles that share an edge share both ends of what clipping
 /// leaves of it.
-void clip_and_snap(const Surface& surface, int width, int height, std::vector<float>& vertices,
-                   std::vector<int32_t>& triangles);
+class Clipper {
+ public:
+  /// `lanes`: 4, 8 or 16, which the machine must have; 0: as many as it has.
+  explicit Clipper(int lanes = 0);
+
+  void run(std::span<const Surface> surfaces, int width, int height, threads::Workers& workers,
+           support::Array<float>& vertices, support::Array<int32_t>& triangles);
+
+  // The same in steps, for a caller that projects vertices as soon as they have their positions in clip space.
+
+  /// The positions of `surfaces` need not be known yet, only how many there are. The surfaces must outlive the other steps.
+  void begin(std::span<const Surface> surfaces, int width, int height);
+  /// Projects `count` vertices of a surface, from `first` on. Threads may project different vertices at the same time.
+  void project(size_t surface, size_t first, size_t count);
+  /// Makes the triangles, when all vertices are projected.
+  void finish(threads::Workers& workers, support::Array<float>& vertices, support::Array<int32_t>& triangles);
+
+ private:
+  /// What becomes of the triangles of a chunk that are cut.
+  struct Cut {
+    std::vector<float> vertices;     ///< records
+    std::vector<int32_t> triangles;  ///< records; ~i stands for the vertex i of the above
+    std::vector<int> counts;         ///< how many of `triangles` each of them leaves
+  };
+  /// Consecutive triangles of a surface.
+  struct Chunk {
+    size_t surface;
+    size_t first;  ///< in the surface
+    int count;
+    size_t kept_at;  ///< where its part of kept_ begins
+    int kept = 0;
+    std::unique_ptr<Cut> cut = nullptr;  ///< if triangles are cut
+  };
+
+  void decide(Chunk& chunk, std::span<const float> vertices);
+  void cut(Chunk& chunk, std::span<const float> vertices) const;
+  void write(const Chunk& chunk, int32_t first_made, int32_t* record) const;
+
+  int lanes_;
+  Viewport viewport_;
+  std::span<const Surface> surfaces_;
+  std::vector<size_t> first_corners_;  ///< of each surface in corners_
+  support::Array<Corner> corners_;
+  std::vector<Chunk> chunks_;
+  support::Array<uint16_t> kept_;  ///< by the chunks, see detail::DecideTriangles
+};
 
 }  // namespace isoshade::raster

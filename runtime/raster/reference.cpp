@@ -2,10 +2,14 @@
 #include "runtime/raster/reference.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 #include "compiler/functions/interpolation.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/lanes/lanes.h"
+#include "runtime/raster/clip_polygon.h"
 
 namespace isoshade::raster {
 namespace {
@@ -67,7 +71,92 @@ void draw(const int32_t* record, int id, const Box& area, std::span<int32_t> ids
   });
 }
 
+/// Clips the triangles of a surface, one after the other.
+class ReferenceClipper {
+ public:
+  ReferenceClipper(const Surface& surface, int width, int height, std::vector<float>& vertices,
+                   std::vector<int32_t>& triangles)
+      : surface_(surface), viewport_(width, height), vertices_(vertices), triangles_(triangles) {}
+
+  void triangle(std::span<const uint32_t> indices) {
+    Outside any = 0, all = static_cast<Outside>(~0u);
+    Polygon polygon;
+    for (const uint32_t index : indices) {
+      const float* p = surface_.clip.data() + size_t{4} * index;
+      ClipVertex vertex{{p[0], p[1], p[2], p[3]}, static_cast<int32_t>(surface_.first_vertex + index), {}};
+      const auto record = vertices_.begin() + static_cast<ptrdiff_t>(vertex.index) * lower::vertex_word::stride;
+      std::copy_n(record, lower::vertex_word::stride, vertex.attributes.begin());
+      polygon.add(vertex);
+      const Outside outside = viewport_.classify(vertex.point);
+      any |= outside;
+      all &= outside;
+    }
+    if ((any & unusable) || all != 0 || !clip(viewport_, any, polygon)) return;
+    for (int i = 0; i < polygon.count; ++i) store(polygon.vertices[static_cast<size_t>(i)]);
+    for (size_t i = 2; i < static_cast<size_t>(polygon.count); ++i) emit(polygon, {0, i - 1, i});
+  }
+
+ private:
+  void store(ClipVertex& vertex) {
+    if (vertex.index != made_by_clipping) return;
+    vertex.index = static_cast<int32_t>(vertices_.size() / lower::vertex_word::stride);
+    vertices_.insert(vertices_.end(), vertex.attributes.begin(), vertex.attributes.end());
+  }
+
+  void emit(const Polygon& polygon, std::array<size_t, 3> which) {
+    const auto corner = [&](size_t k) -> const Corner& { return polygon.corners[which[k]]; };
+    const Corner a = corner(0), b = corner(1), c = corner(2);
+    const int64_t area =
+        static_cast<int64_t>(b.x - a.x) * (c.y - a.y) - static_cast<int64_t>(b.y - a.y) * (c.x - a.x);
+    const bool front = (area < 0) != surface_.mirrored;  // y points down
+    if (area == 0 || surface_.state.cull == (front ? interface::Cull::front : interface::Cull::back)) return;
+    if (area < 0) std::swap(which[1], which[2]);
+    const auto [left, right] = std::minmax({a.x, b.x, c.x});
+    const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
+    if (centres_between(left, top, right, bottom).within(viewport_.pixels()).empty()) return;
+    const bool wide = right - left >= 1 << 15 || bottom - top >= 1 << 15;
+    namespace flag = lower::triangle_flag;
+    std::array<int32_t, word::stride> record{};
+    std::array<double, 3> z;
+    for (size_t k = 0; k < 3; ++k) {
+      record[word::vertex + k] = polygon.vertices[which[k]].index;
+      record[word::position + 2 * k] = corner(k).x;
+      record[word::position + 2 * k + 1] = corner(k).y;
+      z[k] = lanes::from_bits_normal(corner(k).depth);
+      record[word::inverse_w + k] = corner(k).inverse_w;
+    }
+    const bool over = surface_.state.depth == interface::DepthTest::always;
+    const bool keeps_depth = surface_.blended && surface_.state.depth_write == interface::DepthWrite::off;
+    record[word::object] = (surface_.object << flag::bits) | (over ? flag::over : 0) | (wide ? flag::wide : 0) |
+                           (front ? 0 : flag::back) | (surface_.cutout ? flag::cutout : 0) |
+                           (surface_.blended ? flag::blended : 0) | (keeps_depth ? flag::keeps_depth : 0);
+    if (surface_.bias.is_set()) {
+      const double z1 = z[1] - z[0], z2 = z[2] - z[0];
+      const double x1 = corner(1).x - corner(0).x, x2 = corner(2).x - corner(0).x;
+      const double y1 = corner(1).y - corner(0).y, y2 = corner(2).y - corner(0).y;
+      const double pixel = static_cast<double>(units) / static_cast<double>(std::abs(area));
+      const double slope = std::abs(z1 * y2 - z2 * y1) * pixel + std::abs(z2 * x1 - z1 * x2) * pixel;
+      for (double& depth : z)
+        depth = depth - (surface_.bias.slope * slope + surface_.bias.constant + surface_.bias.relative * depth);
+    }
+    for (size_t k = 0; k < 3; ++k) record[word::depth + k] = lanes::bits(static_cast<float>(z[k]));
+    triangles_.insert(triangles_.end(), record.begin(), record.end());
+  }
+
+  const Surface& surface_;
+  const Viewport viewport_;
+  std::vector<float>& vertices_;
+  std::vector<int32_t>& triangles_;
+};
+
 }  // namespace
+
+void clip_reference(const Surface& surface, int width, int height, std::vector<float>& vertices,
+                    std::vector<int32_t>& triangles) {
+  const lanes::FpGuard guard_floats;
+  ReferenceClipper clipper(surface, width, height, vertices, triangles);
+  for (size_t i = 0; i + 2 < surface.indices.size(); i += 3) clipper.triangle(surface.indices.subspan(i, 3));
+}
 
 void rasterize_reference(std::span<const int32_t> triangles, const Box& area, std::span<int32_t> ids,
                          std::span<float> depth, const IsDrawn& is_drawn) {

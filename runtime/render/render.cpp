@@ -67,7 +67,7 @@ class FrameRenderer {
       const std::span<const float> words(frame_.views[v].words);
       backend_.write(layout_.views[v].camera, words.first(lower::view_word::camera_words));
     }
-    memory_.vertices_ = frame_.vertices;
+    memory_.vertices_.assign(frame_.vertices.begin(), frame_.vertices.end());
     for (size_t v = 0; v < frame_.views.size(); ++v)
       if (!draw_view(v, search)) return false;
     if (plan_.motion && !draw_motion(*plan_.motion)) return false;
@@ -92,26 +92,34 @@ class FrameRenderer {
 
   NonFinite find(const Slot& slot) { return find_non_finite(backend_.read(slot), slot.width); }
 
+  /// The positions of the vertices of a draw, which stand first in the rest.
+  static std::span<const float> take_vertices(std::span<const float>& rest, const backends::Draw& draw) {
+    const size_t floats = size_t{4} * draw.vertex_count;
+    support::assert_that(floats <= rest.size(), "a backend left out vertices");
+    const std::span<const float> taken = rest.first(floats);
+    rest = rest.subspan(floats);
+    return taken;
+  }
+
   /// Runs the vertex programs of the view and makes triangles of their positions.
   bool make_triangles(const backends::ViewPass& pass) {
     if (!backend_.transform(pass, memory_.clip_, diagnostics_)) return false;
     const std::vector<backends::Draw>& draws = pass.view.draws;
     stats_.transform_seconds += lap();
     memory_.vertices_.resize(frame_.vertices.size());
-    memory_.triangles_.clear();
-    size_t place = 0;
+    std::vector<raster::Surface> surfaces;
+    std::span<const float> rest = memory_.clip_;
+    const backends::Target& target = pass.view.target;
     for (const backends::Draw& draw : draws) {
-      const size_t floats = size_t{4} * draw.vertex_count;
-      const std::span<const float> clip = std::span(memory_.clip_).subspan(std::exchange(place, place + floats), floats);
+      const std::span<const float> clip = take_vertices(rest, draw);
       // Where only depth counts, a blended draw is one that writes it or nothing.
-      const backends::Target& target = pass.view.target;
       const bool writes_depth = !draw.blended || draw.state.depth_write == interface::DepthWrite::on;
       if (target.has_color || writes_depth)
-        raster::clip_and_snap({clip, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored,
-                               draw.cutout, draw.blended && target.has_color, pass.view.depth_bias},
-                              target.width, target.height, memory_.vertices_, memory_.triangles_);
+        surfaces.push_back({clip, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout,
+                            draw.blended && target.has_color, pass.view.depth_bias});
     }
-    support::assert_that(place == memory_.clip_.size(), "a backend transformed another number of vertices");
+    support::assert_that(rest.empty(), "a backend transformed another number of vertices");
+    memory_.clipper_.run(surfaces, target.width, target.height, backend_.workers(), memory_.vertices_, memory_.triangles_);
     stats_.triangles += static_cast<int64_t>(memory_.triangles_.size()) / lower::triangle_word::stride;
     stats_.made_vertices +=
         static_cast<int64_t>(memory_.vertices_.size() - frame_.vertices.size()) / lower::vertex_word::stride;
@@ -211,26 +219,18 @@ class FrameRenderer {
     support::Array<float>&clip = memory_.clip_, &clip_before = memory_.clip_before_;
     if (!backend_.transform(before, clip_before, diagnostics_) || !backend_.transform(now, clip, diagnostics_))
       return false;
-    std::vector<float>& vertices = memory_.vertices_;
+    support::Array<float>& vertices = memory_.vertices_;
     vertices.clear();
-    std::vector<uint32_t> first_vertices;
-    size_t place = 0;
+    std::vector<raster::Surface> surfaces;
+    std::span<const float> rest = clip, rest_before = clip_before;
     for (const backends::Draw& draw : view.draws) {
-      const size_t floats = size_t{4} * draw.vertex_count;
-      first_vertices.push_back(static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride));
-      append_moved(draw, std::span(clip).subspan(place, floats), std::span(clip_before).subspan(place, floats));
-      place += floats;
+      const std::span<const float> positions = take_vertices(rest, draw);
+      const auto first_vertex = static_cast<uint32_t>(vertices.size() / lower::vertex_word::stride);
+      append_moved(draw, positions, take_vertices(rest_before, draw));
+      surfaces.push_back({positions, draw.indices, first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout,
+                          false, {}});
     }
-    memory_.triangles_.clear();
-    place = 0;
-    for (size_t d = 0; d < view.draws.size(); ++d) {
-      const backends::Draw& draw = view.draws[d];
-      const size_t floats = size_t{4} * draw.vertex_count;
-      raster::clip_and_snap({std::span<const float>(clip).subspan(std::exchange(place, place + floats), floats),
-                             draw.indices, first_vertices[d], draw.state, draw.object, draw.mirrored, draw.cutout,
-                             false, {}},
-                            width, height, vertices, memory_.triangles_);
-    }
+    memory_.clipper_.run(surfaces, width, height, backend_.workers(), vertices, memory_.triangles_);
     const auto& drawn = layout_.drawn_motion;
     if (!backend_.draw({.pass = now,
                         .vertices = vertices,

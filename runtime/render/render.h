@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "runtime/raster/clip.h"
 #include "runtime/render/plan.h"
 #include "runtime/scene/image_file.h"
 
@@ -26,8 +27,9 @@ class Renderer {
   friend class FrameRenderer;
   backends::Backend& backend_;
   support::Array<float> clip_, clip_before_;
-  std::vector<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
-  std::vector<int32_t> triangles_;
+  support::Array<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
+  support::Array<int32_t> triangles_;
+  raster::Clipper clipper_;
   backends::Slot color_, depth_;  ///< of the picture that was drawn last
 };
 

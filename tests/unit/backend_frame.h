@@ -42,14 +42,17 @@ struct TestFrame {
   ViewPass pass() const { return {frame, view()}; }
 
   /// The steps between transform and draw.
-  void assemble(std::span<const float> clip, std::vector<float>& vertices, std::vector<int32_t>& triangles) const {
-    vertices = frame.vertices;
+  void assemble(std::span<const float> clip, Backend& backend, support::Array<float>& vertices,
+                support::Array<int32_t>& triangles) const {
+    vertices.assign(frame.vertices.begin(), frame.vertices.end());
+    std::vector<raster::Surface> surfaces;
     for (const Draw& draw : view().draws) {
       const std::span<const float> of_draw = clip.first(size_t{4} * draw.vertex_count);
       clip = clip.subspan(of_draw.size());
-      raster::clip_and_snap({of_draw, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout},
-                            view().target.width, view().target.height, vertices, triangles);
+      surfaces.push_back(
+          {of_draw, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout});
     }
+    raster::Clipper().run(surfaces, view().target.width, view().target.height, backend.workers(), vertices, triangles);
   }
 
   static constexpr uint32_t vertices_of_object = 30;
@@ -131,11 +134,11 @@ inline bool draw(Backend& backend, const ViewPass& pass, std::span<const float> 
 inline Image render(Backend& backend, const TestFrame& test) {
   support::Diagnostics diagnostics;
   support::Array<float> clip;
-  std::vector<float> vertices;
-  std::vector<int32_t> triangles;
+  support::Array<float> vertices;
+  support::Array<int32_t> triangles;
   Image image;
   EXPECT_TRUE(backend.transform(test.pass(), clip, diagnostics)) << diagnostics.text();
-  test.assemble(clip, vertices, triangles);
+  test.assemble(clip, backend, vertices, triangles);
   EXPECT_TRUE(draw(backend, test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
   return image;
 }

@@ -1,6 +1,7 @@
 isoshade_test(raster_test
   SOURCES
     unit/raster_bins_test.cpp
+    unit/raster_clip_lanes_test.cpp
     unit/raster_clip_test.cpp
     unit/raster_tile_test.cpp
   LINKS isoshade_raster)

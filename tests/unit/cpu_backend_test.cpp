@@ -97,11 +97,11 @@ TEST_P(CpuLanes, ShadesEachVisiblePixelWithItsTriangleAndObject) {
     const Scene test(width, height, 60);
     Diagnostics diagnostics;
     support::Array<float> clip;
-    std::vector<float> vertices;
-    std::vector<int32_t> triangles;
+    support::Array<float> vertices;
+    support::Array<int32_t> triangles;
     Image image;
     ASSERT_TRUE(cpu->transform(test.pass(), clip, diagnostics)) << diagnostics.text();
-    test.assemble(clip, vertices, triangles);
+    test.assemble(clip, *cpu, vertices, triangles);
     ASSERT_TRUE(draw(*cpu, test.pass(), vertices, triangles, image, diagnostics)) << diagnostics.text();
 
     std::vector<int32_t> ids(static_cast<size_t>(width) * height);

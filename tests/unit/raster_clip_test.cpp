@@ -23,8 +23,8 @@ namespace word = lower::triangle_word;
 constexpr int stride = lower::vertex_word::stride;
 
 struct Clipped {
-  std::vector<float> vertices;
-  std::vector<int32_t> triangles;
+  support::Array<float> vertices;
+  support::Array<int32_t> triangles;
 
   int count() const { return static_cast<int>(triangles.size() / word::stride); }
   int at(int triangle, int field) const {
@@ -32,6 +32,12 @@ struct Clipped {
   }
   float number(int triangle, int field) const { return std::bit_cast<float>(at(triangle, field)); }
 };
+
+void clip_and_snap(const Surface& surface, int width, int height, support::Array<float>& vertices,
+                   support::Array<int32_t>& triangles) {
+  threads::Workers workers(1);
+  Clipper().run({&surface, 1}, width, height, workers, vertices, triangles);
+}
 
 /// Attributes are the clip-space position and zeros, so that what clipping makes can be checked.
 Clipped run(const std::vector<float>& clip, const std::vector<uint32_t>& indices, Cull cull, int width,
@@ -88,8 +94,8 @@ TEST(ClipAndSnap, FlagsBackFacesMirroredOnesAndCutOuts) {
   const std::vector<float> clip = {-1, -1, 0.5f, 1, 1, -1, 0.5f, 1, -1, 1, 0.5f, 1};
   namespace flag = lower::triangle_flag;
   const auto flags = [&](std::vector<uint32_t> indices, bool mirrored, bool cutout) {
-    std::vector<float> vertices(3 * stride);
-    std::vector<int32_t> triangles;
+    support::Array<float> vertices(3 * stride);
+    support::Array<int32_t> triangles;
     Surface surface;
     surface.clip = clip;
     surface.indices = indices;
@@ -110,8 +116,8 @@ TEST(ClipAndSnap, MirroredSurfacesCullTheOtherWinding) {
   const std::vector<float> clip = {-1, -1, 0.5f, 1, 1, -1, 0.5f, 1, -1, 1, 0.5f, 1};
   for (const Cull cull : {Cull::back, Cull::front})
     for (const bool turned : {false, true}) {
-      std::vector<float> vertices(3 * stride);
-      std::vector<int32_t> triangles;
+      support::Array<float> vertices(3 * stride);
+      support::Array<int32_t> triangles;
       const std::vector<uint32_t> indices = turned ? std::vector<uint32_t>{0, 2, 1} : one_triangle;
       Surface surface;
       surface.clip = clip;
@@ -141,8 +147,8 @@ TEST(ClipAndSnap, BiasMovesATriangleAwayByItsSlope) {
   // Depth grows by 1/16 a pixel to the right and falls by 1/32 a pixel downwards.
   const std::vector<float> clip = {-1, 1, 0.25f, 1, 1, 1, 0.75f, 1, -1, -1, 0, 1};
   const auto depths = [&](DepthBias bias) {
-    std::vector<float> vertices(3 * stride);
-    std::vector<int32_t> triangles;
+    support::Array<float> vertices(3 * stride);
+    support::Array<int32_t> triangles;
     Surface surface;
     surface.clip = clip;
     surface.indices = one_triangle;
