@@ -34,7 +34,6 @@ using support::Id;
 
 constexpr size_t vertex_chunk = 2048;
 constexpr size_t row_chunk = 2048;
-constexpr size_t triangle_chunk = 8192;
 
 /// The arrays that a call passes to generated code.
 class Buffers {
@@ -116,6 +115,7 @@ class CpuBackend final : public backends::Backend {
   bool bind(std::span<const ScreenPass> passes, Screens& screens, Diagnostics& diagnostics);
 
   KernelStore kernels_;
+  raster::Bins bins_;  ///< of the window that is drawn
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
   support::Array<float> layers_;
   std::atomic<bool> is_finite_ = true;  ///< what has been made since reserve()
@@ -247,15 +247,14 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
               .color = drawing.color.exists() ? layers_.data() + drawing.color.first : nullptr,
               .depth = layers_.data() + drawing.depth.first,
               .width = drawing.depth.width,
-              .bins = {}};
+              .bins = bins_};
   backends::resolve_color(view.background, drawing.side, job.background);
+  bins_.sort(triangles, grid, workers());
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
-  job.bins.resize(parts);
   std::vector<std::vector<bool>> programs(parts);
   workers().for_each(parts, [&](size_t part) {
-    const size_t first = part * triangle_chunk, end = std::min(first + triangle_chunk, count);
-    job.bins[part] = raster::Bins(triangles, static_cast<int>(first), static_cast<int>(end - first), grid);
-    programs[part] = programs_of(drawing.pass, triangles, first, end);
+    const size_t first = part * triangle_chunk;
+    programs[part] = programs_of(drawing.pass, triangles, first, std::min(first + triangle_chunk, count));
   });
   std::vector<bool> asked(frame.programs.size());
   for (const std::vector<bool>& seen : programs)

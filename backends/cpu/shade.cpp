@@ -145,15 +145,13 @@ void TilePainter::paint_opaque(const DrawJob& job) {
 
 void TilePainter::collect(const DrawJob& job, int tile) {
   runs_.clear();
-  for (const raster::Bins& bins : job.bins) {
-    const std::span<const int32_t> listed = opaque_of(job, bins.of(tile));
-    if (listed.empty()) continue;
-    if (runs_.empty()) tile_.clear();
-    rasterize(job, listed);
-    for (const int32_t triangle : listed) {
-      const int object = raster::triangle_at(job.triangles.data(), triangle).object();
-      if (runs_.empty() || runs_.back().object != object) runs_.push_back({triangle, object, 0});
-    }
+  const std::span<const int32_t> listed = opaque_of(job, job.bins.of(tile));
+  if (listed.empty()) return;
+  tile_.clear();
+  rasterize(job, listed);
+  for (const int32_t triangle : listed) {
+    const int object = raster::triangle_at(job.triangles.data(), triangle).object();
+    if (runs_.empty() || runs_.back().object != object) runs_.push_back({triangle, object, 0});
   }
 }
 
@@ -191,18 +189,17 @@ void TilePainter::cut_out(const DrawJob& job, std::span<const int32_t> listed, c
 
 void TilePainter::blend(const DrawJob& job, int tile) {
   const int32_t* const triangles = job.triangles.data();
-  bool is_clear = !runs_.empty(), changes_depth = false;
-  for (const raster::Bins& bins : job.bins) {
-    std::span<const int32_t> listed = bins.of(tile).subspan(opaque_of(job, bins.of(tile)).size());
-    if (!listed.empty() && !std::exchange(is_clear, true)) tile_.clear();
-    while (!listed.empty()) {
-      const raster::Triangle first = raster::triangle_at(triangles, listed.front());
-      size_t count = 1;
-      while (count < listed.size() && raster::triangle_at(triangles, listed[count]).object() == first.object()) ++count;
-      blend_object(job, listed.first(count), first);
-      changes_depth = changes_depth || !first.keeps_depth();
-      listed = listed.subspan(count);
-    }
+  std::span<const int32_t> listed = job.bins.of(tile).subspan(opaque_of(job, job.bins.of(tile)).size());
+  if (listed.empty()) return;
+  if (runs_.empty()) tile_.clear();
+  bool changes_depth = false;
+  while (!listed.empty()) {
+    const raster::Triangle first = raster::triangle_at(triangles, listed.front());
+    size_t count = 1;
+    while (count < listed.size() && raster::triangle_at(triangles, listed[count]).object() == first.object()) ++count;
+    blend_object(job, listed.first(count), first);
+    changes_depth = changes_depth || !first.keeps_depth();
+    listed = listed.subspan(count);
   }
   if (changes_depth) write_depth();
 }

@@ -37,7 +37,7 @@ struct DrawJob {
   float* color;
   float* depth;
   int width;
-  std::vector<raster::Bins> bins;  ///< one for each part of the triangles, in their order
+  const raster::Bins& bins;
 };
 
 /// Draws tiles one after the other. One for each thread: it holds several hundred kilobytes.

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/raster/bins.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "compiler/lower/frame_layout.h"
 #include "runtime/raster/tile.h"
 #include "runtime/raster/triangle.h"
 
 namespace isoshade::raster {
 namespace {
+
+constexpr size_t least_part = 2048;  ///< triangles that are worth a task
 
 constexpr int tiles_over(int first, int last) { return (last - first) / tile_size + 1; }
 
@@ -17,18 +23,12 @@ TileGrid::TileGrid(const Box& over)
 int TileGrid::x(int tile) const { return area.x0 + tile % columns * tile_size; }
 int TileGrid::y(int tile) const { return area.y0 + tile / columns * tile_size; }
 
-Bins::Bins(std::span<const int32_t> triangles, int first, int count, const TileGrid& grid) {
-  struct Entry {
-    int tile;
-    int triangle;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(static_cast<size_t>(count) + count / 4);
-
-  begins_.assign(static_cast<size_t>(grid.count()) + 1, 0);
+void Bins::list(std::span<const int32_t> triangles, int first, int count, const TileGrid& grid, Part& part) {
+  part.entries.clear();
+  part.places.assign(static_cast<size_t>(grid.count()), 0);
   const auto enter = [&](int tile, int triangle) {
-    ++begins_[static_cast<size_t>(tile) + 1];
-    entries.push_back({tile, triangle});
+    ++part.places[static_cast<size_t>(tile)];
+    part.entries.push_back({tile, triangle});
   };
   for (int i = first; i < first + count; ++i) {
     const Triangle triangle = triangle_at(triangles.data(), i);
@@ -47,11 +47,33 @@ Bins::Bins(std::span<const int32_t> triangles, int first, int count, const TileG
         if (edges.reach(box_at(grid.x(tile), grid.y(tile), tile_size, tile_size))) enter(tile, i);
       }
   }
+}
 
-  for (size_t tile = 1; tile < begins_.size(); ++tile) begins_[tile] += begins_[tile - 1];
-  std::vector<uint32_t> next(begins_.begin(), begins_.end() - 1);
-  triangles_.resize(entries.size());
-  for (const Entry& entry : entries) triangles_[next[entry.tile]++] = entry.triangle;
+void Bins::sort(std::span<const int32_t> triangles, const TileGrid& grid, threads::Workers& workers) {
+  const size_t count = triangles.size() / lower::triangle_word::stride;
+  const size_t tasks = std::min(count / least_part + 1, static_cast<size_t>(2 * workers.count()));
+  if (parts_.size() < tasks) parts_.resize(tasks);
+  const std::span parts = std::span(parts_).first(tasks);
+  workers.for_each(tasks, [&](size_t i) {
+    const size_t first = count * i / tasks, end = count * (i + 1) / tasks;
+    list(triangles, static_cast<int>(first), static_cast<int>(end - first), grid, parts[i]);
+  });
+
+  // A tile takes the triangles of each part in turn.
+  begins_.resize(static_cast<size_t>(grid.count()) + 1);
+  uint32_t next = 0;
+  for (size_t tile = 0; tile < static_cast<size_t>(grid.count()); ++tile) {
+    begins_[tile] = next;
+    for (Part& part : parts) next += std::exchange(part.places[tile], next);
+  }
+  begins_.back() = next;
+
+  triangles_.resize(next);
+  workers.for_each(tasks, [&](size_t i) {
+    Part& part = parts[i];
+    for (const Entry& entry : part.entries)
+      triangles_[part.places[static_cast<size_t>(entry.tile)]++] = entry.triangle;
+  });
 }
 
 }  // namespace isoshade::raster

@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "compiler/support/memory.h"
 #include "runtime/raster/triangle.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::raster {
 
@@ -22,13 +24,11 @@ struct TileGrid {
   int y(int tile) const;
 };
 
-/// The bins of a part of the triangles. Parts can be sorted in parallel; a tile then takes the bins of each part in
-/// turn.
+/// For each tile the triangles that may cover a pixel of it. Keeps its memory for the next image.
 class Bins {
  public:
-  Bins() = default;
-  /// Sorts `count` records of lower/frame_layout.h from the index `first` on.
-  Bins(std::span<const int32_t> triangles, int first, int count, const TileGrid& grid);
+  /// Sorts all triangles (records of lower/frame_layout.h).
+  void sort(std::span<const int32_t> triangles, const TileGrid& grid, threads::Workers& workers);
 
   /// The indices of the triangles that may cover a pixel of the tile, in their order.
   std::span<const int32_t> of(int tile) const {
@@ -36,8 +36,21 @@ class Bins {
   }
 
  private:
-  std::vector<uint32_t> begins_;  ///< where the indices of each tile begin in triangles_, and the end
-  std::vector<int32_t> triangles_;
+  struct Entry {
+    int tile;
+    int triangle;
+  };
+  /// Consecutive triangles, which one task sorts.
+  struct Part {
+    support::Array<Entry> entries;  ///< in the order of the triangles
+    std::vector<uint32_t> places;   ///< for each tile: how many, then where in triangles_ the next one belongs
+  };
+
+  static void list(std::span<const int32_t> triangles, int first, int count, const TileGrid& grid, Part& part);
+
+  std::vector<Part> parts_;
+  support::Array<uint32_t> begins_;  ///< where the indices of each tile begin in triangles_, and the end
+  support::Array<int32_t> triangles_;
 };
 
 }  // namespace isoshade::raster

@@ -14,6 +14,8 @@ namespace {
 
 using shapes::Shapes;
 
+threads::Workers workers(2);
+
 std::vector<int32_t> mixture(int width, int height) {
   Shapes shapes(width, height, 11);
   std::vector<int32_t> triangles;
@@ -25,7 +27,8 @@ std::vector<int32_t> mixture(int width, int height) {
 void expect_every_triangle_that_covers_a_pixel(const Box& area) {
   const std::vector<int32_t> triangles = mixture(300, 170);
   const TileGrid grid(area);
-  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  Bins bins;
+  bins.sort(triangles, grid, workers);
   const int width = area.x1 - area.x0 + 1, height = area.y1 - area.y0 + 1;
   std::vector<int32_t> ids(static_cast<size_t>(width) * height);
   std::vector<float> depth(ids.size());
@@ -54,7 +57,8 @@ TEST(Bins, ContainEveryTriangleThatCoversAPixelOfAPart) {
 TEST(Bins, KeepTheOrderOfTriangles) {
   const std::vector<int32_t> triangles = mixture(300, 170);
   const TileGrid grid(box_at(0, 0, 300, 170));
-  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  Bins bins;
+  bins.sort(triangles, grid, workers);
   for (int tile = 0; tile < grid.count(); ++tile) {
     const auto listed = bins.of(tile);
     EXPECT_TRUE(std::is_sorted(listed.begin(), listed.end()));
@@ -62,16 +66,25 @@ TEST(Bins, KeepTheOrderOfTriangles) {
   }
 }
 
-TEST(Bins, OfTriangleRangesConcatenateToTheWhole) {
-  const std::vector<int32_t> triangles = mixture(300, 170);
-  const int count = shapes::count(triangles);
+TEST(Bins, AreTheSameForAnyNumberOfThreads) {
+  std::vector<int32_t> triangles;
+  for (int i = 0; i < 30; ++i) {
+    const std::vector<int32_t> more = mixture(300, 170);
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  }
   const TileGrid grid(box_at(0, 0, 300, 170));
-  const Bins whole(triangles, 0, count, grid);
-  const Bins first(triangles, 0, 100, grid), second(triangles, 100, count - 100, grid);
-  for (int tile = 0; tile < grid.count(); ++tile) {
-    std::vector<int32_t> parts(first.of(tile).begin(), first.of(tile).end());
-    parts.insert(parts.end(), second.of(tile).begin(), second.of(tile).end());
-    EXPECT_TRUE(std::ranges::equal(parts, whole.of(tile)));
+  threads::Workers one(1);
+  Bins expected;
+  expected.sort(triangles, grid, one);
+  Bins bins;
+  for (const int count : {1, 2, 3, 16}) {
+    threads::Workers several(count);
+    for (const size_t part : {size_t{0}, triangles.size() / 5 / 16 * 16, triangles.size()}) {
+      // What was sorted before leaves nothing behind.
+      bins.sort(std::span(triangles).first(part), grid, several);
+      if (part < triangles.size()) continue;
+      for (int tile = 0; tile < grid.count(); ++tile) EXPECT_TRUE(std::ranges::equal(bins.of(tile), expected.of(tile)));
+    }
   }
 }
 
@@ -81,7 +94,8 @@ TEST(Bins, OmitTilesThatALongEdgeMisses) {
   shapes::append(triangles, {shapes::Position{0, 0}, {end, end}, {end - 512, end}}, {0.5f, 0.5f, 0.5f});
   const int size = 16 * tile_size;
   const TileGrid grid(box_at(0, 0, size, size));
-  const Bins bins(triangles, 0, 1, grid);
+  Bins bins;
+  bins.sort(triangles, grid, workers);
   int listed = 0;
   for (int tile = 0; tile < grid.count(); ++tile) listed += static_cast<int>(bins.of(tile).size());
   EXPECT_GE(listed, 16);

@@ -2,6 +2,7 @@
 // Triangles of the kinds that rasterisers get wrong, as records of lower/frame_layout.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -75,7 +76,7 @@ class Shapes {
       out.push_back({p, Position{q.x, p.y}, q});
       out.push_back({p, q, Position{p.x, q.y}});
     } else {
-      const std::vector<std::array<Position, 3>> closed = fan(point(0), between(5, 12), 256, width_ / 2);
+      const std::vector<std::array<Position, 3>> closed = fan(point(0), between(5, 12), 256, std::max(512, width_ / 2));
       out.insert(out.end(), closed.begin(), closed.end());
     }
   }

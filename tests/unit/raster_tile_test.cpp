@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
 #include <ostream>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "compiler/functions/interpolation.h"
 #include "runtime/lanes/lanes.h"
 #include "runtime/raster/bins.h"
 #include "runtime/raster/reference.h"
@@ -32,7 +36,9 @@ struct Visible {
 Visible by_tiles(Rasterize rasterize, const std::vector<int32_t>& triangles, int width, int height) {
   Visible result(width, height);
   const TileGrid grid(box_at(0, 0, width, height));
-  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  threads::Workers workers(1);
+  Bins bins;
+  bins.sort(triangles, grid, workers);
   const lanes::FpGuard guard_floats;
   for (int i = 0; i < grid.count(); ++i) {
     const int left = i % grid.columns * tile_size, top = i / grid.columns * tile_size;
@@ -60,7 +66,9 @@ Visible by_candidates(Rasterize rasterize, List list, const std::vector<int32_t>
   Visible result(width, height);
   const Box area = box_at(0, 0, width, height);
   const TileGrid grid(area);
-  const Bins bins(triangles, 0, shapes::count(triangles), grid);
+  threads::Workers workers(1);
+  Bins bins;
+  bins.sort(triangles, grid, workers);
   const lanes::FpGuard guard_floats;
   const auto tile = std::make_unique<Tile>();
   const auto found = std::make_unique<Candidates>();
@@ -179,6 +187,45 @@ TEST_P(TileAtLanes, CutOutsMatchTheReferenceRasterizer) {
     }
 }
 
+// Depths an ULP apart, so that what is left out as hidden must be hidden in every pixel.
+TEST_P(TileAtLanes, LeavesOutOnlyWhatIsHidden) {
+  for (unsigned round = 0; round < 12; ++round) {
+    Shapes shapes(90, 70, 31 + round);
+    float steps[4] = {shapes.fraction()};
+    for (int i = 1; i < 4; ++i) steps[i] = std::nextafter(steps[i - 1], 2.0f);
+    const auto depth = [&] { return steps[shapes.between(0, 3)]; };
+    std::vector<int32_t> triangles;
+    for (int layer = 0; layer < 6; ++layer) {
+      // Behind what follows, in part; then many in front of, behind and between those.
+      for (const auto& t : shapes.of("general", 30)) shapes::append(triangles, t, {steps[0], depth(), steps[layer / 2]});
+      for (const char* kind : {"subpixel", "small", "sliver", "on_centres"})
+        for (const auto& t : shapes.of(kind, 250)) {
+          const bool is_flat = shapes.between(0, 1) == 0;
+          const float flat = depth();
+          shapes::append(triangles, t, is_flat ? std::array{flat, flat, flat} : std::array{depth(), depth(), depth()});
+          if (round % 3 == 2 && shapes.between(0, 40) == 0 && !triangles.empty())
+            triangles[triangles.size() - word::stride + word::object] |= lower::triangle_flag::over;
+        }
+    }
+    const Visible expected = plainly(triangles, 90, 70);
+    EXPECT_EQ(differences(expected, by_tiles(GetParam().rasterize, triangles, 90, 70)), 0);
+    for (size_t i = word::object; i < triangles.size(); i += 3 * word::stride)
+      triangles[i] |= lower::triangle_flag::cutout;
+    EXPECT_EQ(differences(plainly(triangles, 90, 70),
+                          by_candidates(GetParam().rasterize, GetParam().list, triangles, 90, 70)),
+              0);
+  }
+}
+
+TEST_P(TileAtLanes, DrawsNothingWhereDepthIsNegative) {
+  std::vector<int32_t> triangles;
+  Shapes shapes(64, 64, 8);
+  for (const char* kind : shapes::kinds)
+    for (const auto& t : shapes.of(kind, 50)) shapes::append(triangles, t, {-shapes.fraction(), -0.5f, -0.0f});
+  const Visible seen = by_tiles(GetParam().rasterize, triangles, 64, 64);
+  for (const int32_t id : seen.ids) EXPECT_EQ(id, -1);
+}
+
 TEST_P(TileAtLanes, CoversClosedFansExactlyOnce) {
   Shapes shapes(64, 64, 7);
   for (int round = 0; round < 200; ++round) {
@@ -253,6 +300,29 @@ INSTANTIATE_TEST_SUITE_P(Raster, TileAtLanes,
                                          Variant{8, detail::rasterize_tile_8, detail::list_candidates_8},
                                          Variant{16, detail::rasterize_tile_16, detail::list_candidates_16}),
                          [](const auto& info) { return std::to_string(info.param.lanes); });
+
+// The bound that tile_lanes.h derives.
+TEST(Tile, InterpolatedDepthExceedsTheNearestVertexByRoundingOnly) {
+  const lanes::FpGuard guard_floats;
+  std::mt19937 random(3);
+  const auto bits = [&](int most) { return static_cast<int64_t>(random() & ((uint64_t{1} << most) - 1)); };
+  double largest = 0;
+  for (int i = 0; i < 3'000'000; ++i) {
+    float edges[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+      edges[k] = static_cast<float>(bits(static_cast<int>(random() % 15 + 16)) * (i % 3 == 0 ? 32769 : 1));
+      z[k] = std::ldexp(static_cast<float>(bits(24)), -24 - static_cast<int>(random() % 20));
+    }
+    if (i % 2 == 0) z[1] = z[2] = z[0];
+    if (edges[0] + edges[1] + edges[2] == 0.0f) continue;
+    const float nearest = std::max({z[0], z[1], z[2]});
+    const float depth = functions::interpolate_depth<float>({edges[0], edges[1], edges[2]}, z[0], z[1], z[2]);
+    ASSERT_LE(depth, nearest * (1.0f + 0x1p-20f));
+    if (nearest > 0) largest = std::max(largest, static_cast<double>(depth) / nearest - 1);
+  }
+  EXPECT_GT(largest, 0x1p-24);  // it does exceed it
+  EXPECT_LT(largest, 0x1p-21);
+}
 
 TEST(Tile, IndexInvertsItsCoordinates) {
   for (int i = 0; i < tile_pixels; ++i) EXPECT_EQ(tile_index(tile_x(i), tile_y(i)), i);
