@@ -34,6 +34,7 @@ using support::Id;
 
 constexpr size_t vertex_chunk = 2048;
 constexpr size_t row_chunk = 2048;
+constexpr size_t triangle_chunk = 8192;
 
 /// The arrays that a call passes to generated code.
 class Buffers {
