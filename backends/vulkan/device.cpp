@@ -169,6 +169,7 @@ const vk::raii::CommandBuffer& Device::Impl::begin(const ImagesRead& images) {
   commands.reset();
   commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   ++recording;
+  state = {};
   timed.clear();
   if (*timestamps) commands.resetQueryPool(*timestamps, 0, 2 * max_timed_steps);
   read(images);

@@ -107,6 +107,14 @@ inline constexpr uint32_t max_layers_at_once = 8;
 /// Steps of a recording whose time is taken.
 inline constexpr uint32_t max_timed_steps = 32;
 
+/// What a recording has bound and set.
+struct State {
+  std::optional<uint32_t> pipeline;
+  vk::DescriptorSet set;
+  std::optional<std::pair<int, int>> viewport;  ///< the pixel of the view at the attachments' first
+  std::optional<vk::Rect2D> scissor;
+};
+
 /// The attachments of tables of one record size; grows with the rows.
 struct TableAttachments {
   int height = 0;
@@ -179,9 +187,10 @@ struct Device::Impl {
   DrawnView record_view(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
                         const float (&background)[4], const Window& window, bool has_color);
 
-  void record(const vk::raii::CommandBuffer& commands, const Call& call) const;
+  /// Records what differs from the state that the recording has, and a draw. Drivers look at state that is set again.
+  void record(const Call& call);
   /// With the attachments' first pixel at (x, y) of the view.
-  void record_at(const vk::raii::CommandBuffer& commands, std::span<const Call> calls, int x, int y) const;
+  void record_at(std::span<const Call> calls, int x, int y);
 
   std::unique_ptr<Instance> instance;
   vk::raii::PhysicalDevice physical;
@@ -203,6 +212,7 @@ struct Device::Impl {
   vk::raii::DescriptorPool descriptor_pool{nullptr};
   std::array<DescriptorSet, max_sets> sets;
   vk::DescriptorSet current_set;
+  State state;  ///< of the recording
   uint64_t generation = 1;  ///< a new number whenever a buffer or an image is made
   uint64_t recording = 0;
   vk::raii::Sampler sampler{nullptr};

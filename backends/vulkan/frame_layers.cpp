@@ -111,7 +111,7 @@ bool Device::Impl::finish_with_check(size_t first, size_t floats) {
     commands.beginRenderPass(
         {.renderPass = *render_pass(Output::buffer, 0), .framebuffer = *no_target, .renderArea = pixel},
         vk::SubpassContents::eInline);
-    record(commands, {.pipeline = *finite_check,
+    record({.pipeline = *finite_check,
                       .push = {.first = static_cast<int32_t>(first), .count = static_cast<int32_t>(floats)},
                       .vertex_count = static_cast<uint32_t>(calls),
                       .scissor = {0, 0, 1, 1}});

@@ -93,22 +93,31 @@ class PassEncoder {
 
 }  // namespace
 
-void Device::Impl::record(const vk::raii::CommandBuffer& to, const Call& call) const {
-  to.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
-  to.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, current_set, {});
-  to.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
-                         call.push);
-  // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
-  constexpr float edge = guard_band;
-  const auto x = static_cast<float>(call.push.origin_x), y = static_cast<float>(call.push.origin_y);
-  to.setViewport(0, vk::Viewport{.x = -edge - x,
-                                 .y = -edge - y,
-                                 .width = 2 * edge,
-                                 .height = 2 * edge,
-                                 .minDepth = 0,
-                                 .maxDepth = 1});
-  to.setScissor(0, area(moved(call.scissor, call.push.origin_x, call.push.origin_y)));
-  to.draw(call.vertex_count, 1, call.first_vertex, 0);
+void Device::Impl::record(const Call& call) {
+  if (state.pipeline != call.pipeline)
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
+  if (state.set != current_set)
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, current_set, {});
+  state.pipeline = call.pipeline;
+  state.set = current_set;
+  commands.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
+                               call.push);
+  const std::pair origin{call.push.origin_x, call.push.origin_y};
+  if (state.viewport != origin) {
+    // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
+    constexpr float edge = guard_band;
+    commands.setViewport(0, vk::Viewport{.x = -edge - static_cast<float>(origin.first),
+                                         .y = -edge - static_cast<float>(origin.second),
+                                         .width = 2 * edge,
+                                         .height = 2 * edge,
+                                         .minDepth = 0,
+                                         .maxDepth = 1});
+    state.viewport = origin;
+  }
+  const vk::Rect2D scissor = area(moved(call.scissor, origin.first, origin.second));
+  if (state.scissor != scissor) commands.setScissor(0, scissor);
+  state.scissor = scissor;
+  commands.draw(call.vertex_count, 1, call.first_vertex, 0);
 }
 
 void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output) {
@@ -119,7 +128,7 @@ void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output
   {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::vertices);
     const PassEncoder pass(commands, impl_->render_pass(Output::buffer, 0), impl_->no_target, area(1, 1), {});
-    for (const Call& call : calls) impl_->record(commands, call);
+    for (const Call& call : calls) impl_->record(call);
   }
   if (own_memory) {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
@@ -203,11 +212,11 @@ void Device::Impl::prepare_layers() {
   made.depth_copying = make_framebuffer(Output::depth_copy, std::array{depth}, width, height);
 }
 
-void Device::Impl::record_at(const vk::raii::CommandBuffer& to, std::span<const Call> calls, int x, int y) const {
+void Device::Impl::record_at(std::span<const Call> calls, int x, int y) {
   for (Call call : calls) {
     call.push.origin_x = x;
     call.push.origin_y = y;
-    record(to, call);
+    record(call);
   }
 }
 
@@ -228,14 +237,14 @@ void Device::Impl::draw_group(const LayerGroup& group, const Attachment& depth, 
       const std::array<vk::ClearValue, 2> nothing{};
       const PassEncoder pass(commands, render_pass(Output::visibility, 1), made.visibility[turn], group_area, nothing);
       commands.beginQuery(*samples_passed, query, {});
-      record_at(commands, visibility, x, y);
+      record_at(visibility, x, y);
       commands.endQuery(*samples_passed, query);
     }
     copy_backdrop(commands, attachments.color.image, made.backdrop.image, group_area);
     const bool deep = group.writes_depth;
     const PassEncoder pass(commands, render_pass(deep ? Output::deep_layer : Output::layer, deep ? 2 : 1),
                            deep ? made.deep_blending : made.blending, group_area, {});
-    record_at(commands, group.blending, x, y);
+    record_at(group.blending, x, y);
   };
   // A device with memory of its own waits for the host longer than it takes for a layer that shows nothing.
   const uint32_t at_once = own_memory ? max_layers_at_once : 1;
@@ -274,14 +283,14 @@ Device::Impl::DrawnView Device::Impl::record_view(std::span<const Call> visibili
     const TimedStep step(*this, &DeviceSeconds::visibility);
     const std::array<vk::ClearValue, 2> nothing{};
     const PassEncoder pass(commands, render_pass(Output::visibility, 1), attachments.visibility, all, nothing);
-    record_at(commands, visibility, origin_x, origin_y);
+    record_at(visibility, origin_x, origin_y);
   }
   if (has_color) {
     const TimedStep step(*this, &DeviceSeconds::shading);
     const vk::ClearValue backdrop{
         vk::ClearColorValue{std::array{background[0], background[1], background[2], background[3]}}};
     const PassEncoder pass(commands, render_pass(Output::color, 1), attachments.shading, all, {&backdrop, 1});
-    record_at(commands, color, origin_x, origin_y);
+    record_at(color, origin_x, origin_y);
   }
   if (!has_layers) return drawn;
   change_layout(commands, attachments.depth.image, depth_format, vk::ImageLayout::eTransferSrcOptimal,
@@ -290,7 +299,7 @@ Device::Impl::DrawnView Device::Impl::record_view(std::span<const Call> visibili
     const vk::ClearValue nothing{};
     const PassEncoder pass(commands, render_pass(Output::depth_copy, 1), attachments.layers.depth_copying, all,
                            {&nothing, 1});
-    record_at(commands, {&*layers.copy_depth, 1}, origin_x, origin_y);
+    record_at({&*layers.copy_depth, 1}, origin_x, origin_y);
   }
   for (const LayerGroup& group : layers.groups) draw_group(group, *drawn.depth, origin_x, origin_y);
   change_layout(commands, drawn.depth->image, drawn.depth_format, vk::ImageLayout::eShaderReadOnlyOptimal,
@@ -357,7 +366,7 @@ bool Device::run_screen(PipelineIndex pipeline, int width, int height, size_t pl
     const vk::ClearValue nothing{};
     const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), impl_->attachments.shading,
                            area(width, height), {&nothing, 1});
-    impl_->record(commands, {.pipeline = pipeline, .scissor = {0, 0, width, height}});
+    impl_->record({.pipeline = pipeline, .scissor = {0, 0, width, height}});
   }
   {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
@@ -384,7 +393,7 @@ void Device::run_screen(PipelineIndex pipeline, int width, int height, int first
       const vk::ClearValue nothing{};
       const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), attachments.shading,
                              area(width, height), {&nothing, 1});
-      impl_->record(commands, call);
+      impl_->record(call);
     }
     {
       const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
@@ -434,7 +443,7 @@ void Device::run_table(PipelineIndex pipeline, uint32_t attachments, size_t rows
     const std::vector<vk::ClearValue> nothing(attachments, vk::ClearValue{});
     const PassEncoder pass(commands, impl_->render_pass(Output::words, attachments), table.framebuffer,
                            area(table_width, height), nothing);
-    impl_->record(commands, call);
+    impl_->record(call);
   }
   {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
