@@ -40,8 +40,9 @@ struct Image {
 /// have the size of the image, or if memory runs out.
 ISOSHADE_API std::string hash_of(const Image& image) noexcept;
 
-/// Writes a PNG (8 bits, encoded) or an OpenEXR file (floats as they are, with depth), by the ending of the path; whole
-/// or not at all.
+/// Writes PNG, JPEG or PPM (8 bits, encoded), OpenEXR (floats as they are, with depth) or PFM (floats of the colors), by the
+/// ending of the path: .png, .jpg, .ppm, .exr, .pfm. Warns if a format without alpha loses it. Writes the file whole or not
+/// at all.
 ISOSHADE_API Outcome write_image(const std::string& path, const Image& image) noexcept;
 
 struct Comparison {

@@ -38,9 +38,10 @@ Outcome write_image(const std::string& path, const Image& image) noexcept {
     }
     const std::string file = path == "-" ? "./-" : path;
     const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
-    const auto encoding = image.srgb ? scene::Encoding::srgb : scene::Encoding::linear;
-    return scene::check_image_path(file, diagnostics) &&
-           scene::write_image(file, view, encoding, image.exposure, diagnostics);
+    scene::WriteOptions options;
+    options.encoding = image.srgb ? scene::Encoding::srgb : scene::Encoding::linear;
+    options.exposure = image.exposure;
+    return scene::write_image(file, view, options, diagnostics);
   });
 }
 

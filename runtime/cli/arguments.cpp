@@ -142,9 +142,11 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   render_app->add_option("SCENE", render.scene, "A scene document")->required();
   render_app
       ->add_option("-o,--output", render.output,
-                   "FILE.png (encoded, 8 bits) or FILE.exr (linear floats, with depth). With --frames a name with a field "
-                   "for the number, frame_%04d.png, or one FILE.apng or FILE.gif")
+                   "FILE.png, FILE.jpg or FILE.ppm (encoded, 8 bits), FILE.exr (linear floats, with depth) or FILE.pfm "
+                   "(linear floats of the colors). With --frames a name with a field for the number, frame_%04d.png, or one "
+                   "FILE.apng or FILE.gif, or - for all frames one after the other")
       ->required();
+  add_output_choice(*render_app, render.output_choice, true);
   render_app
       ->add_option(
           "--backend", render.backend,
@@ -181,7 +183,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->take_all()
       ->expected(1)
       ->required();
-  sheet_app->add_option("-o,--output", sheet.output, "FILE.png")->required();
+  sheet_app->add_option("-o,--output", sheet.output, "FILE.png, FILE.jpg or FILE.ppm")->required();
+  add_output_choice(*sheet_app, sheet.output_choice, false);
   sheet_app->add_option("--backend", sheet.backend, "cpu, vulkan or interpreter")
       ->check(compared_names)
       ->capture_default_str();

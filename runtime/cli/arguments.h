@@ -45,6 +45,13 @@ struct SceneChanges {
   std::optional<int> samples;         ///< per pixel
 };
 
+/// How the image file of a subcommand is written.
+struct OutputChoice {
+  std::string format;          ///< an entry of scene::image_formats(); empty: as the name ends, PNG for "-"
+  std::string compression;     ///< an entry of scene::lossless_compressions; empty: zip
+  std::optional<int> quality;  ///< of JPEG
+};
+
 struct CompileArguments {
   std::string graph;
   std::string output;
@@ -69,6 +76,7 @@ struct FrameTimes {
 struct RenderArguments {
   std::string scene;
   std::string output;
+  OutputChoice output_choice;
   std::string backend = "cpu";
   std::optional<Size> size;
   std::optional<FrameTimes> frames;
@@ -89,6 +97,7 @@ struct VariedParameter {
 struct SheetArguments {
   std::string scene;
   std::string output;
+  OutputChoice output_choice;
   std::vector<VariedParameter> axes;  ///< 1 or 2: along columns, along rows
   std::string backend = "cpu";
   std::optional<Size> size;  ///< of each picture

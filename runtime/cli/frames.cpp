@@ -85,8 +85,18 @@ class FrameSequence {
 
  private:
   bool check_output() {
-    if (format_) return true;
-    if (numbered_) return scene::check_image_path(numbered_->of(0), all_);
+    const OutputChoice& choice = arguments_.output_choice;
+    if (format_) {
+      if (choice.format.empty() && choice.compression.empty() && !choice.quality) return true;
+      all_.report(support::Id::unwritable_file,
+                  "--format, --compression and --quality are not for one file of all frames")
+          .suggest("leave them out, or write frame_%04d.png");
+      return false;
+    }
+    if (numbered_ || arguments_.output == "-") {
+      output_ = image_output(path_of(0), choice, arguments_.choice.threads, all_);
+      return output_.has_value();
+    }
     all_.report(support::Id::unwritable_file,
                 support::quote(arguments_.output) + " does not tell the names of the frames")
         .note("the name needs exactly one field for the number, %d or %04d; a percent sign is written %%")
@@ -94,7 +104,7 @@ class FrameSequence {
     return false;
   }
 
-  std::string path_of(int frame) const { return format_ ? arguments_.output : numbered_->of(frame); }
+  std::string path_of(int frame) const { return numbered_ && !format_ ? numbered_->of(frame) : arguments_.output; }
 
   float time_of(int frame) const {
     const double first = static_cast<double>(times_.first), last = static_cast<double>(times_.last);
@@ -132,16 +142,20 @@ class FrameSequence {
 
   bool write(int frame, const scene::Scene& scene, const backends::Image& image, Diagnostics& diagnostics) {
     const scene::Output& output = scene.output;
-    if (!format_)
-      return scene::write_image(path_of(frame), {image.width, image.height, image.rgba, image.depth}, output.encoding,
-                                output.exposure, diagnostics);
+    const int threads = arguments_.choice.threads;
+    if (output_) {
+      output_->options.encoding = output.encoding;
+      output_->options.exposure = output.exposure;
+      return scene::write_image(path_of(frame), *output_->format, {image.width, image.height, image.rgba, image.depth},
+                                output_->options, diagnostics);
+    }
     if (!file_) {
       // In real time; a single picture has no next one.
       const double length = static_cast<double>(times_.last) - static_cast<double>(times_.first);
       const double seconds = length > 0 && times_.count > 1 ? length / (times_.count - 1) : 1 / static_cast<double>(scene.frames_per_second);
-      file_.emplace(*format_, image.width, image.height, seconds);
+      file_.emplace(*format_, image.width, image.height, seconds, threads);
     }
-    file_->add(scene::encode(image.rgba, output.encoding, output.exposure));
+    file_->add(scene::encode(image.rgba, output.encoding, output.exposure, scene::Alpha::straight, threads));
     return true;
   }
 
@@ -151,6 +165,7 @@ class FrameSequence {
   FrameTimes times_;
   std::optional<scene::AnimationFormat> format_;
   std::optional<NumberedPath> numbered_;
+  std::optional<ImageOutput> output_;  ///< of images one by one
   SceneRenderer renderer_;
   std::optional<scene::AnimationFile> file_;
 };

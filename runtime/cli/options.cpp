@@ -5,6 +5,7 @@
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/parse_number.h"
 #include "runtime/cli/argument_texts.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::cli {
 
@@ -99,13 +100,29 @@ void add_lanes(CLI::App& app, BackendChoice& choice) {
 }
 
 void add_choice(CLI::App& app, BackendChoice& choice, bool has_vulkan) {
-  app.add_option("--threads", choice.threads, "Threads of the cpu backend (default: one for each core)")
+  app.add_option("--threads", choice.threads, "Threads of the cpu backend and for writing files (default: one for each core)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--cxx", choice.compiler, "Compiler for generated C++ (default: $ISOSHADE_CXX, c++, g++, clang++)");
   if (!has_vulkan) return;
   app.add_option("--device", choice.device, "Vulkan device: part of its name, or its number in `isoshade devices`");
   app.add_option("--division", choice.division, "Division on vulkan: native or exact (default: as the probe decides)")
       ->check(division_names);
+}
+
+void add_output_choice(CLI::App& app, OutputChoice& choice, bool with_floats) {
+  std::vector<std::string> formats, compressions;
+  for (const scene::ImageFormat& format : scene::image_formats())
+    if (format.write_bytes != nullptr || (with_floats && format.write_floats != nullptr))
+      formats.emplace_back(format.name);
+  app.add_option("--format", choice.format,
+                 "Format of the output, if its name does not tell; `-o -` writes to standard output, by default a PNG")
+      ->check(CLI::IsMember(formats));
+  app.add_option("--quality", choice.quality, "Quality of a JPEG (default: 90); from 90 on, colors have the full resolution")
+      ->check(CLI::Range(1, 100));
+  if (!with_floats) return;
+  for (const auto& [name, compression] : scene::lossless_compressions) compressions.emplace_back(name);
+  app.add_option("--compression", choice.compression, "Compression of an EXR file, all without loss (default: zip)")
+      ->check(CLI::IsMember(compressions));
 }
 
 void add_changes(CLI::App& app, SceneChanges& changes) {

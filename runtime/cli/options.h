@@ -19,6 +19,8 @@ void add_fail_on_nan(CLI::App& app, bool& fail);
 void add_precision(CLI::App& app, functions::Tier& precision);
 void add_lanes(CLI::App& app, BackendChoice& choice);
 void add_choice(CLI::App& app, BackendChoice& choice, bool has_vulkan = true);
+/// --format and --quality; `with_floats`: also formats of floats, and --compression.
+void add_output_choice(CLI::App& app, OutputChoice& choice, bool with_floats);
 void add_changes(CLI::App& app, SceneChanges& changes);
 
 }  // namespace isoshade::cli

@@ -60,7 +60,8 @@ namespace {
 /// Returns the exit code.
 int render_to_file(const RenderArguments& arguments, const Common& common,
                    support::Diagnostics& diagnostics) {
-  if (!scene::check_image_path(arguments.output, diagnostics)) return failure;
+  auto output = image_output(arguments.output, arguments.output_choice, arguments.choice.threads, diagnostics);
+  if (!output) return failure;
   const auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
   if (!scene) return failure;
   SceneRenderer renderer(arguments, common);
@@ -70,9 +71,9 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
   render::DrawStats stats;
   if (!renderer.draw(*plan, image, stats, diagnostics)) return failure;
   const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
-  if (!scene::write_image(arguments.output, view, scene->output.encoding, scene->output.exposure,
-                          diagnostics))
-    return failure;
+  output->options.encoding = scene->output.encoding;
+  output->options.exposure = scene->output.exposure;
+  if (!scene::write_image(arguments.output, *output->format, view, output->options, diagnostics)) return failure;
   render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
   if (!arguments.fail_on_nan || stats.non_finite.none()) return success;
   std::fputs(not_finite_text, stderr);

@@ -42,6 +42,28 @@ bool may_write(const std::string& path, support::Diagnostics& diagnostics) {
   return false;
 }
 
+std::optional<ImageOutput> image_output(const std::string& path, const OutputChoice& choice, int threads,
+                                        support::Diagnostics& diagnostics) {
+  ImageOutput output;
+  output.format = scene::output_format(path, choice.format, diagnostics);
+  if (output.format == nullptr) return std::nullopt;
+  output.options.threads = threads;
+  output.options.quality = choice.quality.value_or(output.options.quality);
+  for (const auto& [name, compression] : scene::lossless_compressions)
+    if (choice.compression == name) output.options.compression = compression;
+  const auto needs = [&](const char* option, const std::string& format) {
+    if (output.format->name == format) return true;
+    diagnostics
+        .report(support::Id::missing_argument,
+                std::string(option) + " needs the format " + format + ", not " + std::string(output.format->name))
+        .suggest("end the name of the output in ." + format + ", or leave " + option + " out");
+    return false;
+  };
+  if (!choice.compression.empty() && !needs("--compression", "exr")) return std::nullopt;
+  if (choice.quality && !needs("--quality", "jpg")) return std::nullopt;
+  return output;
+}
+
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics) {
   if (std::count(inputs.begin(), inputs.end(), "-") <= 1) return true;
   diagnostics

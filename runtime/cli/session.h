@@ -10,6 +10,7 @@
 #include "backends/backend.h"
 #include "compiler/check/library.h"
 #include "runtime/cli/arguments.h"
+#include "runtime/scene/image_file.h"
 
 namespace isoshade::scene {
 struct Scene;
@@ -39,6 +40,16 @@ std::optional<scene::Scene> load_scene(const std::string& path, const SceneChang
 /// Returns false, with a diagnostic, if the file has been read in this run, by whatever path. Call it after reading all
 /// inputs and before computing.
 bool may_write(const std::string& path, support::Diagnostics& diagnostics);
+
+/// How a subcommand writes its image.
+struct ImageOutput {
+  const scene::ImageFormat* format = nullptr;
+  scene::WriteOptions options;  ///< encoding and exposure are the scene's
+};
+
+/// Nothing, with a diagnostic, if the format is not known or an option does not concern it. Call it before rendering.
+std::optional<ImageOutput> image_output(const std::string& path, const OutputChoice& choice, int threads,
+                                        support::Diagnostics& diagnostics);
 
 /// Returns false, with a diagnostic, if "-" occurs more than once among the inputs.
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics);

@@ -6,7 +6,6 @@
 #include "runtime/cli/caption.h"
 #include "runtime/cli/session.h"
 #include "runtime/render/render.h"
-#include "runtime/scene/encode.h"
 #include "runtime/scene/image_file.h"
 #include "runtime/scene/load.h"
 #include "runtime/scene/output_file.h"
@@ -76,9 +75,12 @@ void write_captions(Canvas& canvas, const Layout& layout, const std::vector<Vari
 }
 
 int render_sheet(const SheetArguments& arguments, const Common& common, support::Diagnostics& diagnostics) {
-  if (!arguments.output.ends_with(".png") && arguments.output != "-") {
+  auto output = image_output(arguments.output, arguments.output_choice, arguments.choice.threads, diagnostics);
+  if (!output) return failure;
+  const scene::ImageFormat& format = *output->format;
+  if (format.write_bytes == nullptr) {
     diagnostics
-        .report(support::Id::unwritable_file, "a sheet is a PNG file, not " + support::quote(arguments.output))
+        .report(support::Id::unwritable_file, "a sheet has 8 bits per channel, and " + support::quote(arguments.output) + " floats")
         .suggest("end the name in .png");
     return failure;
   }
@@ -118,14 +120,16 @@ int render_sheet(const SheetArguments& arguments, const Common& common, support:
       backends::Image image;
       render::DrawStats stats;
       if (!render::render(*plan, *backend, image, stats, diagnostics)) return failure;
+      output->options.encoding = scene->output.encoding;
+      output->options.exposure = scene->output.exposure;
+      const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
       canvas->place(layout->x(static_cast<int>(column)), layout->y(static_cast<int>(row)), image.width,
-                    scene::encode(image.rgba, scene->output.encoding, scene->output.exposure));
+                    scene::encode_for(format, view, output->options, arguments.output, diagnostics));
       render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
     }
   }
-  return scene::write_file(arguments.output, scene::png(canvas->width(), canvas->height(), canvas->rgba()), diagnostics)
-             ? success
-             : failure;
+  const std::string bytes = format.write_bytes({canvas->width(), canvas->height(), canvas->rgba()}, output->options);
+  return scene::write_file(arguments.output, bytes, diagnostics) ? success : failure;
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ bool write_report(const std::string& folder, const NamedImage& a, const NamedIma
   for (const NamedImage* side : {&a, &b}) {
     for (const char* ending : {".png", ".exr"}) {
       const std::string path = (root / (side->name + ending)).string();
-      if (!scene::write_image(path, view(*side->image), encoding, exposure, diagnostics)) return false;
+      if (!scene::write_image(path, view(*side->image), {.encoding = encoding, .exposure = exposure}, diagnostics))
+        return false;
     }
   }
   if (comparison.same_size) {

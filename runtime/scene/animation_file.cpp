@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <gif_lib.h>
 #include <new>
-#include <zlib.h>
 
 #include "compiler/support/assert.h"
 #include "runtime/scene/image_file.h"
@@ -36,66 +35,31 @@ void append(std::string& bytes, uint32_t value, int count) {
   for (int i = count - 1; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i) & 255);
 }
 
-/// A chunk of a PNG file: its length, type, data and CRC.
-std::string chunk(std::string_view type, std::string_view data) {
-  std::string bytes;
-  append(bytes, static_cast<uint32_t>(data.size()), 4);
-  const std::string checked = std::string(type).append(data);
-  bytes += checked;
-  const auto* const begin = reinterpret_cast<const Bytef*>(checked.data());
-  append(bytes, static_cast<uint32_t>(crc32_z(0, begin, checked.size())), 4);
-  return bytes;
-}
-
-/// Calls use(type, data) for each chunk of a PNG file that png() has made.
-template <class Use>
-void for_each_chunk(std::string_view file, const Use& use) {
-  constexpr size_t signature = 8, around = 12;
-  for (size_t at = signature; at + around <= file.size();) {
-    uint32_t length = 0;
-    for (size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(file[at + i]);
-    support::assert_that(length <= file.size() - at - around, "png() has made a chunk that is too long");
-    use(file.substr(at + 4, 4), file.substr(at + 8, length));
-    at += around + length;
-  }
-}
-
 /// PNG, third edition, W3C 2025: acTL before the data; fcTL before that of each picture; the data of all but the first in
 /// fdAT, with numbers that count fcTL and fdAT together.
-std::string apng(std::span<const std::string> pngs, int width, int height, double seconds) {
+std::string apng(std::span<const std::vector<std::string>> pictures, int width, int height, double seconds) {
   Steps steps(seconds, 1000, 1);
-  std::string file = pngs[0].substr(0, 8);
+  std::string file = png_head(width, height, true);
+  std::string control;
+  append(control, static_cast<uint32_t>(pictures.size()), 4);
+  append(control, 0, 4);  // forever
+  file += png_chunk("acTL", control);
   uint32_t number = 0;
-  for (size_t i = 0; i < pngs.size(); ++i) {
-    bool has_begun = false;
-    const auto begin = [&] {
-      if (i == 0) {
-        std::string control;
-        append(control, static_cast<uint32_t>(pngs.size()), 4);
-        append(control, 0, 4);  // forever
-        file += chunk("acTL", control);
-      }
-      std::string control;
-      for (const uint32_t word : {number++, static_cast<uint32_t>(width), static_cast<uint32_t>(height), 0u, 0u})
-        append(control, word, 4);
-      append(control, static_cast<uint32_t>(steps.next()), 2);
-      append(control, 1000, 2);
-      append(control, 0, 2);  // it stays, and replaces what was there
-      file += chunk("fcTL", control);
-    };
-    for_each_chunk(pngs[i], [&](std::string_view type, std::string_view data) {
-      if (type == "IDAT") {
-        if (!has_begun) begin();
-        has_begun = true;
-        std::string numbered;
-        if (i > 0) append(numbered, number++, 4);
-        file += chunk(i == 0 ? "IDAT" : "fdAT", numbered.append(data));
-      } else if (i == 0 && type != "IEND") {
-        file += chunk(type, data);
-      }
-    });
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    control.clear();
+    for (const uint32_t word : {number++, static_cast<uint32_t>(width), static_cast<uint32_t>(height), 0u, 0u})
+      append(control, word, 4);
+    append(control, static_cast<uint32_t>(steps.next()), 2);
+    append(control, 1000, 2);
+    append(control, 0, 2);  // it stays, and replaces what was there
+    file += png_chunk("fcTL", control);
+    for (const std::string& data : pictures[i]) {
+      std::string numbered;
+      if (i > 0) append(numbered, number++, 4);
+      file += png_chunk(i == 0 ? "IDAT" : "fdAT", numbered.append(data));
+    }
   }
-  return file + chunk("IEND", "");
+  return file + png_chunk("IEND", "");
 }
 
 // The palette: 6 x 7 x 6 levels of red, green and blue, and nothing.
@@ -195,8 +159,8 @@ std::optional<AnimationFormat> animation_format_of(const std::string& path) {
   return std::nullopt;
 }
 
-AnimationFile::AnimationFile(AnimationFormat format, int width, int height, double seconds)
-    : format_(format), width_(width), height_(height), seconds_(seconds) {
+AnimationFile::AnimationFile(AnimationFormat format, int width, int height, double seconds, int threads)
+    : format_(format), width_(width), height_(height), seconds_(seconds), threads_(threads) {
   if (format == AnimationFormat::gif) gif_ = std::make_unique<Gif>(width, height, seconds);
 }
 
@@ -204,14 +168,14 @@ AnimationFile::~AnimationFile() = default;
 
 void AnimationFile::add(std::span<const uint8_t> rgba) {
   switch (format_) {
-    case AnimationFormat::apng: pngs_.push_back(png(width_, height_, rgba)); return;
+    case AnimationFormat::apng: pictures_.push_back(png_data(width_, height_, rgba, true, threads_)); return;
     case AnimationFormat::gif: gif_->add(rgba); return;
   }
 }
 
 std::string AnimationFile::finish() {
   switch (format_) {
-    case AnimationFormat::apng: return apng(pngs_, width_, height_, seconds_);
+    case AnimationFormat::apng: return apng(pictures_, width_, height_, seconds_);
     case AnimationFormat::gif: return gif_->finish();
   }
   support::bug("no such format");

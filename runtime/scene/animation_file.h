@@ -20,8 +20,8 @@ std::optional<AnimationFormat> animation_format_of(const std::string& path);
 /// an ordered dither mixes the others, the same way in each picture; what covers less than half is transparent.
 class AnimationFile {
  public:
-  /// `seconds`: how long each picture is shown.
-  AnimationFile(AnimationFormat format, int width, int height, double seconds);
+  /// `seconds`: how long each picture is shown. `threads`: 0 for one for each core; the file does not depend on it.
+  AnimationFile(AnimationFormat format, int width, int height, double seconds, int threads = 0);
   ~AnimationFile();
   /// 4 bytes a pixel, with straight alpha, as png().
   void add(std::span<const uint8_t> rgba);
@@ -33,7 +33,8 @@ class AnimationFile {
   AnimationFormat format_;
   int width_, height_;
   double seconds_;
-  std::vector<std::string> pngs_;
+  int threads_;
+  std::vector<std::vector<std::string>> pictures_;  ///< as png_data gives them
   std::unique_ptr<Gif> gif_;
 };
 

@@ -27,7 +27,7 @@ inline constexpr int32_t max_coordinate = int32_t{1} << 24;     ///< of windows,
 
 /// The values of the file.
 enum class PixelType : uint8_t { uint, half, single };
-enum class Compression : uint8_t { none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab };
+using Compression = ExrCompression;
 
 struct Channel {
   std::string name;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "compiler/support/assert.h"
 #include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/output_file.h"
@@ -18,31 +19,110 @@ using support::quote;
 
 namespace {
 
-enum class Format { png, exr, unknown };
+constexpr ImageFormat formats[] = {
+    {"png", "", "PNG", true, is_png, read_png_header, decode_png,
+     [](const ByteView& image, const WriteOptions& options) {
+       return png(image.width, image.height, image.rgba, options.threads);
+     }},
+    {"exr", "", "OpenEXR", true, is_exr, read_exr_header, decode_exr, nullptr,
+     [](const ImageView& image, const WriteOptions& options) {
+       return exr(image, options.compression, options.threads);
+     }},
+    {"jpg", "jpeg", "JPEG", false, is_jpeg, read_jpeg_header, decode_jpeg,
+     [](const ByteView& image, const WriteOptions& options) { return jpeg(image, options.quality); }},
+    {"ppm", "", "PPM", false, is_pnm, read_pnm_header, decode_pnm,
+     [](const ByteView& image, const WriteOptions&) { return ppm(image); }},
+    {"pfm", "", "PFM", false, is_pfm, read_pfm_header, decode_pfm, nullptr,
+     [](const ImageView& image, const WriteOptions&) { return pfm(image); }},
+    {"hdr", "", "Radiance HDR", false, is_hdr, read_hdr_header, decode_hdr}};
 
-Format format_of(const std::string& path) {
-  if (path == "-") return Format::png;
-  const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".png" || extension == ".PNG") return Format::png;
-  if (extension == ".exr" || extension == ".EXR") return Format::exr;
-  return Format::unknown;
+/// The format of this name or alias; null if there is none.
+const ImageFormat* format_of_name(std::string_view name) {
+  for (const ImageFormat& format : formats)
+    if (!name.empty() && (name == format.name || name == format.alias)) return &format;
+  return nullptr;
 }
+
+/// The format of the ending of this path, in any case; null if there is none.
+const ImageFormat* format_of_ending(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return ending.empty() ? nullptr : format_of_name(std::string_view(ending).substr(1));
+}
+
+/// "PNG, JPEG or EXR".
+template <class Text>
+std::string list_of(bool (*is_listed)(const ImageFormat&), const Text& text) {
+  std::vector<std::string> texts;
+  for (const ImageFormat& format : formats)
+    if (is_listed(format)) texts.push_back(text(format));
+  std::string list;
+  for (size_t i = 0; i < texts.size(); ++i) list += (i == 0 ? "" : i + 1 == texts.size() ? " or " : ", ") + texts[i];
+  return list;
+}
+
+/// Once for all images.
+void warn_of_lost_alpha(const ImageFormat& format, const ImageView& image, const std::string& name,
+                        Diagnostics& diagnostics) {
+  size_t pixels = 0;
+  for (size_t i = 3; i < image.rgba.size(); i += 4) pixels += image.rgba[i] < 1.0f;
+  const std::string message = "an image with alpha is written as " + std::string(format.title) + ", which has none";
+  if (pixels == 0 || std::ranges::find(diagnostics.all(), message, &support::Diagnostic::message) != diagnostics.all().end())
+    return;
+  diagnostics.report(Id::lost_alpha, message)
+      .note(std::to_string(pixels) + " of " + std::to_string(image.rgba.size() / 4) + " pixels of " +
+            (name == "-" ? "the image" : quote(name)) + " are not opaque; they are written as they look over black")
+      .suggest("write a PNG or EXR file, or give the scene an opaque background");
+}
+
+bool is_written(const ImageFormat& format) { return format.is_written(); }
+bool is_read(const ImageFormat& format) { return format.decode != nullptr; }
 
 }  // namespace
 
-bool check_image_path(const std::string& path, Diagnostics& diagnostics) {
-  if (format_of(path) != Format::unknown) return true;
-  diagnostics.report(Id::unwritable_file, "the name does not tell the image format of " + quote(path))
-      .suggest("end the name in .png or .exr");
-  return false;
+std::span<const ImageFormat> image_formats() { return formats; }
+
+std::string written_endings() {
+  return list_of(is_written, [](const ImageFormat& format) { return "." + std::string(format.name); });
 }
 
-bool write_image(const std::string& path, const ImageView& image, Encoding encoding, float exposure,
-                 Diagnostics& diagnostics) {
-  if (!check_image_path(path, diagnostics)) return false;
-  if (format_of(path) == Format::exr) return write_file(path, exr(image), diagnostics);
-  return write_file(path, png(image.width, image.height, encode(image.rgba, encoding, exposure)),
-                    diagnostics);
+const ImageFormat* output_format(const std::string& path, const std::string& name, Diagnostics& diagnostics) {
+  const ImageFormat* const told = path == "-" ? nullptr : format_of_ending(path);
+  if (name.empty()) {
+    const ImageFormat* const format = path == "-" ? &formats[0] : told;
+    if (format != nullptr && format->is_written()) return format;
+    diagnostics.report(Id::unwritable_file, "the name does not tell the image format of " + quote(path))
+        .suggest("end the name in " + written_endings());
+    return nullptr;
+  }
+  const ImageFormat* const format = format_of_name(name);
+  support::assert_that(format != nullptr && format->is_written(), "no such format");
+  if (told == nullptr || told == format) return format;
+  diagnostics.report(Id::unwritable_file, "the name " + quote(path) + " does not fit the format " + name)
+      .suggest("end the name in ." + name);
+  return nullptr;
+}
+
+std::vector<uint8_t> encode_for(const ImageFormat& format, const ImageView& image, const WriteOptions& options,
+                                const std::string& name, Diagnostics& diagnostics) {
+  if (format.keeps_alpha) return encode(image.rgba, options.encoding, options.exposure, Alpha::straight, options.threads);
+  warn_of_lost_alpha(format, image, name, diagnostics);
+  return encode(image.rgba, options.encoding, options.exposure, Alpha::over_black, options.threads);
+}
+
+bool write_image(const std::string& path, const ImageFormat& format, const ImageView& image,
+                 const WriteOptions& options, Diagnostics& diagnostics) {
+  if (format.write_bytes != nullptr) {
+    const std::vector<uint8_t> bytes = encode_for(format, image, options, path, diagnostics);
+    return write_file(path, format.write_bytes({image.width, image.height, bytes}, options), diagnostics);
+  }
+  if (!format.keeps_alpha) warn_of_lost_alpha(format, image, path, diagnostics);
+  return write_file(path, format.write_floats(image, options), diagnostics);
+}
+
+bool write_image(const std::string& path, const ImageView& image, const WriteOptions& options, Diagnostics& diagnostics) {
+  const ImageFormat* const format = output_format(path, "", diagnostics);
+  return format != nullptr && write_image(path, *format, image, options, diagnostics);
 }
 
 void make_finite(FileImage& image) {
@@ -69,29 +149,27 @@ std::vector<float> numbers_of(const FileImage& image) {
 
 namespace {
 
-struct Codec {
-  bool (*is)(std::string_view);
-  Read<ImageHeader> (*read_header)(std::string_view);
-  Read<FileImage> (*decode)(std::string_view);
-};
-constexpr Codec codecs[] = {{is_png, read_png_header, decode_png},
-                            {is_jpeg, read_jpeg_header, decode_jpeg},
-                            {is_exr, read_exr_header, decode_exr},
-                            {is_hdr, read_hdr_header, decode_hdr}};
-constexpr const char* unknown_format = "it is not a PNG, JPEG, HDR or EXR file";
+/// The format that the bytes begin like; null if there is none.
+const ImageFormat* format_of_bytes(std::string_view bytes) {
+  for (const ImageFormat& format : formats)
+    if (is_read(format) && format.is(bytes)) return &format;
+  return nullptr;
+}
+
+std::string unknown_format() {
+  return "it is not a " + list_of(is_read, [](const ImageFormat& format) { return std::string(format.title); }) + " file";
+}
 
 }  // namespace
 
 Read<ImageHeader> read_header(std::string_view bytes) {
-  for (const Codec& codec : codecs)
-    if (codec.is(bytes)) return codec.read_header(bytes);
-  return {{}, unknown_format};
+  const ImageFormat* const format = format_of_bytes(bytes);
+  return format != nullptr ? format->read_header(bytes) : Read<ImageHeader>{{}, unknown_format()};
 }
 
 Read<FileImage> decode_image(std::string_view bytes) {
-  for (const Codec& codec : codecs)
-    if (codec.is(bytes)) return codec.decode(bytes);
-  return {{}, unknown_format};
+  const ImageFormat* const format = format_of_bytes(bytes);
+  return format != nullptr ? format->decode(bytes) : Read<FileImage>{{}, unknown_format()};
 }
 
 std::string refuse_size(int64_t width, int64_t height) {

@@ -6,7 +6,9 @@
 #include <csetjmp>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <jpeglib.h>
+#include <new>
 // After jpeglib.h.
 #include <jerror.h>
 
@@ -207,7 +209,62 @@ class Decoder {
   std::string reason_;
 };
 
+/// Encodes one image.
+class Encoder {
+ public:
+  Encoder(const ByteView& image, int quality) : image_(image), quality_(quality) {
+    info_.err = jpeg_std_error(&errors_);
+    errors_.error_exit = fail;
+  }
+  ~Encoder() {
+    jpeg_destroy_compress(&info_);
+    std::free(memory_);
+  }
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+
+  std::string run() {
+    // As in Decoder::run. What can fail is allocating memory.
+    if (setjmp(errors_.escape) != 0) throw std::bad_alloc();
+    encode();
+    return std::string(reinterpret_cast<const char*>(memory_), size_);
+  }
+
+ private:
+  void encode() {
+    jpeg_create_compress(&info_);
+    jpeg_mem_dest(&info_, &memory_, &size_);
+    info_.image_width = static_cast<JDIMENSION>(image_.width);
+    info_.image_height = static_cast<JDIMENSION>(image_.height);
+    info_.in_color_space = JCS_EXT_RGBX;
+    info_.input_components = 4;
+    jpeg_set_defaults(&info_);
+    jpeg_set_quality(&info_, quality_, TRUE);
+    info_.dct_method = JDCT_ISLOW;
+    constexpr int from_which_colors_are_whole = 90;
+    const int share = quality_ >= from_which_colors_are_whole ? 1 : 2;
+    info_.comp_info[0].h_samp_factor = info_.comp_info[0].v_samp_factor = share;
+    jpeg_start_compress(&info_, TRUE);
+    const size_t row_bytes = size_t{4} * info_.image_width;
+    while (info_.next_scanline < info_.image_height) {
+      // libjpeg only reads from it, although its pointer is not const.
+      auto* row = const_cast<JSAMPLE*>(&image_.rgba[info_.next_scanline * row_bytes]);
+      jpeg_write_scanlines(&info_, &row, 1);
+    }
+    jpeg_finish_compress(&info_);
+  }
+
+  const ByteView& image_;
+  int quality_;
+  jpeg_compress_struct info_{};
+  Errors errors_{};
+  unsigned char* memory_ = nullptr;
+  unsigned long size_ = 0;
+};
+
 }  // namespace
+
+std::string jpeg(const ByteView& image, int quality) { return Encoder(image, quality).run(); }
 
 bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 

@@ -7,7 +7,7 @@ target_compile_definitions(documents_test PRIVATE
   ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs"
   ISOSHADE_DIAGNOSTICS="${PROJECT_SOURCE_DIR}/tests/diagnostics")
 
-set(fuzz_readers png jpeg hdr exr gltf)
+set(fuzz_readers png jpeg hdr exr netpbm gltf)
 list(TRANSFORM fuzz_readers REPLACE "(.+)" "fuzz/\\1_reader.cpp" OUTPUT_VARIABLE fuzz_reader_sources)
 add_library(fuzz_readers STATIC fuzz/read_image.cpp ${fuzz_reader_sources})
 target_link_libraries(fuzz_readers PUBLIC isoshade_scene OpenEXR::OpenEXR PkgConfig::jpeg)

@@ -40,7 +40,7 @@ bool read_image(const std::string& bytes) {
 }
 
 std::span<const Reader> readers() {
-  static const Reader all[] = {png_reader, jpeg_reader, hdr_reader, exr_reader, gltf_reader};
+  static const Reader all[] = {png_reader, jpeg_reader, hdr_reader, exr_reader, netpbm_reader, gltf_reader};
   return all;
 }
 

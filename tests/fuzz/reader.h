@@ -26,7 +26,7 @@ struct Reader {
 /// All of them.
 std::span<const Reader> readers();
 
-extern const Reader png_reader, jpeg_reader, hdr_reader, exr_reader, gltf_reader;
+extern const Reader png_reader, jpeg_reader, hdr_reader, exr_reader, netpbm_reader, gltf_reader;
 
 /// Files in tests/fuzz/corpus for the reader: what the fuzzers and people found.
 std::vector<std::string> corpus(const Reader& reader);

@@ -46,6 +46,23 @@ TEST_F(Frames, FormOneFileThatIsShownAgainAndAgain) {
   EXPECT_EQ(read(folder_ / "a.gif").substr(0, 6), "GIF89a");
 }
 
+TEST_F(Frames, GoToAPipeOneAfterTheOther) {
+  ASSERT_EQ(render("--frames 0:1:3 --format ppm -o - > " + (folder_ / "all.ppm").string()).exit, 0);
+  ASSERT_EQ(render("--frames 0:1:3 " + out("f_%d.ppm")).exit, 0);
+  EXPECT_EQ(read(folder_ / "all.ppm"), read(folder_ / "f_0.ppm") + read(folder_ / "f_1.ppm") + read(folder_ / "f_2.ppm"));
+  EXPECT_EQ(read(folder_ / "f_0.ppm").size(), 13u + 3 * 24 * 16);
+}
+
+TEST_F(Frames, MayBeCompressedAsSingleImagesMay) {
+  ASSERT_EQ(render("--frames 0:1:2 --compression none " + out("f_%d.exr")).exit, 0);
+  ASSERT_EQ(render("--frames 0:1:2 " + out("z_%d.exr")).exit, 0);
+  EXPECT_GT(read(folder_ / "f_1.exr").size(), 24u * 16 * 20);
+  EXPECT_LT(read(folder_ / "z_1.exr").size(), 24u * 16 * 20);
+  const Outcome outcome = render("--frames 0:1:2 --quality 10 " + out("f.gif"));
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.text.find("one file of all frames"), std::string::npos) << outcome.text;
+}
+
 TEST_F(Frames, TurnTheCameraOnceAboutItsTarget) {
   write_scene("");
   ASSERT_EQ(render("--frames 0:0:4 --turntable " + out("t%d.exr")).exit, 0);

@@ -68,6 +68,15 @@ TEST_F(Sheet, OfOneParameterIsARow) {
   EXPECT_EQ(sheet.height, 3 * gap + 2 * text_height + 9 + gap);
 }
 
+TEST_F(Sheet, IsWrittenInAnyFormatOfBytes) {
+  const std::string command = "sheet " + testing::scene + " --size 16x9 --backend interpreter --vary 'time=0;1.5' ";
+  ASSERT_EQ(run(command + "-o " + file("sheet.png")).exit, 0);
+  ASSERT_EQ(run(command + "--format ppm -o - > " + file("sheet.ppm")).exit, 0);
+  EXPECT_EQ(decoded(file("sheet.ppm")).bytes, decoded(file("sheet.png")).bytes);
+  ASSERT_EQ(run(command + "--quality 80 -o " + file("sheet.jpg")).exit, 0);
+  EXPECT_EQ(decoded(file("sheet.jpg")).width, decoded(file("sheet.png")).width);
+}
+
 TEST_F(Sheet, ExplainsWhatItCannotDo) {
   const auto message = [&](const std::string& arguments, const std::string& output = "sheet.png") {
     const Outcome outcome = run("sheet " + testing::scene + " " + arguments + " -o " + file(output));
@@ -82,6 +91,8 @@ TEST_F(Sheet, ExplainsWhatItCannotDo) {
   EXPECT_NE(message("--vary nothing=0:1:2").find("error[unknown-setting]"), std::string::npos);
   EXPECT_NE(message("--vary time=0:1:64 --size 1000x10").find("error[too-large]: the sheet would have"), std::string::npos);
   EXPECT_NE(message("--vary time=0:1:2", "sheet.exr").find("end the name in .png"), std::string::npos);
+  EXPECT_NE(message("--vary time=0:1:2", "sheet.bmp").find("end the name in .png"), std::string::npos);
+  EXPECT_NE(message("--vary time=0:1:2 --quality 50").find("--quality needs the format jpg"), std::string::npos);
   EXPECT_EQ(run("sheet " + testing::scene + " --vary time=0:1:2 --vary time=0:1:2 --vary time=0:1:2 -o " + file("a.png")).exit, 2);
 }
 

@@ -43,6 +43,60 @@ TEST_F(Cli, RendersPngAndExrAndRejectsOtherExtensions) {
   EXPECT_NE(outcome.text.find(".png"), std::string::npos) << outcome.text;
 }
 
+TEST_F(Cli, StandardOutputCarriesTheImageAndNothingElse) {
+  const std::string render = "render " + scene + " --size 16x9 --backend interpreter --stats ";
+  for (const char* format : {"png", "exr", "jpg", "ppm", "pfm"}) {
+    const std::string to = file(std::string("a.") + format), piped = file("piped");
+    ASSERT_EQ(run(render + "-o " + to).exit, 0) << format;
+    ASSERT_EQ(run(render + "-o - --format " + format + " | cat > " + piped).exit, 0) << format;
+    EXPECT_TRUE(read(to) == read(piped)) << format;
+    ASSERT_EQ(run(render + "-o /dev/stdout --format " + format + " | cat > " + piped).exit, 0) << format;
+    EXPECT_TRUE(read(to) == read(piped)) << format;
+  }
+  ASSERT_EQ(run(render + "-o - | cat > " + file("piped")).exit, 0);
+  EXPECT_TRUE(read(file("a.png")) == read(file("piped")));
+  EXPECT_EQ(run(render + "-o - --format png 2>&1 >/dev/full").exit, 2);
+}
+
+TEST_F(Cli, OptionsOfFormatsAreRefusedForOthers) {
+  const auto message = [&](const std::string& options) {
+    const Outcome outcome = run("render " + scene + " --size 16x9 --backend interpreter " + options);
+    EXPECT_EQ(outcome.exit, 2) << options;
+    return outcome.text;
+  };
+  EXPECT_NE(message("--compression piz -o " + file("a.png")).find("--compression needs the format exr, not png"), std::string::npos);
+  EXPECT_NE(message("--quality 50 -o -").find("--quality needs the format jpg, not png"), std::string::npos);
+  EXPECT_NE(message("--format exr -o " + file("a.png")).find("does not fit the format exr"), std::string::npos);
+  for (const char* wrong : {"--quality 0", "--quality 101", "--compression dwaa", "--format hdr", "--format gif"})
+    message(std::string(wrong) + " -o " + file("a.jpg"));
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Cli, QualityAndCompressionChangeTheSizeOfFiles) {
+  const auto size = [&](const std::string& options, const std::string& name) {
+    const Outcome outcome = run("render " + scene + " --size 64x36 --backend interpreter " + options + " -o " + file(name));
+    EXPECT_EQ(outcome.exit, 0) << outcome.text;
+    return read(file(name)).size();
+  };
+  EXPECT_LT(size("--quality 30", "a.jpg"), size("", "b.jpg"));
+  EXPECT_LT(size("", "b.jpg"), size("--quality 100", "c.jpg"));
+  EXPECT_EQ(size("", "z.exr"), size("--compression zip", "z.exr"));
+  const size_t whole = size("--compression none", "n.exr");
+  EXPECT_GT(whole, size_t{20} * 64 * 36);
+  for (const char* compression : {"rle", "zips", "zip", "piz"})
+    EXPECT_LT(size(std::string("--compression ") + compression, "c.exr"), whole) << compression;
+}
+
+TEST_F(Cli, FilesDoNotDependOnTheNumberOfThreads) {
+  const std::string render = "render " + graphs + "/scenes/outline_cube.json --size 400x300 --threads ";
+  for (const char* name : {"a.png", "a.exr"}) {
+    ASSERT_EQ(run(render + "1 -o " + file(name)).exit, 0);
+    const std::string one = read(file(name));
+    ASSERT_EQ(run(render + "3 -o " + file(name)).exit, 0);
+    EXPECT_TRUE(read(file(name)) == one) << name;
+  }
+}
+
 TEST_F(Cli, TheReferenceRendersSmallImagesAndPrintsFortyDigits) {
   const std::string out = " --backend reference -o " + file("a.exr");
   EXPECT_EQ(run("render " + scene + " --size 16x9" + out).exit, 0);

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,25 @@ class ExrMemory : public Imf::OStream {
   std::string bytes;
 
  private:
+  size_t at_ = 0;
+};
+
+/// Reads what ExrMemory has.
+class ExrInput : public Imf::IStream {
+ public:
+  explicit ExrInput(std::string bytes) : IStream(""), bytes_(std::move(bytes)) {}
+  bool read(char* to, int size) override {
+    const auto count = static_cast<size_t>(size);
+    if (count > bytes_.size() - at_) throw std::runtime_error("the file ends early");
+    std::memcpy(to, bytes_.data() + at_, count);
+    at_ += count;
+    return at_ < bytes_.size();
+  }
+  uint64_t tellg() override { return at_; }
+  void seekg(uint64_t at) override { at_ = at; }
+
+ private:
+  std::string bytes_;
   size_t at_ = 0;
 };
 

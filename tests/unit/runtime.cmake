@@ -2,6 +2,7 @@ isoshade_test(scene_test
   SOURCES
     unit/scene_animate_test.cpp
     unit/scene_animation_file_test.cpp
+    unit/scene_deflate_test.cpp
     unit/scene_environment_test.cpp
     unit/scene_exr_test.cpp
     unit/scene_format_test.cpp
@@ -13,13 +14,14 @@ isoshade_test(scene_test
     unit/scene_jpeg_test.cpp
     unit/scene_load_test.cpp
     unit/scene_mesh_test.cpp
+    unit/scene_netpbm_test.cpp
     unit/scene_output_file_test.cpp
     unit/scene_parse_test.cpp
     unit/scene_png_test.cpp
     unit/scene_placement_test.cpp
     unit/scene_settings_test.cpp
     unit/scene_texture_test.cpp
-  LINKS isoshade_scene OpenEXR::OpenEXR PkgConfig::jpeg GIF::GIF)
+  LINKS isoshade_scene isoshade_raster OpenEXR::OpenEXR PkgConfig::jpeg GIF::GIF ZLIB::ZLIB)
 target_compile_definitions(scene_test PRIVATE ISOSHADE_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")
 
 isoshade_test(compare_test

@@ -60,9 +60,7 @@ TEST(AnimationFile, AnApngShowsItsFirstPictureAsAPngAndCountsTheRest) {
 /// A picture of an APNG as a PNG of its own: with the data of the chunk fdAT as IDAT, whose CRC decoders must accept.
 TEST(AnimationFile, PicturesOfAnApngHoldTheDataOfTheirPngs) {
   const std::string file = file_of(AnimationFormat::apng);
-  const std::string whole = png(width, height, picture(0, 100, 0));
-  const size_t data = whole.find("IDAT");
-  const std::string bytes = whole.substr(data + 4, number(whole, data - 4, 4));
+  const std::string bytes = png_data(width, height, picture(0, 100, 0), true, 1).at(0);
   EXPECT_NE(file.find(std::string("fdAT") + std::string("\0\0\0\2", 4) + bytes), std::string::npos);
 }
 

@@ -3,10 +3,12 @@
 #include <ImfArray.h>
 #include <ImfInputFile.h>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <iterator>
 #include <limits>
+#include <random>
 #include <string>
 
 #include "runtime/scene/chromaticities.h"
@@ -94,6 +96,61 @@ constexpr const char* compression_names[] = {"none",  "rle", "zips", "zip",  "pi
 static_assert(std::size(compression_names) == size_t{Imf::NUM_COMPRESSION_METHODS});
 INSTANTIATE_TEST_SUITE_P(Methods, ExrCompression, ::testing::Range(0, int{Imf::NUM_COMPRESSION_METHODS}),
                          [](const auto& info) { return std::string(compression_names[info.param]); });
+
+/// Values with every exponent, and others that repeat.
+FileImage varied_image(int width, int height) {
+  FileImage image{width, height, {}, {}, {}};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float noise = std::sin(static_cast<float>(x * 12.9898 + y * 78.233)) * 43758.5f;
+      image.rgba.insert(image.rgba.end(), {noise, std::ldexp(1.1f, (x - y) % 120), x < width / 2 ? 0.25f : noise, 1});
+      image.depth.push_back(static_cast<float>(y) / static_cast<float>(height));
+    }
+  }
+  return image;
+}
+
+TEST(Exr, EveryCompressionThatIsWrittenKeepsEveryBit) {
+  for (const auto& [name, compression] : scene::lossless_compressions) {
+    for (const auto& [width, height] : {std::pair(1, 1), {5, 15}, {64, 16}, {33, 70}}) {
+      const FileImage image = varied_image(width, height);
+      const std::string file = scene::exr(image.view(), compression);
+      const FileImage read = decoded(file);
+      EXPECT_EQ(read.rgba, image.rgba) << name << " " << width << " x " << height;
+      EXPECT_EQ(read.depth, image.depth) << name;
+      // The library itself reads the file, and finds what is stated.
+      ExrInput input(file);
+      Imf::InputFile library(input);
+      EXPECT_EQ(static_cast<int>(library.header().compression()), static_cast<int>(compression)) << name;
+      std::vector<float> red(static_cast<size_t>(width * height));
+      Imf::FrameBuffer buffer;
+      buffer.insert("R", Imf::Slice::Make(Imf::FLOAT, red.data(), library.header().dataWindow()));
+      library.setFrameBuffer(buffer);
+      library.readPixels(0, height - 1);
+      for (size_t i = 0; i < red.size(); ++i) ASSERT_EQ(red[i], image.rgba[4 * i]) << name << " " << i;
+    }
+  }
+}
+
+TEST(Exr, WrittenFilesDoNotDependOnTheNumberOfThreads) {
+  const FileImage image = varied_image(120, 100);
+  for (const auto& [name, compression] : scene::lossless_compressions) {
+    const std::string file = scene::exr(image.view(), compression, 1);
+    for (const int threads : {2, 7, 0}) EXPECT_TRUE(scene::exr(image.view(), compression, threads) == file) << name;
+  }
+}
+
+TEST(Exr, NoiseIsStoredAndTheRestCompressed) {
+  FileImage noise = varied_image(64, 64);
+  const size_t size = 5 * sizeof(float) * 64 * 64;
+  EXPECT_LT(scene::exr(noise.view(), scene::ExrCompression::zip).size(), size * 3 / 4);
+  std::mt19937 random(1);
+  for (std::vector<float>* values : {&noise.rgba, &noise.depth})
+    for (float& value : *values) value = std::bit_cast<float>(static_cast<uint32_t>(random()) & 0xbfffffffu);
+  const std::string file = scene::exr(noise.view(), scene::ExrCompression::zip);
+  EXPECT_LT(file.size(), size + 500);
+  EXPECT_EQ(decoded(file).rgba, noise.rgba);
+}
 
 TEST(Exr, DataWindowIsPlacedInTheDisplayWindow) {
   ExrPart part;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "compiler/functions/color.h"
+#include "runtime/raster/tile.h"
 #include "runtime/scene/image_file.h"
 #include "runtime/scene/output_file.h"
 
@@ -77,7 +81,7 @@ TEST_F(ImageFile, ExrKeepsEveryFiniteColourAndEveryDepth) {
   for (const auto& [width, height] : sizes) {
     const FileImage image = special_image(width, height);
     Diagnostics diagnostics;
-    ASSERT_TRUE(scene::write_image(path("a.exr"), image.view(), Encoding::srgb, 1, diagnostics));
+    ASSERT_TRUE(scene::write_image(path("a.exr"), image.view(), {}, diagnostics));
     const auto read = scene::read_image(path("a.exr"), diagnostics);
     ASSERT_TRUE(read) << diagnostics.text();
     EXPECT_EQ(read->width, width);
@@ -93,7 +97,7 @@ TEST_F(ImageFile, NonFinitePixelsAreClampedWithAWarning) {
   for (const bool clean : {false, true}) {
     if (clean) image = finite(image);
     Diagnostics diagnostics;
-    ASSERT_TRUE(scene::write_image(path("a.exr"), image.view(), Encoding::srgb, 1, diagnostics));
+    ASSERT_TRUE(scene::write_image(path("a.exr"), image.view(), {}, diagnostics));
     const auto read = scene::read_image(path("a.exr"), diagnostics);
     ASSERT_TRUE(read);
     EXPECT_EQ(read->rgba, (std::vector<float>{65504, 1, -65504, 1, 1, 2, 3, 1, 0, 0, 0, 1}));
@@ -113,7 +117,7 @@ TEST_F(ImageFile, PngKeepsEveryByte) {
     for (size_t i = 0; i < image.rgba.size(); ++i)
       image.rgba[i] = i % 4 == 3 ? 1 : static_cast<float>(i * 37 % 256) / 255.0f;
     Diagnostics diagnostics;
-    ASSERT_TRUE(scene::write_image(path("a.png"), image.view(), Encoding::linear, 1, diagnostics));
+    ASSERT_TRUE(scene::write_image(path("a.png"), image.view(), {.encoding = Encoding::linear}, diagnostics));
     const auto read = scene::read_image(path("a.png"), diagnostics);
     ASSERT_TRUE(read) << diagnostics.text();
     EXPECT_EQ(read->width, width);
@@ -122,21 +126,74 @@ TEST_F(ImageFile, PngKeepsEveryByte) {
   }
 }
 
-TEST_F(ImageFile, RefusesUnknownExtensionsBeforeRendering) {
-  Diagnostics diagnostics;
-  EXPECT_TRUE(scene::check_image_path("a.png", diagnostics));
-  EXPECT_TRUE(scene::check_image_path("-", diagnostics));
-  EXPECT_FALSE(scene::check_image_path("a.jpg", diagnostics));
-  EXPECT_FALSE(scene::check_image_path("png", diagnostics));
-  EXPECT_EQ(diagnostics.error_count(), 2u);
-  EXPECT_EQ(file_count(), 0u);
+TEST_F(ImageFile, TheFormatIsToldByTheEndingOrByItsName) {
+  const auto format = [](const std::string& path, const std::string& name = "") {
+    Diagnostics diagnostics;
+    const scene::ImageFormat* const found = scene::output_format(path, name, diagnostics);
+    EXPECT_EQ(found == nullptr, diagnostics.has_errors()) << path;
+    return found == nullptr ? diagnostics.text() : std::string(found->name);
+  };
+  EXPECT_EQ(format("a.png"), "png");
+  EXPECT_EQ(format("b/a.EXR"), "exr");
+  EXPECT_EQ(format("a.jpeg"), "jpg");
+  EXPECT_EQ(format("a.ppm"), "ppm");
+  EXPECT_EQ(format("a.pfm"), "pfm");
+  EXPECT_EQ(format("-"), "png");
+  EXPECT_EQ(format("-", "exr"), "exr");
+  EXPECT_EQ(format("/dev/stdout", "ppm"), "ppm");
+  EXPECT_EQ(format("a.tmp", "jpg"), "jpg");
+  EXPECT_EQ(format("a.jpeg", "jpg"), "jpg");
+  for (const char* unknown : {"a.bmp", "png", "a.", "a.hdr", "a.pgm", ""})
+    EXPECT_NE(format(unknown).find("end the name in .png, .exr, .jpg, .ppm or .pfm"), std::string::npos) << format(unknown);
+  EXPECT_NE(format("a.png", "exr").find("does not fit the format exr"), std::string::npos);
+  EXPECT_NE(format("a.hdr", "png").find("end the name in .png"), std::string::npos);
+}
+
+TEST_F(ImageFile, EveryFormatThatIsWrittenIsReadAgain) {
+  FileImage image = special_image(20, 10);
+  for (float& value : image.rgba) value = 0.5f;
+  for (size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 1;
+  size_t written = 0;
+  for (const scene::ImageFormat& format : scene::image_formats()) {
+    if (!format.is_written()) continue;
+    ++written;
+    EXPECT_NE(format.write_bytes == nullptr, format.write_floats == nullptr) << format.name;
+    Diagnostics diagnostics;
+    const std::string file = path("a." + std::string(format.name));
+    ASSERT_TRUE(scene::write_image(file, image.view(), {.encoding = Encoding::linear}, diagnostics));
+    const auto read = scene::read_image(file, diagnostics);
+    ASSERT_TRUE(read) << diagnostics.text();
+    EXPECT_TRUE(diagnostics.all().empty()) << diagnostics.text();
+    EXPECT_TRUE(format.is(content(file))) << format.name;
+    EXPECT_EQ(read->has_bytes(), format.write_bytes != nullptr);
+    for (const float value : scene::numbers_of(*read)) ASSERT_TRUE(value == 1 || std::abs(value - 0.5f) <= 0.51f / 255) << value;
+  }
+  EXPECT_EQ(written, 5u);
+}
+
+TEST_F(ImageFile, LosingAlphaIsAWarningAndGivesTheImageOverBlack) {
+  const FileImage image{2, 1, {}, {0.2f, 0.4f, 0.6f, 0.8f, 0.2f, 0.4f, 0.6f, 1}, {0, 0}};
+  for (const char* name : {"a.jpg", "a.ppm", "a.pfm", "a.png", "a.exr"}) {
+    Diagnostics diagnostics;
+    ASSERT_TRUE(scene::write_image(path(name), image.view(), {.encoding = Encoding::linear, .quality = 100}, diagnostics));
+    const bool keeps = std::string(name).ends_with("png") || std::string(name).ends_with("exr");
+    ASSERT_EQ(diagnostics.all().size(), keeps ? 0u : 1u) << name;
+    if (keeps) continue;
+    EXPECT_EQ(diagnostics.all()[0].id, support::Id::lost_alpha);
+    EXPECT_NE(diagnostics.text().find("1 of 2 pixels"), std::string::npos) << diagnostics.text();
+    ASSERT_TRUE(scene::write_image(path(name), image.view(), {}, diagnostics));
+    EXPECT_EQ(diagnostics.all().size(), 1u) << "once";
+    const auto numbers = scene::numbers_of(*scene::read_image(path(name), diagnostics));
+    EXPECT_EQ(numbers[0], numbers[4]) << name;
+    EXPECT_EQ(numbers[3], 1) << name;
+  }
 }
 
 TEST_F(ImageFile, RejectsDamagedFilesWithAReason) {
   const FileImage image = special_image(40, 30);
   Diagnostics diagnostics;
   for (const std::string name : {"a.exr", "a.png"}) {
-    ASSERT_TRUE(scene::write_image(path(name), image.view(), Encoding::srgb, 1, diagnostics));
+    ASSERT_TRUE(scene::write_image(path(name), image.view(), {}, diagnostics));
     const std::string whole = content(path(name));
     for (const size_t length : {size_t{0}, size_t{3}, size_t{30}, whole.size() / 2, whole.size() * 3 / 4}) {
       std::ofstream(path(name), std::ios::binary) << whole.substr(0, length);
@@ -230,6 +287,53 @@ TEST(Encode, DividesColoursByAlpha) {
   const float whole[] = {0.2f, 0.4f, 0.6f, 0, 0.2f, 0.4f, 0.6f, 4};
   EXPECT_EQ(scene::encode(whole, Encoding::linear, 1),
             (std::vector<uint8_t>{51, 102, 153, 0, 51, 102, 153, 255}));
+}
+
+/// As encode.h says, one value after the other.
+uint8_t encoded(float value, float alpha, float exposure, Encoding encoding, scene::Alpha use) {
+  const float divisor = use == scene::Alpha::straight && alpha > 0 && alpha < 1 ? alpha : 1;
+  const float color = value * exposure / divisor;
+  const float number = encoding == Encoding::srgb ? functions::srgb_encode(color) : color;
+  return static_cast<uint8_t>(std::floor((number > 0 ? number < 1 ? number : 1 : 0) * 255.0f + 0.5f));
+}
+
+TEST(Encode, IsTheSameInLanesOfEveryWidthAndOnAnyNumberOfThreads) {
+  std::mt19937 random(1);
+  std::vector<float> values;
+  for (int i = 0; i < 4 * 70'001; ++i) {
+    const auto bits = static_cast<uint32_t>(random());
+    const bool any = random() % 4 == 0;  // any bits, also infinities, NaN and denormals
+    values.push_back(any ? std::bit_cast<float>(bits) : static_cast<float>(bits % 100'000) / 90'000.0f);
+  }
+  for (const Encoding encoding : {Encoding::srgb, Encoding::linear}) {
+    for (const scene::Alpha use : {scene::Alpha::straight, scene::Alpha::over_black}) {
+      const auto bytes = scene::encode(values, encoding, 1.25f, use, 1);
+      ASSERT_EQ(bytes.size(), values.size());
+      {
+        const lanes::FpGuard guard;
+        for (size_t i = 0; i < values.size(); ++i) {
+          const float alpha = values[i | 3];
+          const bool is_alpha = i % 4 == 3;
+          const uint8_t expected = !is_alpha ? encoded(values[i], alpha, 1.25f, encoding, use)
+                                   : use == scene::Alpha::straight
+                                       ? encoded(alpha, 1, 1, Encoding::linear, use)
+                                       : 255;
+          ASSERT_EQ(bytes[i], expected) << i << " " << values[i] << " " << alpha;
+        }
+      }
+      for (const int threads : {2, 5, 0}) EXPECT_EQ(scene::encode(values, encoding, 1.25f, use, threads), bytes);
+      for (const auto& [width, function] :
+           {std::pair(4, &scene::detail::encode_4), {8, &scene::detail::encode_8}, {16, &scene::detail::encode_16}}) {
+        if (width > raster::rasterizer_lanes()) continue;
+        for (const size_t pixels : {size_t{1}, size_t{31}, size_t{32}, size_t{33}, size_t{70'001}}) {
+          std::vector<uint8_t> some(4 * pixels);
+          const lanes::FpGuard guard;
+          function({values.data(), some.data(), pixels, 1.25f, encoding == Encoding::srgb, use == scene::Alpha::straight});
+          ASSERT_TRUE(std::equal(some.begin(), some.end(), bytes.begin())) << width << " lanes, " << pixels << " pixels";
+        }
+      }
+    }
+  }
 }
 
 TEST(Encode, InvertsSrgbDecodeForEveryByte) {

@@ -25,7 +25,7 @@ TEST(ImageFormats, SizesAreCheckedBeforeDecompression) {
 }
 
 TEST(ImageFormats, OtherFormatsAreRefused) {
-  for (const char* bytes : {"", "BM", "GIF89a\1\0\1\0", "P6 1 1 255 abc", "\x89PNG", "{}", "\xff\xd8\xff"})
+  for (const char* bytes : {"", "BM", "GIF89a\1\0\1\0", "P3 1 1 255 1 2 3", "\x89PNG", "{}", "\xff\xd8\xff"})
     EXPECT_FALSE(scene::decode_image(bytes).found) << bytes;
 }
 

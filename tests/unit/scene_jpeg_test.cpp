@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // JPEG: that its pixels are the same everywhere, and that no damaged file gives any.
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -67,6 +68,36 @@ TEST(Jpeg, GreyBecomesThreeEqualColours) {
       jpeg_file(8, 8, std::vector<uint8_t>(64, 102), {.across = 1, .down = 1, .colors = JCS_GRAYSCALE}),
       true);
   EXPECT_EQ(Floats(read.begin(), read.begin() + 4), (Floats{0.4f, 0.4f, 0.4f, 1}));
+}
+
+TEST(Jpeg, WrittenPicturesAreCloseToTheOriginal) {
+  std::vector<uint8_t> rgba;
+  for (int y = 0; y < 45; ++y)
+    for (int x = 0; x < 61; ++x) rgba.insert(rgba.end(), {uint8_t(4 * x), uint8_t(5 * y), uint8_t(230 - 3 * x), 255});
+  size_t before = 0;
+  for (const auto& [quality, error] : {std::pair(20, 0.2), {75, 0.1}, {90, 0.05}, {100, 0.02}}) {
+    const std::string file = scene::jpeg({61, 45, rgba}, quality);
+    EXPECT_GT(file.size(), before) << quality;
+    before = file.size();
+    const Floats read = rgba_of(file, true);
+    ASSERT_EQ(read.size(), rgba.size());
+    double sum = 0;
+    for (size_t i = 0; i < rgba.size(); ++i) {
+      EXPECT_NEAR(read[i], rgba[i] / 255.0, error) << quality << " " << i;
+      sum += std::abs(static_cast<double>(read[i]) - rgba[i] / 255.0);
+    }
+    EXPECT_LT(sum / static_cast<double>(rgba.size()), error / 4) << quality;
+  }
+}
+
+TEST(Jpeg, ColoursHaveTheFullResolutionFromAQualityOfNinetyOn) {
+  const std::vector<uint8_t> rgba(4 * 16 * 16, 90);
+  const auto samplings = [&](int quality) {
+    const std::string file = scene::jpeg({16, 16, rgba}, quality);
+    return static_cast<int>(file[segments(file, sof0).at(0) + 11]);
+  };
+  EXPECT_EQ(samplings(89), 0x22);
+  EXPECT_EQ(samplings(90), 0x11);
 }
 
 std::string decoded_hash(const std::string& name) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG: what its pixels are, and that no damaged file gives any.
 #include <array>
+#include <cstdlib>
+#include <zlib.h>
 
 #include "tests/unit/decoded_image.h"
 #include "tests/unit/image_files.h"
@@ -133,6 +135,89 @@ TEST(Png, KeepsEveryByte) {
   const auto read = scene::decode_image(scene::png(60, 70, rgba)).found;
   ASSERT_TRUE(read && read->bytes.size() == rgba.size() / 4);
   for (size_t i = 0; i < rgba.size(); ++i) ASSERT_EQ(read->bytes[i / 4] >> (8 * (i % 4)) & 255, rgba[i]) << i;
+}
+
+std::vector<uint8_t> noisy_picture(int width, int height, bool has_alpha) {
+  std::vector<uint8_t> rgba;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const int value : {x * x / 9, (x ^ y) * 3, x * y / 31 % 7, has_alpha ? x + y : 255})
+        rgba.push_back(static_cast<uint8_t>(value));
+  return rgba;
+}
+
+uint32_t number(std::string_view bytes, size_t at) {
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
+  return value;
+}
+
+/// A reader of its own: the chunks with zlib's checksum, their data through zlib, and the filters as the standard has them
+/// (PNG, second edition, 9.2).
+std::vector<uint8_t> read_by_the_standard(const std::string& file) {
+  const auto bytes_of = [&](size_t at) { return reinterpret_cast<const Bytef*>(file.data() + at); };
+  EXPECT_EQ(file.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  std::string packed, header, last;
+  size_t at = 8;
+  for (size_t length = 0; at < file.size(); at += 12 + length) {
+    length = number(file, at);
+    const std::string type = last = file.substr(at + 4, 4), data = file.substr(at + 8, length);
+    EXPECT_EQ(number(file, at + 8 + length), crc32(0, bytes_of(at + 4), static_cast<uInt>(length + 4)));
+    if (type == "IHDR") header = data;
+    if (type == "IDAT") packed += data;
+  }
+  EXPECT_EQ(at, file.size());
+  EXPECT_EQ(last, "IEND");
+  const size_t width = number(header, 0), height = number(header, 4), channels = header[9] == 2 ? 3 : 4;
+  EXPECT_TRUE(header[8] == 8 && (header[9] == 2 || header[9] == 6));
+  const size_t row = width * channels;
+  std::vector<uint8_t> raw((row + 1) * height), above(row), rgba;
+  auto size = static_cast<uLongf>(raw.size());
+  EXPECT_EQ(uncompress(raw.data(), &size, reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size())), Z_OK);
+  EXPECT_EQ(size, raw.size());
+  for (size_t y = 0; y < height; ++y) {
+    uint8_t* const line = &raw[y * (row + 1)] + 1;
+    for (size_t i = 0; i < row; ++i) {
+      const int a = i < channels ? 0 : line[i - channels], b = above[i], c = i < channels ? 0 : above[i - channels];
+      const int p = a + b - c, pa = std::abs(p - a), pb = std::abs(p - b), pc = std::abs(p - c);
+      const int predicted[] = {0, a, b, (a + b) / 2, pa <= pb && pa <= pc ? a : pb <= pc ? b : c};
+      line[i] = static_cast<uint8_t>(line[i] + predicted[raw[y * (row + 1)]]);
+    }
+    above.assign(line, line + row);
+    for (size_t i = 0; i < row; ++i) {
+      rgba.push_back(line[i]);
+      if (channels == 3 && i % 3 == 2) rgba.push_back(255);
+    }
+  }
+  return rgba;
+}
+
+TEST(Png, TwoReadersReadWhatIsWritten) {
+  for (const auto& [width, height] : {std::pair(1, 1), {1, 300}, {300, 1}, {333, 257}, {700, 200}}) {
+    for (const bool has_alpha : {false, true}) {
+      const std::vector<uint8_t> rgba = noisy_picture(width, height, has_alpha);
+      const std::string file = scene::png(width, height, rgba);
+      EXPECT_EQ(read_by_the_standard(file), rgba) << width << " x " << height;
+      const auto read = scene::decode_image(file);
+      ASSERT_TRUE(read.found) << read.reason;
+      for (size_t i = 0; i < rgba.size(); ++i) ASSERT_EQ(read.found->bytes[i / 4] >> (8 * (i % 4)) & 255, rgba[i]) << i;
+    }
+  }
+}
+
+TEST(Png, FilesDoNotDependOnTheNumberOfThreads) {
+  const std::vector<uint8_t> rgba = noisy_picture(700, 400, true);
+  const std::string file = scene::png(700, 400, rgba, 1);
+  size_t bands = 0;
+  for (size_t at = file.find("IDAT"); at != std::string::npos; at = file.find("IDAT", at + 4)) ++bands;
+  EXPECT_GT(bands, 3u);
+  for (const int threads : {2, 3, 16, 0}) EXPECT_TRUE(scene::png(700, 400, rgba, threads) == file) << threads;
+}
+
+TEST(Png, OpaquePicturesHaveNoAlpha) {
+  const size_t color_type = 25;
+  EXPECT_EQ(scene::png(1, 1, std::vector<uint8_t>{1, 2, 3, 255})[color_type], 2);
+  EXPECT_EQ(scene::png(1, 1, std::vector<uint8_t>{1, 2, 3, 254})[color_type], 6);
 }
 
 TEST(Png, IgnoresColourProfiles) {
