@@ -86,6 +86,11 @@ class Random {
 
 }  // namespace
 
+Bounds bounds_of(const Subject& subject, const driver::Field& field) {
+  const Range range = range_of(subject.effect, field);
+  return {range.low, range.high};
+}
+
 std::vector<int32_t> inputs_of(const Subject& subject, const driver::Program& program, size_t rows) {
   Random random;
   std::vector<int32_t> words;

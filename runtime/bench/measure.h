@@ -25,6 +25,7 @@ struct BenchOptions {
   std::string compiler;            ///< for generated C++
   support::Seconds build_timeout = support::default_time_limit;
   bool vulkan = true;  ///< measure vulkan, also with GLSL's own built-ins
+  bool peers = true;   ///< measure scalar C++ of others: written by hand with GLM, and made by SPIRV-Cross
   std::string device;
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
@@ -36,13 +37,20 @@ inline constexpr double no_digit = 0x1p24;
 struct Point {
   std::string effect;     ///< "cook_torrance", "pow", "material_balls"
   std::string form;       ///< "source", "library", "function", "scene"
-  std::string precision;  ///< "fast", "default", "precise"; "built-ins" are GLSL's own
-  std::string backend;    ///< "cpu", "vulkan"
+  std::string precision;  ///< "fast", "default", "precise"; "built-ins" are GLSL's own; "peer": others' C++
+  std::string backend;    ///< "cpu", "vulkan"; of peers "glm", "spirv-cross"
   std::string lanes;      ///< of the cpu backend: "16x2"
   /// Nanoseconds for one more row of a table or one pixel of a scene, without the fixed cost of a call: the median, and
   /// the interquartile range. `transfer` is the time of a program that only reads the same inputs and writes as many
   /// results; computation may overlap with it.
   double nanoseconds = 0, spread = 0, transfer = 0;
+  /// Nanoseconds for one more evaluation whose inputs are made in registers and whose results are folded: `evaluation` as
+  /// a whole, `making` without the subject, `compute` the difference, with the interquartile range. Not of scenes.
+  double compute = 0, compute_spread = 0, evaluation = 0, making = 0;
+  /// Of the machine code that is measured by `evaluation`, on the widest lanes of the cpu: cycles for one evaluation as
+  /// measured, as the ports allow, and as llvm-mca simulates; see ports.h. 0 where it is not known.
+  double cycles = 0, port_cycles = 0, simulated_cycles = 0, spills = 0;
+  std::string busiest = {};  ///< port, or "dispatch"
   /// Against the reference, over all components, in ULP of the exact result, at most no_digit.
   double max_ulp = 0, mean_ulp = 0;
   double max_absolute = 0;  ///< over results that are finite
@@ -51,6 +59,8 @@ struct Point {
 
 struct Report {
   std::vector<std::string> machines;  ///< the description of each backend
+  std::vector<std::string> notes;     ///< what was left out, and why
+  double gigahertz = 0;               ///< the clock during the measurement; 0: not known
   std::vector<Point> points;
 };
 
@@ -58,7 +68,10 @@ struct Report {
 /// cannot run.
 std::optional<Report> measure(const BenchOptions& options, support::Diagnostics& diagnostics);
 
-/// Whether all points of the same effect, form and precision computed the same bits; built-ins are exempt.
+/// What is compared: the time of the computation alone, or that of a pixel of a scene.
+inline double time_of(const Point& point) { return point.form == "scene" ? point.nanoseconds : point.compute; }
+
+/// Whether all points of the same effect, form and precision computed the same bits; built-ins and peers are exempt.
 bool all_identical(const Report& report);
 
 /// One line for each point, with a heading.
@@ -66,6 +79,9 @@ std::string csv_text(const Report& report);
 std::string json_text(const Report& report);
 /// The table that the command prints.
 std::string summary(const Report& report);
+/// For README: effects on the fastest lanes of the cpu in computation apart from transfer, the share of the port bound, and
+/// ratios to scalar C++ and to Vulkan, as a table in Markdown.
+std::string ratios_text(const Report& report);
 
 /// The points that no other point beats in both time and error, fastest first.
 std::vector<const Point*> pareto_front(const std::vector<const Point*>& points);

@@ -9,14 +9,14 @@ namespace isoshade::bench {
 
 namespace {
 
-constexpr int columns = 4;
+constexpr int columns = 3;
 
 /// The hollow gnuplot mark of a precision; the next number is the filled mark of the same shape.
 struct Mark {
   const char* precision;
   int shape;
 };
-constexpr Mark marks[] = {{"fast", 8}, {"default", 6}, {"precise", 4}, {"built-ins", 2}};
+constexpr Mark marks[] = {{"fast", 8}, {"default", 6}, {"precise", 4}, {"built-ins", 2}, {"peer", 1}};
 
 /// The lanes to plot: the last of the cpu, which are the fastest.
 std::string drawn_lanes(const Report& report) {
@@ -26,8 +26,10 @@ std::string drawn_lanes(const Report& report) {
   return lanes;
 }
 
-/// Coordinates of a point. A logarithmic axis cannot show an error of 0.
-double time_of(const Point& point) { return point.nanoseconds; }
+/// Whether bits may differ from ours.
+bool is_foreign(std::string_view precision) { return precision == "built-ins" || precision == "peer"; }
+
+/// A logarithmic axis cannot show an error of 0.
 double error_of(const Point& point) { return std::max(point.max_ulp, 0.1); }
 
 std::string quoted(const std::string& text) {
@@ -49,11 +51,11 @@ class Plot {
   std::string text(const std::string& output) {
     const int rows = static_cast<int>(effects_.size() + columns) / columns;  // one more panel for the key
     text_ = fmt::format(
-        "set terminal svg size {},{} font \"sans-serif,12\" background \"white\"\nset output {}\n"
+        "set terminal svg size {},{} font \"sans-serif,14\" background \"white\"\nset output {}\n"
         "set multiplot layout {},{} title \"Time against error; below and to the left is better\"\n"
         "set logscale xy\nset grid back lc rgb \"#dddddd\"\nset format y \"10^{{%T}}\"\nset key off\n"
-        "set tics nomirror\nset border 3\nset offsets graph 0.1, graph 0.15, graph 0.1, graph 0.1\n",
-        columns * 310, rows * 270 + 40, quoted(output), rows, columns);
+        "set tics nomirror\nset border 3\nset style fill transparent solid 0.1\n",
+        columns * 400, rows * 320 + 40, quoted(output), rows, columns);
     for (size_t i = 0; i < effects_.size(); ++i) panel(effects_[i], i);
     key();
     return text_ + "unset multiplot\n";
@@ -64,10 +66,29 @@ class Plot {
   std::vector<const Point*> points_of(const std::string& effect, bool vulkan) const {
     std::vector<const Point*> points;
     for (const Point& point : report_.points)
-      if (point.effect == effect && point.nanoseconds > 0 &&
-          (vulkan ? point.backend == "vulkan" : point.lanes == lanes_))
+      if (point.effect == effect && time_of(point) > 0 &&
+          (vulkan ? point.backend == "vulkan" : point.lanes == lanes_ || point.precision == "peer"))
         points.push_back(&point);
     return points;
+  }
+
+  /// What a panel shows.
+  struct Area {
+    double earliest, latest, lowest, highest;
+    std::string unit;
+  };
+  Area area_of(const std::string& effect) const {
+    Area area{1e300, 0, 1e300, 0, "ns per evaluation, without transfer"};
+    for (const bool vulkan : {false, true})
+      for (const Point* point : points_of(effect, vulkan)) {
+        area.earliest = std::min(area.earliest, time_of(*point) / 1.5);
+        area.latest = std::max(area.latest, time_of(*point) * 2.5);  // with room for a label
+        area.lowest = std::min(area.lowest, error_of(*point) / 3);
+        area.highest = std::max(area.highest, error_of(*point) * 6);
+        if (point->form == "scene") area.unit = "ns per pixel";
+      }
+    if (area.latest == 0) return {0.1, 1, 0.1, 1, area.unit};
+    return area;
   }
 
   void add_series(const std::string& data, const std::string& style) {
@@ -79,36 +100,46 @@ class Plot {
   void panel(const std::string& effect, size_t index) {
     blocks_.clear();
     plots_.clear();
+    const Area area = area_of(effect);
     for (const bool vulkan : {false, true}) {
       const std::vector<const Point*> points = points_of(effect, vulkan);
       const char* color = vulkan ? "#b3541e" : "#1f4e9c";
       std::vector<const Point*> ours;
       for (const Point* point : points)
-        if (point->precision != "built-ins") ours.push_back(point);
+        if (!is_foreign(point->precision)) ours.push_back(point);
       if (ours.empty()) continue;
-      std::string front;
-      for (const Point* point : pareto_front(ours))
-        front += fmt::format("{} {}\n", time_of(*point), error_of(*point));
-      add_series(front, fmt::format("with fsteps lc rgb \"{}\" lw 1.5 dt {}", color, vulkan ? 2 : 1));
+      // What lies beyond the front is beaten by some point.
+      std::string corners, front;
+      double error = area.highest;
+      for (const Point* point : pareto_front(ours)) {
+        for (const double y : {error, error_of(*point)}) corners += fmt::format("{} {}\n", time_of(*point), y);
+        error = error_of(*point);
+      }
+      front = corners + fmt::format("{} {}\n", area.latest, error);
+      add_series(front + fmt::format("{} {}\n", area.latest, area.highest),
+                 fmt::format("with filledcurves closed fc rgb \"{}\" fs transparent solid 0.10 noborder", color));
+      add_series(front, fmt::format("with lines lc rgb \"{}\" lw 3 dt {}", color, vulkan ? 2 : 1));
       for (const Mark& mark : marks) {
         std::string data, letters;
         for (const Point* point : points) {
           if (point->precision != mark.precision) continue;
           data += fmt::format("{} {}\n", time_of(*point), error_of(*point));
-          if (point->form == "source") letters += fmt::format("{} {} s\n", time_of(*point), error_of(*point));
+          if (point->precision == "peer")
+            letters += fmt::format("{} {} {}\n", time_of(*point), error_of(*point), point->backend);
+          else if (point->form == "source") letters += fmt::format("{} {} s\n", time_of(*point), error_of(*point));
         }
-        const bool built_ins = mark.precision == std::string_view("built-ins");
-        const int shape = mark.shape + (vulkan || built_ins ? 0 : 1);
+        const bool foreign = is_foreign(mark.precision);
+        const int shape = mark.shape + (vulkan || foreign ? 0 : 1);
         if (!data.empty())
-          add_series(data, fmt::format("with points pt {} ps 1.1 lw 1.5 lc rgb \"{}\"", shape,
-                                       built_ins ? "#333333" : color));
+          add_series(data, fmt::format("with points pt {} ps 1.5 lw 2 lc rgb \"{}\"", shape,
+                                       foreign ? "#333333" : color));
         if (!letters.empty())
-          add_series(letters, "with labels offset 0.9,0.5 font \",10\" textcolor rgb \"#333333\"");
+          add_series(letters, "with labels left offset 0.8,0.5 font \",11\" textcolor rgb \"#333333\"");
       }
     }
     text_ +=
-        blocks_ + fmt::format("set title {} noenhanced\nset xlabel \"{}\"\nset ylabel \"{}\"\n",
-                              quoted(effect), "ns per row or pixel", index % columns == 0 ? "largest error, ULP" : "");
+        blocks_ + fmt::format("set title {} noenhanced\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel \"{}\"\nset ylabel \"{}\"\n",
+                              quoted(effect), area.earliest, area.latest, area.lowest, area.highest, area.unit, index % columns == 0 ? "largest error, ULP" : "");
     if (plots_.empty()) plots_.push_back("NaN");
     text_ += "plot ";
     for (size_t i = 0; i < plots_.size(); ++i) text_ += (i ? ", \\\n  " : "") + plots_[i];
@@ -120,7 +151,7 @@ class Plot {
     text_ +=
         "unset logscale\nunset tics\nunset border\nunset grid\nset title \"\"\nset xlabel \"\"\nset ylabel "
         "\"\"\n"
-        "set offsets 0,0,0,0\nset xrange [0:1]\nset yrange [0:1]\n";
+        "set xrange [0:1]\nset yrange [0:1]\n";
     std::string marks_text, labels;
     const auto line = [&](double y, const std::string& text) {
       labels += fmt::format("set label {} at 0.22,{} left noenhanced\n", quoted(text), y);
@@ -139,10 +170,12 @@ class Plot {
     };
     double y = 0.95;
     for (const Mark& m : marks) {
-      const bool built_ins = m.precision == std::string_view("built-ins");
-      if (!built_ins) mark(0.06, y, m.shape + 1, "#1f4e9c");
-      mark(0.14, y, m.shape, built_ins ? "#333333" : "#b3541e");
-      line(y, built_ins ? "GLSL's built-ins (bits differ)" : std::string("precision ") + m.precision);
+      const std::string_view precision = m.precision;
+      if (!is_foreign(precision)) mark(0.06, y, m.shape + 1, "#1f4e9c");
+      mark(0.14, y, m.shape, is_foreign(precision) ? "#333333" : "#b3541e");
+      line(y, precision == "built-ins" ? "GLSL's built-ins on vulkan (bits differ)"
+              : precision == "peer"    ? "scalar C++ of others (bits differ)"
+                                       : "precision " + std::string(precision));
       y -= 0.11;
     }
     line(y, "filled: cpu, lanes " + lanes_);

@@ -162,6 +162,23 @@ std::optional<driver::Program> compile(const Subject& subject, functions::Tier t
   return driver::compile_function(source, options, diagnostics);
 }
 
+std::optional<Lowered> lowered(const Subject& subject, check::Library& library, Diagnostics& diagnostics) {
+  if (subject.variant != nullptr) return Lowered{row_module(*subject.variant), 0};
+  const support::Source source = graph::read_source(subject.document, diagnostics);
+  if (source == nullptr) return std::nullopt;
+  driver::CompileOptions options;
+  options.library = &library;
+  options.reference = true;
+  auto program = driver::compile_function(source, options, diagnostics);
+  if (!program) return std::nullopt;
+  ir::Function& table = program->module.functions[program->entry];
+  const auto call = std::ranges::find(table.instructions, ir::Opcode::call, &ir::Instruction::op);
+  support::assert_that(call != table.instructions.end(), "an eval program calls no function");
+  const uint32_t function = call->imm;
+  table.name = "eval_of_table";  // programs of other kernels are made of the module
+  return Lowered{std::move(program->module), function};
+}
+
 driver::Program idle_program(const driver::Program& program) {
   ir::Module module = lower::frame_module();
   ir::Function function;

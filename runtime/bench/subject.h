@@ -33,8 +33,21 @@ std::vector<Subject> subjects(const std::string& graphs, const std::string& filt
 std::optional<driver::Program> compile(const Subject& subject, functions::Tier tier, check::Library& library,
                                        support::Diagnostics& diagnostics);
 
+/// The subject's function as lowered, with calls of functions.def and without optimisation.
+struct Lowered {
+  ir::Module module;
+  uint32_t function;  ///< its index in the module
+};
+std::optional<Lowered> lowered(const Subject& subject, check::Library& library, support::Diagnostics& diagnostics);
+
 /// A program with the same inputs and results that only sums its inputs; its time is that of reading and writing.
 driver::Program idle_program(const driver::Program& program);
+
+/// The range of the inputs of a column.
+struct Bounds {
+  float low, high;
+};
+Bounds bounds_of(const Subject& subject, const driver::Field& field);
 
 /// `rows` rows of inputs for a program, the same in every run: floats in the range of the input, half of them uniform and
 /// half logarithmic; unit vectors in the hemisphere around the first one.

@@ -280,11 +280,19 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   BenchArguments bench;
   CLI::App* bench_app = app.add_subcommand(
-      "bench", "Measure run time and error: formulas, precisions, lane counts, Vulkan and GLSL's built-ins");
+      "bench", "Measure run time and error: formulas, precisions, lane counts, Vulkan, GLSL's built-ins and scalar C++; or frames");
   bench_app->add_option("-o,--output", bench.output,
-                        "Folder for bench.csv, bench.json, bench.gp and bench.svg (drawn by gnuplot)");
+                        "Folder for bench.csv, bench.json, bench.md, bench.gp and bench.svg (drawn by gnuplot)");
   bench_app->add_option("--only", bench.only, "Only effects, functions and scenes whose names contain this");
-  bench_app->add_flag("--quick", bench.quick, "Few rows and repetitions: a rough look, not a measurement");
+  bench_app->add_flag("--frames", bench.frames,
+                      "Measure frames by step instead: all scenes and a mesh of 1 thousand to 1 million triangles, each number of "
+                      "threads (or that of --threads); writes frames.csv, .json, .gp and .svg");
+  bench_app->add_option("--sizes", bench.sizes, "Sides of square frames, separated by commas (default: 256,512,1024,2048,4096)")
+      ->delimiter(',')
+      ->check(CLI::Range(16, 8192));
+  bench_app->add_option("--repetitions", bench.repetitions, "How often each thing is timed (default: 31; of frames 9)")
+      ->check(CLI::Range(1, 1000));
+  bench_app->add_flag("--quick", bench.quick, "Few rows and repetitions, small frames: a rough look, not a measurement");
   bench_app->add_flag("--no-picture", bench.without_picture, "Write only the tables; gnuplot is not needed");
   bench_app->add_flag("--no-vulkan", bench.without_vulkan, "Measure only the cpu backend");
   bench_app

@@ -167,6 +167,9 @@ struct BenchArguments {
   bool quick = false;
   bool without_picture = false;
   bool without_vulkan = false;
+  bool frames = false;              ///< measure frames by step, not computations
+  std::vector<int> sizes;           ///< of frames; empty: 256 to 4096
+  int repetitions = 0;              ///< 0: as many as usual
   std::vector<std::string> lanes;  ///< of the cpu backend; empty: all that the machine has
   BackendChoice choice;
 };

@@ -5,6 +5,7 @@
 
 #include "compiler/support/process.h"
 #include "compiler/support/visible.h"
+#include "runtime/bench/frames.h"
 #include "runtime/bench/measure.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
@@ -57,14 +58,47 @@ bench::BenchOptions options_of(const BenchArguments& arguments, const Common& co
     options.exact_rows = 128;
     options.repetitions = 3;
   }
+  if (arguments.repetitions > 0) options.repetitions = arguments.repetitions;
   return options;
+}
+
+/// Writes the tables, and the plot unless `gnuplot` is empty.
+template <class Report>
+bool write_report(const Report& report, const std::string& folder, const char* name, const std::string& gnuplot,
+                  const Common& common, support::Diagnostics& diagnostics) {
+  std::error_code error;
+  fs::create_directories(folder, error);  // write_file reports a failure
+  const std::string stem = folder + "/" + name;
+  return scene::write_file(stem + ".csv", bench::csv_text(report), diagnostics) &&
+         scene::write_file(stem + ".json", bench::json_text(report), diagnostics) &&
+         (gnuplot.empty() || (scene::write_file(stem + ".gp", bench::gnuplot_text(report, stem + ".svg"), diagnostics) &&
+                              draw_picture(gnuplot, stem + ".gp", common.build_timeout, diagnostics)));
+}
+
+bool bench_frames(const BenchArguments& arguments, const Common& common, const std::string& gnuplot,
+                  support::Diagnostics& diagnostics) {
+  bench::FrameBenchOptions options{options_of(arguments, common), arguments.sizes, {}};
+  if (arguments.repetitions == 0) options.common.repetitions = arguments.quick ? 3 : 9;
+  if (arguments.quick && options.sizes.empty()) options.sizes = {256};
+  if (arguments.choice.threads > 0) options.threads = {arguments.choice.threads};
+  const auto report = bench::measure_frames(options, diagnostics);
+  if (!report) return false;
+  if (report->points.empty()) {
+    diagnostics
+        .report(support::Id::missing_argument, "no scene has a name that contains " + support::quote(arguments.only))
+        .suggest("omit --only to measure all");
+    return false;
+  }
+  if (!common.quiet) std::fputs(bench::summary(*report).c_str(), stdout);
+  return arguments.output.empty() || write_report(*report, arguments.output, "frames", gnuplot, common, diagnostics);
 }
 
 bool bench_to_folder(const BenchArguments& arguments, const Common& common, support::Diagnostics& diagnostics,
                      bool& identical) {
   const bool draws = !arguments.output.empty() && !arguments.without_picture;
-  const auto gnuplot = draws ? find_gnuplot(diagnostics) : std::nullopt;
-  if (draws && !gnuplot) return false;
+  const std::optional<std::string> gnuplot = draws ? find_gnuplot(diagnostics) : std::string();
+  if (!gnuplot) return false;
+  if (arguments.frames) return bench_frames(arguments, common, *gnuplot, diagnostics);
   const auto report = bench::measure(options_of(arguments, common), diagnostics);
   if (!report) return false;
   if (report->points.empty()) {
@@ -75,16 +109,11 @@ bool bench_to_folder(const BenchArguments& arguments, const Common& common, supp
     return false;
   }
   identical = bench::all_identical(*report);
-  if (!common.quiet) std::fputs(bench::summary(*report).c_str(), stdout);
-  if (arguments.output.empty()) return true;
-  std::error_code error;
-  fs::create_directories(arguments.output, error);  // write_file reports a failure
-  const std::string stem = arguments.output + "/bench";
-  return scene::write_file(stem + ".csv", bench::csv_text(*report), diagnostics) &&
-         scene::write_file(stem + ".json", bench::json_text(*report), diagnostics) &&
-         (!draws ||
-          (scene::write_file(stem + ".gp", bench::gnuplot_text(*report, stem + ".svg"), diagnostics) &&
-           draw_picture(*gnuplot, stem + ".gp", common.build_timeout, diagnostics)));
+  const std::string ratios = bench::ratios_text(*report);
+  if (!common.quiet) std::fputs((bench::summary(*report) + "\n" + ratios).c_str(), stdout);
+  return arguments.output.empty() ||
+         (write_report(*report, arguments.output, "bench", *gnuplot, common, diagnostics) &&
+          scene::write_file(arguments.output + "/bench.md", ratios, diagnostics));
 }
 
 }  // namespace
