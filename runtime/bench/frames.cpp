@@ -139,7 +139,7 @@ class FrameBench {
     const auto made = plan(scene, size);
     if (!made) return false;
     render::DrawStats stats;
-    if (!drawer.renderer->render(*made, stats, diagnostics_)) return false;
+    if (!drawer.renderer->draw(*made, stats, diagnostics_)) return false;
     triangles = static_cast<double>(made->stats.triangles);
     if (samples == nullptr) return true;
     samples->plan.push_back(made->stats.plan_seconds);
