@@ -52,6 +52,7 @@ struct Target {
   int width = 0;
   int height = 0;
   bool has_color = true;  ///< false: it holds depth alone, and no pixel program is run
+  bool operator==(const Target&) const = default;
 };
 
 /// A camera, the draws that it sees and the target that receives them. Its programs may read the targets of earlier
@@ -66,6 +67,7 @@ struct View {
   static constexpr size_t nothing = ~size_t{0};
   float background[4] = {0, 0, 0, 0};
   raster::DepthBias depth_bias = {};
+  uint64_t revision = 0;  ///< of all of the above, as those of Revisions
 };
 
 /// The item that takes the most room in an array of a frame, for messages; empty if there is none.
@@ -78,6 +80,16 @@ struct Largest {
 struct Window {
   int x = 0, y = 0;
   int width = 0, height = 0;
+};
+
+/// Numbers of the contents of a frame's arrays. Where a number is equal in two frames of this process and not 0, the two
+/// arrays have the same bits, so that what a backend has made of one serves for the other. 0 tells nothing. Code that
+/// changes an array of a planned frame sets its number to 0.
+struct Revisions {
+  uint64_t programs = 0;  ///< Frame::programs and Frame::cutouts: also the programs are the same objects
+  uint64_t vertices = 0, objects = 0, lights = 0, frame = 0;
+  uint64_t texels = 0, texel_bytes = 0, textures = 0;
+  bool operator==(const Revisions&) const = default;
 };
 
 /// All that is drawn for one picture: programs, the arrays of lower/frame_layout.h, and the views.
@@ -96,6 +108,7 @@ struct Frame {
   std::vector<int32_t> textures;
   int light_count = 0;
   std::vector<View> views;  ///< in the order in which they are drawn; the last one draws the picture
+  Revisions revisions;
   Largest largest_in_texels, largest_in_texel_bytes, largest_mesh;
   Largest largest_shadow;  ///< empty if shadow maps take less room than what else a view reads
 

@@ -55,13 +55,17 @@ class File {
   }
 
   bool read_all(std::string& text) const {
-    text.clear();
-    char part[65536];
+    text.resize(static_cast<size_t>(size()) + 1);  // the byte more receives nothing, at the end of the file
+    size_t count = 0;
     while (true) {
-      const ssize_t n = ::read(descriptor_, part, sizeof part);
+      if (count == text.size()) text.resize(2 * count);
+      const ssize_t n = ::read(descriptor_, text.data() + count, text.size() - count);
       if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return n == 0;
-      text.append(part, static_cast<size_t>(n));
+      if (n <= 0) {
+        text.resize(count);
+        return n == 0;
+      }
+      count += static_cast<size_t>(n);
     }
   }
 
@@ -276,9 +280,7 @@ namespace {
 
 /// The checksum includes the name, so that an entry under another entry's name is damaged.
 std::string seal_of(const std::string& name, std::string_view contents) {
-  std::string sealed = name + "\n";
-  sealed += contents;
-  return std::string(seal_mark) + support::sha256(sealed);
+  return std::string(seal_mark) + support::Sha256().add(name).add("\n").add(contents).hex();
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ ISOSHADE, GRAPHS = sys.argv[1], pathlib.Path(sys.argv[2])
 MANUAL = GRAPHS / "README.md"
 SHIPPED = GRAPHS / "schema" / "isoshade.schema.json"
 SHIPPED_REFLECTION = GRAPHS / "schema" / "isoshade.reflection.schema.json"
+SHIPPED_STATS = GRAPHS / "schema" / "isoshade.stats.schema.json"
 
 
 def printed(*arguments):
@@ -43,6 +44,7 @@ def update():
     SHIPPED.parent.mkdir(exist_ok=True)
     SHIPPED.write_text(printed("schema"))
     SHIPPED_REFLECTION.write_text(printed("schema", "--reflection"))
+    SHIPPED_STATS.write_text(printed("schema", "--stats"))
     for arguments in TABLES:
         before, _, after = manual_parts(arguments)
         MANUAL.write_text(before + printed(*arguments) + after)
@@ -264,6 +266,55 @@ class Reflection(unittest.TestCase):
             ("host/0/name", "printf"),
         ]:
             self.assertNotEqual(self.errors(changed(reflection, path, value)), [], f"{path} = {value}")
+
+
+class Stats(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.text = printed("schema", "--stats")
+        schema = json.loads(cls.text)
+        jsonschema.Draft7Validator.check_schema(schema)
+        cls.validator = jsonschema.Draft7Validator(schema)
+
+    def errors(self, stats):
+        return [f"{'/'.join(map(str, e.absolute_path))}: {e.message}" for e in self.validator.iter_errors(stats)]
+
+    def measure(self, *options):
+        scene = GRAPHS / "scenes" / "borders.json"
+        return json.loads(printed("render", scene, "--backend", "interpreter", "--size", "16x16", "--stats-json", "-", *options))
+
+    def test_the_shipped_schema_is_current(self):
+        self.assertTrue(SHIPPED_STATS.read_text() == self.text, "update it: schema_test.py ... --update")
+
+    def test_the_times_of_one_frame_and_of_many_are_valid(self):
+        for count in 1, 4:
+            stats = self.measure("--frames", str(count), "--turntable")
+            self.assertEqual(self.errors(stats), [])
+            self.assertEqual(stats["frames"], count)
+            for step, times in stats["milliseconds"].items():
+                self.assertEqual(len(times["frames"]), count, step)
+                self.assertEqual(times["frames"][0], times["first"], step)
+                self.assertEqual("median" in times, count > 1, step)
+                others = sorted(times["frames"][1:])
+                if others:
+                    self.assertEqual(times["median"], others[1], step)
+                    self.assertLessEqual(times["lower_quartile"], times["median"], step)
+                    self.assertLessEqual(times["median"], times["upper_quartile"], step)
+
+    def test_times_with_one_fault_are_not_valid(self):
+        stats = self.measure("--frames", "2")
+        for path, value in [
+            ("isoshade_frame_times", 2),
+            ("backend", ...),
+            ("threads", 0),
+            ("frames", "2"),
+            ("milliseconds/plan", ...),
+            ("milliseconds/idle", {"first": 1, "frames": [1]}),
+            ("milliseconds/draw/first", -1),
+            ("milliseconds/draw/mean", 1),
+            ("milliseconds/draw/frames", []),
+        ]:
+            self.assertNotEqual(self.errors(changed(stats, path, value)), [], f"{path} = {value}")
 
 
 class Manual(unittest.TestCase):

@@ -91,15 +91,20 @@ std::optional<VariedParameter> parse_varied(const std::string& text) {
 }
 
 std::optional<FrameTimes> parse_frames(const std::string& text) {
+  constexpr int most_frames = 999'999;
   const std::vector<std::string> parts = split(text, ':');
+  if (parts.size() == 1) {
+    const auto count = parse_count(text, most_frames);
+    return count ? std::optional(FrameTimes{.count = *count, .at_scene_time = true}) : std::nullopt;
+  }
   if (parts.size() != 3) return std::nullopt;
   const auto time = [](const std::string& part) {
     const auto number = support::parse_float_in_range(part);
     return number && *number >= -1e9f && *number <= 1e9f ? number : std::nullopt;
   };
   const auto from = time(parts[0]), to = time(parts[1]);
-  const auto count = parse_count(parts[2], 999'999);
-  return from && to && count && *from <= *to ? std::optional(FrameTimes{*from, *to, *count}) : std::nullopt;
+  const auto count = parse_count(parts[2], most_frames);
+  return from && to && count && *from <= *to ? std::optional(FrameTimes{*from, *to, *count, false}) : std::nullopt;
 }
 
 std::optional<NumberedPath> NumberedPath::parse(const std::string& text) {

@@ -16,7 +16,7 @@ std::optional<NamedRange> parse_range(const std::string& text);
 /// "NAME=FROM:TO:COUNT", numbers or lists of as many numbers with commas; or "NAME=VALUE;VALUE;...".
 std::optional<VariedParameter> parse_varied(const std::string& text);
 
-/// "0:2:48", at most 999,999 frames.
+/// "0:2:48" or "48", at most 999,999 frames.
 std::optional<FrameTimes> parse_frames(const std::string& text);
 
 /// A name of files with one field for a number: "frame_%04d.png". "%%" stands for a percent sign.

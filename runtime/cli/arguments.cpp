@@ -140,12 +140,12 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   std::string render_frames;
   CLI::App* render_app = app.add_subcommand("render", "Render a scene to an image");
   render_app->add_option("SCENE", render.scene, "A scene document")->required();
-  render_app
-      ->add_option("-o,--output", render.output,
-                   "FILE.png, FILE.jpg or FILE.ppm (encoded, 8 bits), FILE.exr (linear floats, with depth) or FILE.pfm "
-                   "(linear floats of the colors). With --frames a name with a field for the number, frame_%04d.png, or one "
-                   "FILE.apng or FILE.gif, or - for all frames one after the other")
-      ->required();
+  render_app->add_option(
+      "-o,--output", render.output,
+      "FILE.png, FILE.jpg or FILE.ppm (encoded, 8 bits), FILE.exr (linear floats, with depth) or FILE.pfm "
+      "(linear floats of the colors). With --frames a name with a field for the number, frame_%04d.png, or one "
+      "FILE.apng or FILE.gif, or - for all frames one after the other; without -o --frames only measures, which "
+      "needs --stats or --stats-json");
   add_output_choice(*render_app, render.output_choice, true);
   render_app
       ->add_option(
@@ -155,17 +155,23 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->capture_default_str();
   render_app->add_option("--size", render_size, "Size in pixels, instead of the scene's")->check(size_text);
   render_app->add_flag("--stats", render.stats,
-                       "Report what was drawn, what was skipped and why, and the time of each step");
+                       "Report what was drawn, what was skipped and why, and the time of each step; with --frames that of "
+                       "the first frame, and a table of the times of all");
   add_fail_on_nan(*render_app, render.fail_on_nan);
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
   CLI::Option* frames_option =
       render_app
           ->add_option("--frames", render_frames,
-                       "Render an animation: COUNT frames at equal steps of time, the first and the last included")
+                       "Render an animation: COUNT frames at equal steps of time, the first and the last included; a COUNT "
+                       "alone renders all frames at the scene's time")
           ->check(frames_text)
           ->excludes(render_app->get_option("--time"));
   render_app->add_flag("--turntable", render.turntable, "Turn the camera once about its target over the frames")
+      ->needs(frames_option);
+  render_app
+      ->add_option("--stats-json", render.stats_json,
+                   "With --frames: FILE for the time of each step of each frame as JSON; - is standard output")
       ->needs(frames_option);
   add_lanes(*render_app, render.choice);
   add_choice(*render_app, render.choice);
@@ -326,13 +332,19 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   CLI::App* schema_app =
       app.add_subcommand("schema", "Print the JSON Schema (draft-07) of all documents, for editors");
   schema_app->add_flag("--reflection", schema.reflection, "The schema of what `compile` writes as NAME.json");
-  schema_app->add_flag("--markdown", schema.markdown,
-                       "Print the keys of scenes, or of reflections, as the tables of graphs/README.md instead");
+  schema_app->add_flag("--stats", schema.stats, "The schema of what `render --frames --stats-json` writes")
+      ->excludes(schema_app->get_option("--reflection"));
+  schema_app
+      ->add_flag("--markdown", schema.markdown,
+                 "Print the keys of scenes, or of reflections, as the tables of graphs/README.md instead")
+      ->excludes(schema_app->get_option("--stats"));
 
   try {
     app.parse(argc, argv);
     if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
       throw CLI::RequiredError("--output");
+    const bool measures = !render_frames.empty() && (render.stats || !render.stats_json.empty());
+    if (render_app->parsed() && render.output.empty() && !measures) throw CLI::RequiredError("--output");
     if (varied.size() > 2) throw CLI::ValidationError("--vary", "a sheet has columns and rows; give --vary at most twice");
   } catch (const CLI::ParseError& error) {
     // CLI11 has an exit code for each kind of error; isoshade documents a single one.

@@ -67,15 +67,16 @@ struct CompileArguments {
   std::string dump_after;
 };
 
-/// Times of pictures: `count` of them from `first` to `last`, both included.
+/// Times of pictures: `count` of them from `first` to `last`, both included; or all at the scene's time.
 struct FrameTimes {
   float first = 0, last = 0;
   int count = 1;
+  bool at_scene_time = false;
 };
 
 struct RenderArguments {
   std::string scene;
-  std::string output;
+  std::string output;  ///< empty: frames are only measured
   OutputChoice output_choice;
   std::string backend = "cpu";
   std::optional<Size> size;
@@ -83,6 +84,7 @@ struct RenderArguments {
   bool turntable = false;  ///< the camera turns once about its target over the frames
   SceneChanges changes;
   bool stats = false;
+  std::string stats_json;  ///< a file for the times of all frames, or "-"; empty: none
   bool fail_on_nan = false;
   functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
@@ -190,6 +192,7 @@ struct NodesArguments {
 
 struct SchemaArguments {
   bool reflection = false;  ///< of reflections, not of documents
+  bool stats = false;       ///< of the times of frames
   bool markdown = false;    ///< the keys of scenes or reflections, as the manual's tables
 };
 

@@ -8,9 +8,13 @@
 
 #include "compiler/support/visible.h"
 #include "runtime/cli/argument_texts.h"
+#include "runtime/cli/frame_times.h"
 #include "runtime/lanes/float_rules.h"
+#include "runtime/render/samples.h"
+#include "runtime/render/clock.h"
 #include "runtime/scene/animation_file.h"
 #include "runtime/scene/image_file.h"
+#include "runtime/scene/load.h"
 #include "runtime/scene/output_file.h"
 #include "runtime/scene/placement.h"
 
@@ -68,7 +72,7 @@ class FrameSequence {
         renderer_(arguments, common) {}
 
   int run() {
-    if (!check_output()) return failure;
+    if (writes() && !check_output()) return failure;
     const ProgressBar bar(common_, times_.count);
     int result = success;
     for (int i = 0; i < times_.count; ++i) {
@@ -78,12 +82,17 @@ class FrameSequence {
       append_new(all_, diagnostics);
       if (result == failure || diagnostics.has_errors()) return failure;
     }
+    bar.clear();
     if (file_ && !scene::write_file(arguments_.output, file_->finish(), all_)) return failure;
+    if (!report_times()) return failure;
     if (result == different) std::fputs(not_finite_text, stderr);
     return result;
   }
 
  private:
+  /// Otherwise frames are only measured.
+  bool writes() const { return !arguments_.output.empty(); }
+
   bool check_output() {
     const OutputChoice& choice = arguments_.output_choice;
     if (format_) {
@@ -106,57 +115,102 @@ class FrameSequence {
 
   std::string path_of(int frame) const { return numbered_ && !format_ ? numbered_->of(frame) : arguments_.output; }
 
-  float time_of(int frame) const {
+  /// Nothing for the scene's own time.
+  std::optional<float> time_of(int frame) const {
+    if (times_.at_scene_time) return std::nullopt;
     const double first = static_cast<double>(times_.first), last = static_cast<double>(times_.last);
     if (times_.count == 1) return times_.first;
     return static_cast<float>(first + (last - first) * frame / (times_.count - 1));
   }
 
-  /// Turns the camera of the frame, and that of the frame before as the frame before is turned.
-  void turn(scene::Scene& scene, int frame) const {
-    if (scene.before == nullptr) {
-      scene.before = std::make_shared<scene::Scene>(scene);
-      const double before = static_cast<double>(scene.time) - 1 / static_cast<double>(scene.frames_per_second);
-      scene.before->time = static_cast<float>(before);
+  /// Makes the scene of a frame. One that has no animation is loaded once.
+  bool load(int frame, Diagnostics& diagnostics) {
+    const std::optional<float> time = time_of(frame);
+    if (!document_) {
+      const support::Source source = graph::read_source(arguments_.scene, diagnostics);
+      if (source == nullptr) return false;
+      document_ = scene::SceneDocument::load(source, arguments_.changes.settings, make_library(common_).files(),
+                                             diagnostics);
+      if (!document_) return false;
     }
+    if (!scene_ || document_->is_animated()) {
+      scene_ = document_->at(time, diagnostics);
+      if (!scene_ || !apply_changes(arguments_.changes, *scene_, diagnostics)) return false;
+      if (arguments_.turntable && scene_->before == nullptr) scene_->before = std::make_shared<scene::Scene>(*scene_);
+      camera_ = scene_->camera;
+      if (arguments_.turntable) camera_before_ = scene_->before->camera;
+    }
+    if (time) scene_->time = *time;
+    if (arguments_.turntable) turn(frame);
+    return true;
+  }
+
+  /// Turns the camera of the frame, and that of the frame before as the frame before is turned.
+  void turn(int frame) {
+    scene::Scene& before = *scene_->before;
+    if (!document_->is_animated())
+      before.time = static_cast<float>(static_cast<double>(scene_->time) -
+                                       1 / static_cast<double>(scene_->frames_per_second));
     const lanes::FpGuard guard;
-    scene.camera = scene::turned(scene.camera, frame, times_.count);
-    scene.before->camera =
-        scene::turned(scene.before->camera, (frame + times_.count - 1) % times_.count, times_.count);
+    scene_->camera = scene::turned(camera_, frame, times_.count);
+    before.camera = scene::turned(camera_before_, (frame + times_.count - 1) % times_.count, times_.count);
   }
 
   int render(int frame, Diagnostics& diagnostics) {
-    SceneChanges changes = arguments_.changes;
-    changes.time = time_of(frame);
-    auto scene = load_scene(arguments_.scene, changes, common_, diagnostics);
-    if (!scene) return failure;
-    if (arguments_.turntable) turn(*scene, frame);
-    const auto plan = renderer_.plan(*scene, diagnostics);
-    if (!plan || !may_write(path_of(frame), diagnostics)) return failure;
-    backends::Image image;
+    render::Clock clock, whole;
+    StepTimes& steps = measured_.frames.emplace_back();
+    if (!load(frame, diagnostics)) return failure;
+    steps[Step::load] = clock.lap();
+    const render::Plan* plan = renderer_.plan(*scene_, diagnostics);
+    steps[Step::plan] = clock.lap();
+    if (plan == nullptr || (writes() && !may_write(path_of(frame), diagnostics))) return failure;
     render::DrawStats stats;
-    if (!renderer_.draw(*plan, image, stats, diagnostics) || !write(frame, *scene, image, diagnostics)) return failure;
-    render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
+    if (!renderer_.draw(*plan, stats, diagnostics)) return failure;
+    steps[Step::build] = stats.build_seconds;
+    steps[Step::vertices] = stats.transform_seconds;
+    steps[Step::clip] = stats.clip_seconds;
+    steps[Step::draw] = stats.draw_seconds;
+    steps[Step::posts] = stats.post_seconds;
+    clock.lap();
+    if (writes() && !write(frame, diagnostics)) return failure;
+    steps[Step::write] = clock.lap();
+    render::warn_non_finite(*scene_, *plan, stats.non_finite, diagnostics);
+    steps[Step::frame] = whole.lap();
+    const backends::Target& target = plan->frame.picture().target;
+    const int side = render::samples_each_way(plan->samples);
+    measured_.width = target.width / side;
+    measured_.height = target.height / side;
+    measured_.samples = plan->samples;
     return arguments_.fail_on_nan && !stats.non_finite.none() ? different : success;
   }
 
-  bool write(int frame, const scene::Scene& scene, const backends::Image& image, Diagnostics& diagnostics) {
-    const scene::Output& output = scene.output;
+  bool write(int frame, Diagnostics& diagnostics) {
+    const scene::Output& output = scene_->output;
     const int threads = arguments_.choice.threads;
+    const scene::ImageView image = renderer_.image();
     if (output_) {
       output_->options.encoding = output.encoding;
       output_->options.exposure = output.exposure;
-      return scene::write_image(path_of(frame), *output_->format, {image.width, image.height, image.rgba, image.depth},
-                                output_->options, diagnostics);
+      return scene::write_image(path_of(frame), *output_->format, image, output_->options, diagnostics);
     }
     if (!file_) {
       // In real time; a single picture has no next one.
       const double length = static_cast<double>(times_.last) - static_cast<double>(times_.first);
-      const double seconds = length > 0 && times_.count > 1 ? length / (times_.count - 1) : 1 / static_cast<double>(scene.frames_per_second);
+      const double seconds = length > 0 && times_.count > 1 ? length / (times_.count - 1)
+                                                            : 1 / static_cast<double>(scene_->frames_per_second);
       file_.emplace(*format_, image.width, image.height, seconds, threads);
     }
     file_->add(scene::encode(image.rgba, output.encoding, output.exposure, scene::Alpha::straight, threads));
     return true;
+  }
+
+  bool report_times() {
+    measured_.scene = arguments_.scene;
+    measured_.backend = renderer_.backend()->description();
+    measured_.threads = renderer_.backend()->workers().count();
+    if (arguments_.stats) std::fputs(text(measured_).c_str(), stderr);
+    const std::string& path = arguments_.stats_json;
+    return path.empty() || (may_write(path, all_) && scene::write_file(path, json(measured_), all_));
   }
 
   const RenderArguments& arguments_;
@@ -166,8 +220,12 @@ class FrameSequence {
   std::optional<scene::AnimationFormat> format_;
   std::optional<NumberedPath> numbered_;
   std::optional<ImageOutput> output_;  ///< of images one by one
+  std::optional<scene::SceneDocument> document_;
+  std::optional<scene::Scene> scene_;     ///< of the frame
+  scene::Camera camera_, camera_before_;  ///< of the scene and the one before, not turned
   SceneRenderer renderer_;
   std::optional<scene::AnimationFile> file_;
+  Measured measured_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "compiler/graph/expression.h"
 #include "compiler/nodes/manual.h"
 #include "compiler/nodes/schema.h"
+#include "runtime/cli/frame_times.h"
 #include "compiler/reflect/reflection.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
@@ -108,6 +109,10 @@ int nodes(const NodesArguments& arguments, const Common& common) {
 }
 
 int schema(const SchemaArguments& arguments, const Common& common) {
+  if (arguments.stats) {
+    std::fputs(measured_schema().c_str(), stdout);
+    return success;
+  }
   if (arguments.reflection || arguments.markdown) {
     const std::string text = !arguments.reflection ? scene::format::markdown()
                              : arguments.markdown  ? reflect::markdown()

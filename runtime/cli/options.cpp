@@ -45,9 +45,9 @@ const CLI::Validator frames_text(
       return parse_frames(text) ? std::string()
                                 : "\"" + text +
                                       "\" does not tell the frames: write FIRST:LAST:COUNT, two times in seconds and how "
-                                      "many frames, for example 0:2:48";
+                                      "many frames, for example 0:2:48, or only COUNT";
     },
-    "FIRST:LAST:COUNT");
+    "FIRST:LAST:COUNT|COUNT");
 
 const CLI::Validator limit_text(
     [](std::string& text) {

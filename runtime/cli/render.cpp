@@ -3,6 +3,7 @@
 #include "runtime/cli/frames.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "runtime/scene/image_file.h"
 #include "runtime/scene/load.h"
@@ -46,13 +47,17 @@ std::optional<scene::Scene> load_scene(const std::string& path, const SceneChang
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return std::nullopt;
   auto scene = scene::load_scene(source, changes.settings, make_library(common).files(), diagnostics, changes.time);
-  if (!scene) return std::nullopt;
-  if (!changes.mesh.empty() && !replace_mesh(*scene, changes.mesh, diagnostics)) return std::nullopt;
-  if (changes.samples) {
-    scene->samples = *changes.samples;
-    scene->samples_where = {};
-  }
+  if (!scene || !apply_changes(changes, *scene, diagnostics)) return std::nullopt;
   return scene;
+}
+
+bool apply_changes(const SceneChanges& changes, scene::Scene& scene, support::Diagnostics& diagnostics) {
+  if (!changes.mesh.empty() && !replace_mesh(scene, changes.mesh, diagnostics)) return false;
+  if (changes.samples) {
+    scene.samples = *changes.samples;
+    scene.samples_where = {};
+  }
+  return true;
 }
 
 namespace {
@@ -65,15 +70,13 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
   const auto scene = load_scene(arguments.scene, arguments.changes, common, diagnostics);
   if (!scene) return failure;
   SceneRenderer renderer(arguments, common);
-  const auto plan = renderer.plan(*scene, diagnostics);
-  if (!plan || !may_write(arguments.output, diagnostics)) return failure;
-  backends::Image image;
+  const render::Plan* plan = renderer.plan(*scene, diagnostics);
+  if (plan == nullptr || !may_write(arguments.output, diagnostics)) return failure;
   render::DrawStats stats;
-  if (!renderer.draw(*plan, image, stats, diagnostics)) return failure;
-  const scene::ImageView view{image.width, image.height, image.rgba, image.depth};
+  if (!renderer.draw(*plan, stats, diagnostics)) return failure;
   output->options.encoding = scene->output.encoding;
   output->options.exposure = scene->output.exposure;
-  if (!scene::write_image(arguments.output, *output->format, view, output->options, diagnostics)) return failure;
+  if (!scene::write_image(arguments.output, *output->format, renderer.image(), output->options, diagnostics)) return failure;
   render::warn_non_finite(*scene, *plan, stats.non_finite, diagnostics);
   if (!arguments.fail_on_nan || stats.non_finite.none()) return success;
   std::fputs(not_finite_text, stderr);
@@ -83,9 +86,13 @@ int render_to_file(const RenderArguments& arguments, const Common& common,
 }  // namespace
 
 SceneRenderer::SceneRenderer(const RenderArguments& arguments, const Common& common)
-    : arguments_(arguments), common_(common), library_(make_library(common)) {}
+    : arguments_(arguments),
+      common_(common),
+      library_(make_library(common)),
+      workers_(arguments.choice.threads),
+      planner_(plan_options()) {}
 
-std::optional<render::Plan> SceneRenderer::plan(const scene::Scene& scene, support::Diagnostics& diagnostics) {
+render::PlanOptions SceneRenderer::plan_options() {
   render::PlanOptions options;
   if (arguments_.size) {
     options.width = arguments_.size->width;
@@ -94,18 +101,19 @@ std::optional<render::Plan> SceneRenderer::plan(const scene::Scene& scene, suppo
   options.compiler.library = &library_;
   options.compiler.reference = arguments_.backend == "reference";
   options.compiler.tier = arguments_.precision;
-  return render::plan_frame(scene, options, diagnostics);
+  options.workers = &workers_;
+  return options;
 }
 
-bool SceneRenderer::draw(const render::Plan& plan, backends::Image& image, render::DrawStats& stats,
-                         support::Diagnostics& diagnostics) {
+bool SceneRenderer::draw(const render::Plan& plan, render::DrawStats& stats, support::Diagnostics& diagnostics) {
   if (backend_ == nullptr) {
     backend_ = make_backend(arguments_.backend, arguments_.choice, common_, diagnostics);
     if (backend_ == nullptr) return false;
     progress(common_, "rendering on " + backend_->description());
+    renderer_.emplace(*backend_);
   }
-  if (!render::render(plan, *backend_, image, stats, diagnostics)) return false;
-  if (arguments_.stats)
+  if (!renderer_->draw(plan, stats, diagnostics)) return false;
+  if (arguments_.stats && !std::exchange(has_reported_, true))
     std::fputs((backend_->description() + "\n" + render::text(plan.stats) + render::text(stats)).c_str(), stderr);
   return true;
 }

@@ -37,6 +37,9 @@ void progress(const Common& common, const std::string& line);
 std::optional<scene::Scene> load_scene(const std::string& path, const SceneChanges& changes,
                                        const Common& common, support::Diagnostics& diagnostics);
 
+/// Applies the changes of the command line that are not settings to a scene. Reports a mesh that nothing can show.
+bool apply_changes(const SceneChanges& changes, scene::Scene& scene, support::Diagnostics& diagnostics);
+
 /// Returns false, with a diagnostic, if the file has been read in this run, by whatever path. Call it after reading all
 /// inputs and before computing.
 bool may_write(const std::string& path, support::Diagnostics& diagnostics);

@@ -122,6 +122,13 @@ bool LayeredImage::check(Diagnostics& diagnostics) {
   return true;
 }
 
+size_t LayeredImage::file_bytes() const {
+  size_t bytes = 0;
+  for (const Layers& layers : layers_)
+    for (const File& file : layers.levels) bytes += file.bytes->size();
+  return bytes;
+}
+
 std::optional<std::vector<std::vector<FileImage>>> LayeredImage::decode(Diagnostics& diagnostics) const {
   std::vector<std::vector<FileImage>> all;
   for (const Layers& layers : layers_) {

@@ -36,6 +36,8 @@ class LayeredImage {
                                           support::Diagnostics& diagnostics);
 
   const ImageShape& shape() const { return shape_; }
+  /// Of all files together.
+  size_t file_bytes() const;
   /// By layer: the levels that files hold, from the largest on. Reports damaged files.
   std::optional<std::vector<std::vector<scene::FileImage>>> decode(support::Diagnostics& diagnostics) const;
 

@@ -6,12 +6,14 @@
 #include <glm/vec3.hpp>
 #include <map>
 #include <optional>
-#include <tuple>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "runtime/scene/mesh.h"
 #include "runtime/scene/model.h"
 #include "runtime/scene/scene.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::render {
 
@@ -29,18 +31,39 @@ struct StoredMesh {
   glm::vec3 low{0, 0, 0}, high{0, 0, 0};  ///< the bounding box
 };
 
+/// Makes the meshes of the objects of a scene, in their order. Files are read one after the other; of shapes made by rule
+/// those of several objects at a time, on all threads.
 class MeshStore {
  public:
-  /// The number of an object's mesh in `meshes`: that of an earlier mesh of the same shape, or of a new one, which is
-  /// added there, and its vertices to `vertices`. Reports a file that is not a mesh.
-  std::optional<size_t> find(const scene::Object& object, std::vector<StoredMesh>& meshes,
-                             std::vector<float>& vertices, support::Diagnostics& diagnostics);
+  /// The meshes go to `meshes`, their vertices one after the other to `vertices`.
+  MeshStore(std::vector<StoredMesh>& meshes, std::vector<float>& vertices, threads::Workers& workers)
+      : meshes_(meshes), vertices_(vertices), workers_(workers) {}
+
+  /// The number of an object's mesh in `meshes`: that of an earlier mesh of the same shape, or of a new one. Reports a
+  /// file that is not a mesh.
+  std::optional<size_t> find(std::span<const scene::Object> objects, size_t object,
+                             support::Diagnostics& diagnostics);
+
+  /// Empties `meshes` and `vertices`. Until end_again(), find() takes what was in them before it makes or reads anything.
+  void begin_again();
+  void end_again() { former_ = {}; }
 
  private:
-  /// A MeshShape as a key that can be ordered.
-  using Key = std::tuple<scene::MeshKind, float, float, float, int, int, bool,
-                         std::vector<scene::ProfilePoint>, std::string, size_t, bool>;
-  std::map<Key, size_t> numbers_;
+  using Numbers = std::map<std::string, size_t>;  ///< by key_of() the shape
+  void make_next(std::span<const scene::Object> objects, size_t object);
+  /// Takes the mesh from those before; false if it is not among them.
+  bool take_former(const std::string& key);
+
+  std::vector<StoredMesh>& meshes_;
+  std::vector<float>& vertices_;
+  threads::Workers& workers_;
+  Numbers numbers_;
+  std::map<std::string, scene::Model> made_;  ///< of shapes that no object has asked for yet
+  struct Former {
+    Numbers numbers;
+    std::vector<StoredMesh> meshes;
+    std::vector<float> vertices;
+  } former_;
 };
 
 }  // namespace isoshade::render

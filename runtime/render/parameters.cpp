@@ -158,7 +158,6 @@ class ParameterValues::Resolver {
   Resolver(const driver::ParameterBlock& block, const ParameterGiver& giver, const FindTexture& find_texture,
            Diagnostics& diagnostics)
       : block_(block), giver_(giver), find_texture_(find_texture), diagnostics_(diagnostics) {
-    values_.repeat_ = giver.repeat;
     values_.common_ = block.defaults();
     values_.first_image_word_ = block.word_of_image(0);
   }
@@ -226,7 +225,8 @@ class ParameterValues::Resolver {
           diagnostics_.report(Id::wrong_type, variation.value_where,
                               "the parameter " + quote(variation.name) + " is an integer: list its values");
         }
-        values_.varying_.push_back({axis, i, type, field.names, block_.word_of(*number)});
+        values_.varying_.push_back(
+            {axis, giver_.repeat[axis].count, variation, type, field.names, block_.word_of(*number)});
       }
     }
   }
@@ -295,7 +295,7 @@ float ParameterValues::most(size_t word) const {
   std::optional<float> most;
   for (const Varying& varying : varying_) {
     if (varying.first_word != word) continue;
-    for (const Literal& value : repeat_[varying.axis].variations[varying.variation].values) {
+    for (const Literal& value : varying.variation.values) {
       float number = 0;
       store(varying.type, varying.names, value, &number);
       most = std::max(most.value_or(number), number);
@@ -308,9 +308,8 @@ std::vector<float> ParameterValues::words(const scene::Instance& instance,
                                           const std::function<int(int)>& record_of) const {
   std::vector<float> words = common_;
   for (const Varying& varying : varying_) {
-    const scene::Repeat& repeat = repeat_[varying.axis];
-    const Literal value = scene::variation_value(repeat.variations[varying.variation],
-                                                 instance.place[varying.axis], repeat.count);
+    const Literal value =
+        scene::variation_value(varying.variation, instance.place[varying.axis], varying.count);
     store(varying.type, varying.names, value, words.data() + varying.first_word);
   }
   for (float& word : words) word = scene::canonical(word);

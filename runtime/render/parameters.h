@@ -19,7 +19,7 @@ namespace isoshade::render {
 using FindTexture =
     std::function<std::optional<int>(const ImageSource& source, const lower::ImageSlot& slot)>;
 
-/// What gives values to a block: an object or a post of the scene, which must outlive the ParameterValues.
+/// What gives values to a block: an object or a post of the scene.
 struct ParameterGiver {
   std::string_view name;  ///< for messages
   std::span<const scene::Parameter> parameters;
@@ -44,6 +44,9 @@ class ParameterValues {
   /// holds lanes::FpGuard.
   std::vector<float> words(const scene::Instance& instance, const std::function<int(int)>& record_of) const;
 
+  /// Whether both have the same textures.
+  bool has_images_of(const ParameterValues& other) const { return images_ == other.images_; }
+
   /// The greatest number that a word of the record has in any copy; of no image.
   float most(size_t word) const;
 
@@ -54,7 +57,9 @@ class ParameterValues {
 
   /// A field that varies along an axis of the grid.
   struct Varying {
-    size_t axis, variation;
+    size_t axis;
+    int64_t count;  ///< of copies along the axis
+    scene::Variation variation;
     graph::Type type;
     std::vector<std::string> names;  ///< of an integer's values
     size_t first_word;
@@ -63,9 +68,9 @@ class ParameterValues {
     int texture = -1;             ///< of all copies, if `along_axis` is empty
     size_t axis = 0;              ///< of the grid
     std::vector<int> along_axis;  ///< the textures along the axis
+    bool operator==(const ImageWord&) const = default;
   };
 
-  std::span<const scene::Repeat> repeat_;
   std::vector<float> common_;  ///< the record, but for what varies and for the images
   std::vector<Varying> varying_;
   std::vector<ImageWord> images_;

@@ -2,23 +2,19 @@
 #include "runtime/render/planner.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "compiler/ir/printer.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/visible.h"
 #include "runtime/environment/environment.h"
-#include "runtime/lanes/float_rules.h"
 #include "runtime/render/clock.h"
-#include "runtime/render/meshes.h"
 #include "runtime/render/samples.h"
-#include "runtime/render/skips.h"
 
 namespace isoshade::render {
 
-using scene::Instance;
 using scene::Object;
 using scene::Scene;
 using support::Diagnostics;
@@ -38,12 +34,19 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
   return kinds;
 }
 
+struct Size {
+  int width, height;
+};
+Size size_of(const Scene& scene, const PlanOptions& options) {
+  return {options.width > 0 ? options.width : scene.width, options.height > 0 ? options.height : scene.height};
+}
+
 }  // namespace
 
 driver::CompileOptions Planner::compile_options() const {
   driver::CompileOptions options = options_.compiler;
-  options.lights = kinds_of(scene_.lights);
-  options.lights.environment = scene_.environment.has_value();
+  options.lights = kinds_of(scene_->lights);
+  options.lights.environment = scene_->environment.has_value();
   return options;
 }
 
@@ -52,7 +55,7 @@ bool Planner::compile_effects() {
   const bool shadows = options.lights.shadows;
   std::map<std::pair<std::string, bool>, size_t> known;
   bool good = true;
-  for (const Object& object : scene_.objects) {
+  for (const Object& object : scene_->objects) {
     options.lights.shadows = shadows && object.receives_shadow;
     const auto [found, is_new] =
         known.try_emplace({object.effect, options.lights.shadows}, plan_.effects.size());
@@ -60,9 +63,9 @@ bool Planner::compile_effects() {
     if (!is_new) continue;
     const bool is_reported = !good && known.contains({object.effect, !options.lights.shadows});
     const support::Source source = is_reported ? nullptr : read_document(object.effect, object.effect_where);
-    auto effect = source != nullptr ? driver::compile_effect(source, options, diagnostics_) : std::nullopt;
-    if (!effect && !is_reported && !diagnostics_.full() && !diagnostics_.all().empty()) {
-      diagnostics_.all().back().note(object.effect_where, "the effect of " + quote(object.name));
+    auto effect = source != nullptr ? driver::compile_effect(source, options, *diagnostics_) : std::nullopt;
+    if (!effect && !is_reported && !diagnostics_->full() && !diagnostics_->all().empty()) {
+      diagnostics_->all().back().note(object.effect_where, "the effect of " + quote(object.name));
     }
     good = good && effect.has_value();
     plan_.effects.push_back(effect ? *std::move(effect) : driver::Effect{});
@@ -84,13 +87,13 @@ bool Planner::compile_effects() {
 /// Whether the text at `where` may name the file. Files that the user names have no `where`, or one in an argument.
 bool Planner::may_read(const std::string& path, const support::Span& where) {
   const check::Library* library = options_.compiler.library;
-  return library == nullptr || graph::may_read(path, where, library->files(), diagnostics_);
+  return library == nullptr || graph::may_read(path, where, library->files(), *diagnostics_);
 }
 
 support::Source Planner::read_document(const std::string& path, const support::Span& where) {
   if (!may_read(path, where)) return nullptr;
   const check::Library* library = options_.compiler.library;
-  return graph::read_document(path, library != nullptr ? library->files() : graph::FileRule{}, diagnostics_,
+  return graph::read_document(path, library != nullptr ? library->files() : graph::FileRule{}, *diagnostics_,
                               where);
 }
 
@@ -99,15 +102,15 @@ bool Planner::compile_posts() {
   std::map<std::string, size_t> known;
   std::vector<size_t> document_of_post;
   bool good = true;
-  for (const scene::Post& post : scene_.posts) {
+  for (const scene::Post& post : scene_->posts) {
     const auto [found, is_new] = known.try_emplace(post.effect, plan_.post_documents.size());
     document_of_post.push_back(found->second);
     if (!is_new) continue;
     const support::Source source = read_document(post.effect, post.effect_where);
     auto compiled =
-        source != nullptr ? driver::compile_post(source, options, diagnostics_) : std::nullopt;
-    if (!compiled && !diagnostics_.full() && !diagnostics_.all().empty())
-      diagnostics_.all().back().note(post.effect_where, "the effect of post " + quote(post.name));
+        source != nullptr ? driver::compile_post(source, options, *diagnostics_) : std::nullopt;
+    if (!compiled && !diagnostics_->full() && !diagnostics_->all().empty())
+      diagnostics_->all().back().note(post.effect_where, "the effect of post " + quote(post.name));
     good = good && compiled.has_value();
     plan_.post_documents.push_back(compiled ? *std::move(compiled) : driver::Post{});
   }
@@ -131,10 +134,11 @@ uint32_t Planner::add_program(const driver::Program& program, uint32_t cutout) {
   return found->second;
 }
 
-std::optional<size_t> Planner::find_mesh(const Object& object) {
+std::optional<size_t> Planner::find_mesh(size_t o) {
+  const Object& object = scene_->objects[o];
   const bool is_file = object.mesh.kind == scene::MeshKind::file;
   if (is_file && !may_read(object.mesh.file, object.mesh_where)) return std::nullopt;
-  return meshes_.find(object, plan_.meshes, plan_.frame.vertices, diagnostics_);
+  return meshes_.find(scene_->objects, o, *diagnostics_);
 }
 
 void Planner::note_largest_mesh(const Object& object, const StoredMesh& mesh) {
@@ -146,15 +150,13 @@ void Planner::note_largest_mesh(const Object& object, const StoredMesh& mesh) {
       "the mesh of " + quote(object.name) + ": " + std::to_string(count) + " vertices", object.mesh_where};
 }
 
-/// Resolves the parameters of an object for each part of its mesh.
-std::optional<std::vector<ParameterValues>> Planner::resolve_parts(const Object& object, const driver::Effect& effect,
-                                                                   const StoredMesh& mesh,
-                                                                   const FindTexture& find_texture) {
-  std::vector<ParameterValues> parameters;
+std::optional<Planner::PartValues> Planner::resolve_parts(const Object& object, const driver::Effect& effect,
+                                                          const StoredMesh& mesh, const FindTexture& find_texture) {
+  PartValues parameters;
   for (const MeshPart& part : mesh.parts) {
     const scene::Material* material = part.material ? &*part.material : nullptr;
     const ParameterGiver giver{object.name, object.parameters, object.repeat, material, object.mesh_where};
-    auto resolved = ParameterValues::resolve(effect.parameters, giver, find_texture, diagnostics_);
+    auto resolved = ParameterValues::resolve(effect.parameters, giver, find_texture, *diagnostics_);
     if (!resolved) return std::nullopt;  // further parts would report the same again
     parameters.push_back(*std::move(resolved));
   }
@@ -172,115 +174,202 @@ int64_t Planner::most_draws(const driver::Effect& effect, const ParameterValues&
   return draws;
 }
 
+Planner::Counts Planner::begin_counting() const {
+  size_t views = 1;
+  for (const scene::Light& light : scene_->lights) views += shadow_map_count(light);
+  return {{"vertices", max_drawn_vertices},
+          {"triangles", max_drawn_triangles},
+          {"words of object records", max_object_words},
+          {"draws, those of shadows too,", max_draws},
+          views};
+}
+
+bool Planner::count_object(size_t o, Counts& counts) {
+  const Object& object = scene_->objects[o];
+  const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+  for (size_t part = 0; part < mesh.parts.size(); ++part) {
+    const ParameterValues& values = parameters_[o][part];
+    const int64_t draws =
+        scene::instance_count(object) * most_draws(plan_.effects[effect_of_object_[o]], values);
+    counts.draws.total += draws * static_cast<int64_t>(counts.views);
+    counts.vertices.total += draws * mesh.parts[part].vertex_count;
+    counts.triangles.total += draws * static_cast<int64_t>(mesh.parts[part].indices.size() / 3);
+    counts.words.total +=
+        draws * (lower::object_word::parameters + lower::view_word::matrix + values.word_count());
+  }
+  for (const Count* count : {&counts.vertices, &counts.triangles, &counts.words, &counts.draws}) {
+    if (count->total <= count->limit) continue;
+    diagnostics_
+        ->report(Id::too_large, object.name_where,
+                 "with object " + quote(object.name) + " the scene has more than " + std::to_string(count->limit) +
+                     " " + std::string(count->what) + " to draw")
+        .suggest("draw fewer copies, fewer repetitions of passes, or meshes of fewer segments");
+    return false;
+  }
+  return true;
+}
+
+std::optional<int> Planner::find_texture(const ImageSource& source, const lower::ImageSlot& slot) {
+  // An image inside another file was read with that file.
+  if (source.bytes == nullptr && !may_read(source.path, source.where)) return std::nullopt;
+  return textures_.find(source, slot.decoding, slot.mips, *diagnostics_);
+}
+
 /// Makes the mesh and the parameters of one object after the other, and stops when a limit is exceeded.
 bool Planner::make_objects() {
-  struct Count {
-    std::string_view what;
-    int64_t limit;
-    int64_t total = 0;
-  };
-  Count vertices{"vertices", max_drawn_vertices};
-  Count triangles{"triangles", max_drawn_triangles};
-  Count words{"words of object records", max_object_words};
-  size_t views = 1;
-  for (const scene::Light& light : scene_.lights) views += shadow_map_count(light);
-  Count draws_of_views{"draws, those of shadows too,", max_draws};
+  Counts counts = begin_counting();
   const StoredMesh no_mesh{{MeshPart{}}};
   bool good = true;
-  const FindTexture find_texture = [&](const ImageSource& source,
-                                       const lower::ImageSlot& slot) -> std::optional<int> {
-    // An image inside another file was read with that file.
-    if (!good || (source.bytes == nullptr && !may_read(source.path, source.where))) return std::nullopt;
-    return textures_.find(source, slot.decoding, slot.mips, diagnostics_);
+  const FindTexture find = [&](const ImageSource& source, const lower::ImageSlot& slot) {
+    return good ? find_texture(source, slot) : std::nullopt;
   };
-  for (size_t o = 0; o < scene_.objects.size(); ++o) {
-    const Object& object = scene_.objects[o];
+  for (size_t o = 0; o < scene_->objects.size(); ++o) {
+    const Object& object = scene_->objects[o];
     const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
     // After an error the rest is only checked for further errors.
-    const auto number = good ? find_mesh(object) : std::nullopt;
-    const StoredMesh& mesh = number ? plan_.meshes[*number] : no_mesh;
-    auto resolved = resolve_parts(object, effect, mesh, find_texture);
-    good = good && number.has_value() && resolved.has_value();
-    parameters_.push_back(std::move(resolved).value_or(std::vector<ParameterValues>()));
-    if (good && !before_.objects.empty()) {
-      auto earlier = resolve_parts(before(o), effect, mesh, find_texture);
+    constexpr size_t none = ~size_t{0};
+    const size_t number = good ? find_mesh(o).value_or(none) : none;
+    const StoredMesh& mesh = number != none ? plan_.meshes[number] : no_mesh;
+    auto resolved = resolve_parts(object, effect, mesh, find);
+    good = good && number != none && resolved.has_value();
+    parameters_.push_back(std::move(resolved).value_or(PartValues()));
+    parameters_before_.emplace_back();
+    if (good && &before(o) != &object) {
+      auto earlier = resolve_parts(before(o), effect, mesh, find);
       good = earlier.has_value();
-      parameters_before_.push_back(std::move(earlier).value_or(std::vector<ParameterValues>()));
+      parameters_before_.back() = std::move(earlier).value_or(PartValues());
     }
-    if (!good || !number) {
-      if (diagnostics_.full()) return false;
+    if (!good) {
+      if (diagnostics_->full()) return false;
       continue;
     }
-    mesh_of_object_.push_back(*number);
+    mesh_of_object_.push_back(number);
     note_largest_mesh(object, mesh);
-    for (size_t part = 0; part < mesh.parts.size(); ++part) {
-      const int64_t draws = scene::instance_count(object) * most_draws(effect, parameters_.back()[part]);
-      draws_of_views.total += draws * static_cast<int64_t>(views);
-      vertices.total += draws * mesh.parts[part].vertex_count;
-      triangles.total += draws * static_cast<int64_t>(mesh.parts[part].indices.size() / 3);
-      words.total += draws * (lower::object_word::parameters + lower::view_word::matrix +
-                              parameters_.back()[part].word_count());
-    }
-    for (const Count* count : {&vertices, &triangles, &words, &draws_of_views}) {
-      if (count->total <= count->limit) continue;
-      diagnostics_
-          .report(Id::too_large, object.name_where,
-                  "with object " + quote(object.name) + " the scene has more than " +
-                      std::to_string(count->limit) + " " + std::string(count->what) + " to draw")
-          .suggest("draw fewer copies, fewer repetitions of passes, or meshes of fewer segments");
-      return false;
-    }
+    if (!count_object(o, counts)) return false;
   }
   return good;
 }
 
-std::optional<int> Planner::add_environment() {
-  if (!scene_.environment) return -1;
-  const scene::Environment& environment = *scene_.environment;
-  if (!environment.file.empty() && !may_read(environment.file, environment.file_where)) return std::nullopt;
-  Clock clock;
-  const auto made = environment::make_environment(
-      environment, {options_.compiler.library, options_.cache, {}}, diagnostics_);
-  if (!made) return std::nullopt;
-  plan_.stats.environment = true;
-  plan_.stats.environment_cached = made->cached;
-  plan_.stats.environment_seconds = clock.lap();
-  return append_levels(made->maps, plan_.frame);
+bool Planner::update_objects(const PlanKeys& keys) {
+  const size_t objects = scene_->objects.size();
+  const bool new_meshes = keys.meshes != keys_.meshes;
+  if (new_meshes) {
+    meshes_.begin_again();
+    most_vertices_ = 0;
+    for (size_t o = 0; o < objects; ++o) {
+      const auto number = find_mesh(o);
+      if (!number) return false;
+      mesh_of_object_[o] = *number;
+      note_largest_mesh(scene_->objects[o], plan_.meshes[*number]);
+    }
+    meshes_.end_again();
+    plan_.frame.revisions.vertices = next_revision();
+  }
+  Counts counts = begin_counting();
+  const FindTexture find = [&](const ImageSource& source, const lower::ImageSlot& slot) {
+    return find_texture(source, slot);
+  };
+  for (size_t o = 0; o < objects; ++o) {
+    if (keys.objects[o] != keys_.objects[o] || keys.meshes[o] != keys_.meshes[o]) {
+      const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+      const StoredMesh& mesh = plan_.meshes[mesh_of_object_[o]];
+      auto now = resolve_parts(scene_->objects[o], effect, mesh, find);
+      auto earlier = now && &before(o) != &scene_->objects[o] ? resolve_parts(before(o), effect, mesh, find)
+                                                               : std::optional(PartValues());
+      if (!now || !earlier) return false;
+      const auto same_images = [](const PartValues& a, const PartValues& b) {
+        return std::ranges::equal(a, b, [](const ParameterValues& x, const ParameterValues& y) { return x.has_images_of(y); });
+      };
+      const auto or_now = [](const PartValues& values, const PartValues& values_now) -> const PartValues& {
+        return values.empty() ? values_now : values;
+      };
+      // Textures are numbered in the order in which objects name them.
+      if (!same_images(*now, parameters_[o]) ||
+          !same_images(or_now(*earlier, *now), or_now(parameters_before_[o], parameters_[o])))
+        return false;
+      parameters_[o] = *std::move(now);
+      parameters_before_[o] = *std::move(earlier);
+    }
+    if (!count_object(o, counts)) return false;
+  }
+  return true;
 }
 
-std::optional<Plan> Planner::plan() {
-  Clock clock;
-  const int width = options_.width > 0 ? options_.width : scene_.width;
-  const int height = options_.height > 0 ? options_.height : scene_.height;
-  if (!check_samples(scene_, width, height, diagnostics_)) return std::nullopt;
-  const bool effects = compile_effects();
-  if (!compile_posts() || !effects) return std::nullopt;
-  plan_.stats.compile_seconds = clock.lap();
-  if (scene_.before != nullptr && scene_.before->objects.size() == scene_.objects.size()) before_ = *scene_.before;
-  if (!make_objects()) return std::nullopt;
-  textures_.store(plan_.frame);
-  const std::optional<int> environment = add_environment();
-  if (!environment) return std::nullopt;
-  plan_.stats.skips = unread_images(plan_.effects);
-
+bool Planner::add_environment() {
   backends::Frame& frame = plan_.frame;
-  plan_.samples = scene_.samples;
-  const int side = samples_each_way(scene_.samples);
-  {
-    const lanes::FpGuard guard;
-    frame.frame = frame_words(scene_, *environment);
-    add_views(width, height, side);
-    begin_motion(width, height);
-    for (size_t o = 0; o < scene_.objects.size(); ++o) place_object(o);
-    append_blended();
-    finish_motion();
-    auto posts = plan_posts(scene_, posts_, width, height, options_.skip, plan_.stats.skips, diagnostics_);
-    if (!posts) return std::nullopt;
-    plan_.posts = *std::move(posts);
-    if (plan_.motion && !plan_.posts.reads_motion()) plan_.motion.reset();
+  frame.texels.resize(texels_of_textures_);
+  frame.textures.resize(words_of_textures_);
+  environment_ = -1;
+  plan_.stats.environment = scene_->environment.has_value();
+  if (scene_->environment) {
+    const scene::Environment& environment = *scene_->environment;
+    if (!environment.file.empty() && !may_read(environment.file, environment.file_where)) return false;
+    Clock clock;
+    const auto made = environment::make_environment(
+        environment, {options_.compiler.library, options_.cache, {.threads = workers_.count()}}, *diagnostics_);
+    if (!made) return false;
+    plan_.stats.environment_cached = made->cached;
+    environment_ = append_levels(made->maps, frame);
+    plan_.stats.environment_seconds = clock.lap();
   }
-  frame.light_count = static_cast<int>(scene_.lights.size());
+  frame.revisions.texels = next_revision();
+  frame.revisions.textures = next_revision();
+  return true;
+}
 
+void Planner::begin(const Scene& scene, Diagnostics& diagnostics) {
+  scene_ = &scene;
+  diagnostics_ = &diagnostics;
+  plan_.stats = {};
+}
+
+bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
+  Clock clock;
+  begin(scene, diagnostics);
+  const auto [width, height] = size_of(scene, options_);
+  if (!check_samples(scene, width, height, diagnostics)) return false;
+  const bool effects = compile_effects();
+  if (!compile_posts() || !effects) return false;
+  has_motion_ = may_read_motion();
+  const double compile_seconds = clock.lap();
+  backends::Frame& frame = plan_.frame;
+  programs_without_motion_ = frame.programs.size();
+  if (!make_objects() || !textures_.store(frame, diagnostics)) return false;
+  texels_of_textures_ = frame.texels.size();
+  words_of_textures_ = frame.textures.size();
+  frame.revisions.vertices = next_revision();
+  frame.revisions.texel_bytes = next_revision();
+  if (!add_environment()) return false;
+  keys_ = keys_of(scene);
+  place_all();
+  if (!make_views(width, height)) return false;
+  plan_.stats.compile_seconds = compile_seconds;
+  finish_stats(clock.lap());
+  return true;
+}
+
+bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
+  Clock clock;
+  PlanKeys keys = keys_of(scene);
+  if (keys.programs != keys_.programs) return false;
+  begin(scene, diagnostics);
+  const auto [width, height] = size_of(scene, options_);
+  if (!check_samples(scene, width, height, diagnostics)) return false;
+  const bool is_placed = keys.objects == keys_.objects && keys.meshes == keys_.meshes;
+  if (!is_placed && !update_objects(keys)) return false;
+  const bool is_lit = keys.environment == keys_.environment;
+  if (!is_lit && !add_environment()) return false;
+  plan_.stats.environment = scene.environment.has_value();
+  plan_.stats.environment_kept = is_lit && plan_.stats.environment;
+  keys_ = std::move(keys);
+  if (!is_placed) place_all();
+  if (!make_views(width, height)) return false;
+  finish_stats(clock.lap());
+  return true;
+}
+
+void Planner::finish_stats(double seconds) {
+  const backends::Frame& frame = plan_.frame;
   PlanStats& stats = plan_.stats;
   stats.meshes = static_cast<int64_t>(plan_.meshes.size());
   stats.mesh_vertices = static_cast<int64_t>(frame.vertices.size()) / lower::vertex_word::stride;
@@ -292,12 +381,39 @@ std::optional<Plan> Planner::plan() {
   stats.lights = frame.light_count;
   stats.posts = static_cast<int64_t>(plan_.posts.steps.size());
   stats.sample_posts = plan_.samples > 1 ? static_cast<int64_t>(plan_.posts.sample_steps) : 0;
-  stats.plan_seconds = clock.lap();
-  return std::move(plan_);
+  stats.plan_seconds = seconds;
+}
+
+uint64_t next_revision() {
+  static std::atomic<uint64_t> last = 0;
+  return ++last;
+}
+
+FramePlanner::FramePlanner(const PlanOptions& options) : options_(options) {
+  if (options_.workers == nullptr) options_.workers = &own_workers_.emplace(0);
+}
+
+FramePlanner::~FramePlanner() = default;
+
+const Plan* FramePlanner::plan(const Scene& scene, Diagnostics& diagnostics) {
+  if (planner_ != nullptr) {
+    // What is found on the way is found and reported again if all is planned anew.
+    Diagnostics attempt = diagnostics;
+    if (planner_->plan_next(scene, attempt)) {
+      diagnostics = std::move(attempt);
+      return &planner_->made();
+    }
+  }
+  planner_ = std::make_unique<Planner>(options_, *options_.workers);
+  if (planner_->plan(scene, diagnostics)) return &planner_->made();
+  planner_.reset();
+  return nullptr;
 }
 
 std::optional<Plan> plan_frame(const Scene& scene, const PlanOptions& options, Diagnostics& diagnostics) {
-  return Planner(scene, options, diagnostics).plan();
+  FramePlanner planner(options);
+  if (planner.plan(scene, diagnostics) == nullptr) return std::nullopt;
+  return std::move(planner.planner_->made());
 }
 
 }  // namespace isoshade::render

@@ -2,6 +2,7 @@
 // From a scene to a frame: everything that is the same for all backends, computed once.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "runtime/render/posts.h"
 #include "runtime/render/stats.h"
 #include "runtime/scene/scene.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::render {
 
@@ -28,6 +30,7 @@ struct PlanOptions {
   std::string cache;                ///< the folder for maps of environments; empty: the usual one
   bool disabled = false;            ///< draw the passes that a parameter disables, too; for programs that change it later
   driver::CompileOptions compiler;  ///< `lights` is set by the scene
+  threads::Workers* workers = nullptr;  ///< that may help; null: one for each core
 };
 
 /// What a record of Frame::objects belongs to.
@@ -54,7 +57,7 @@ struct Plan {
   std::vector<driver::Post> post_documents;
   int samples = 1;        ///< in each pixel of the picture: 1, 4 or 16
   backends::Frame frame;  ///< the target of the picture has the size in samples, see render/samples.h
-  std::vector<RecordOrigin> origins;  ///< of all records of frame.objects, in their order
+  std::vector<RecordOrigin> origins;  ///< of the records of frame.objects but for those of motion, in their order
   std::optional<MotionPlan> motion;  ///< if a post reads it
   PostChain posts;
   PlanStats stats;
@@ -64,10 +67,33 @@ struct Plan {
   Plan& operator=(Plan&&) = default;
 };
 
-/// Compiles each effect once, makes each mesh once, and fills the arrays of the frame: one record for each pass over
-/// each part of each copy of each object that a view may see, in the order of the scene, with all parts before the next
-/// repetition of a pass, and all repetitions before the next pass. Reports effects that do not compile, unknown or unsuitable parameters, and scenes beyond the limits.
+/// Compiles each effect once, makes each mesh once, and fills the arrays of the frame: one record for each repetition of
+/// each pass over each part of each copy of each object that is not disabled, whether or not a view sees it. The draws of
+/// a view are those that it may see, in the order of the scene, with all parts before the next repetition of a pass, and
+/// all repetitions before the next pass. Reports effects that do not compile, unknown or unsuitable parameters, and scenes
+/// beyond the limits.
 std::optional<Plan> plan_frame(const scene::Scene& scene, const PlanOptions& options,
                                support::Diagnostics& diagnostics);
+
+class Planner;
+
+/// Plans one scene after the other, such as the frames of an animation, and keeps what the next one has in common with
+/// the last: effects, meshes, textures, maps of environments, values of parameters, and records. Each plan is what
+/// plan_frame() makes of its scene; arrays that have not changed keep their revisions. Files are read once: what is
+/// written to them later has no effect.
+class FramePlanner {
+ public:
+  /// What the options point to must outlive the planner.
+  explicit FramePlanner(const PlanOptions& options);
+  ~FramePlanner();
+  /// The plan is valid until the next call. Null after an error.
+  const Plan* plan(const scene::Scene& scene, support::Diagnostics& diagnostics);
+
+ private:
+  friend std::optional<Plan> plan_frame(const scene::Scene&, const PlanOptions&, support::Diagnostics&);
+  PlanOptions options_;
+  std::optional<threads::Workers> own_workers_;
+  std::unique_ptr<Planner> planner_;  ///< of the last scene, if it could be planned
+};
 
 }  // namespace isoshade::render

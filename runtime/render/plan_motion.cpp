@@ -9,13 +9,6 @@
 namespace isoshade::render {
 namespace {
 
-bool may_read_motion(const scene::Scene& scene, const std::vector<const driver::Post*>& documents) {
-  const auto is_motion = [](const scene::PostInput& input) { return input.source == scene::motion_image; };
-  for (size_t p = 0; p < scene.posts.size(); ++p)
-    if (documents[p]->motion || std::ranges::any_of(scene.posts[p].inputs, is_motion)) return true;
-  return false;
-}
-
 /// The rows x, y and w of a matrix, without what it does to points alone.
 void append_rows(const glm::mat4& matrix, std::vector<float>& words) {
   for (const int row : {0, 1, 3})
@@ -24,19 +17,27 @@ void append_rows(const glm::mat4& matrix, std::vector<float>& words) {
 
 }  // namespace
 
+bool Planner::may_read_motion() const {
+  const auto is_motion = [](const scene::PostInput& input) { return input.source == scene::motion_image; };
+  for (size_t p = 0; p < scene_->posts.size(); ++p)
+    if (posts_[p]->motion || std::ranges::any_of(scene_->posts[p].inputs, is_motion)) return true;
+  return false;
+}
+
 void Planner::begin_motion(int width, int height) {
-  if (!may_read_motion(scene_, posts_)) return;
+  plan_.motion.reset();
+  if (!has_motion_) return;
   MotionPlan& motion = plan_.motion.emplace();
-  const scene::Camera& camera = scene_.before != nullptr ? scene_.before->camera : scene_.camera;
+  const scene::Camera& camera = scene_->before != nullptr ? scene_->before->camera : scene_->camera;
   const scene::View view = scene::make_view(camera, width, height);
   projection_before_ = view.projection;
   motion.before.target = motion.now.target = {"the motion", width, height};
   motion.before.words = view_words(camera, view, width, height);
   motion.before.frame = plan_.frame.frame;
-  const double earlier = static_cast<double>(scene_.time) - 1 / static_cast<double>(scene_.frames_per_second);
+  const double earlier = static_cast<double>(scene_->time) - 1 / static_cast<double>(scene_->frames_per_second);
   motion.before.frame[lower::frame_word::time] =
-      scene::canonical(scene_.before != nullptr ? scene_.before->time : static_cast<float>(earlier));
-  append_rows(scene::make_view(scene_.camera, width, height).projection, motion.backdrop);
+      scene::canonical(scene_->before != nullptr ? scene_->before->time : static_cast<float>(earlier));
+  append_rows(scene::make_view(scene_->camera, width, height).projection, motion.backdrop);
   append_rows(view.projection, motion.backdrop);
   motion.complete = &driver::backdrop_motion_program(options_.compiler.reference);
 }
@@ -51,39 +52,42 @@ uint32_t Planner::motion_program(uint32_t pixel) {
   return found->second;
 }
 
-void Planner::place_motion(size_t o, const Copy& copy, size_t part, const backends::Draw& draw,
-                           const Appearance& appearance) {
-  std::vector<float>& objects = plan_.frame.objects;
-  const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
-  MovedDraw moved{appearance.nearness, draw, draw};
-  moved.now.blended = moved.before.blended = false;
-  moved.now.pixel_program = motion_program(draw.pixel_program);
-  const std::vector<float> record(objects.begin() + draw.object, objects.end());
-  moved.now.object = static_cast<int>(objects.size());
-  objects.insert(objects.end(), record.begin(), record.end());
-  objects[static_cast<size_t>(moved.now.object) + lower::object_word::program] =
-      static_cast<float>(moved.now.pixel_program);
-
-  const ObjectTransforms place = place_of(before(o), copy.instance);
-  const auto& parameters = parameters_before_.empty() ? parameters_ : parameters_before_;
-  std::vector<float> words =
-      parameters[o][part].words(copy.instance, [&](int number) { return textures_.record(number); });
-  if (effect.reads_previous) append_columns(place.model, words);
-  moved.before.object = static_cast<int>(objects.size());
-  const Repetition repetition{static_cast<int>(record[lower::object_word::pass_index]),
-                              static_cast<int>(record[lower::object_word::pass_count])};
-  append_object(place, moved.now.pixel_program, repetition, words, objects);
-  moved.before.projected =
-      append_matrix(scene::multiply(projection_before_, place.model), plan_.motion->before.words);
-  (draw.blended ? moved_blended_ : moved_).push_back(std::move(moved));
+/// Appends the records of a pass again, and then those at the frame before. place_all() writes their program.
+void Planner::append_motion_records(size_t o, const scene::Instance& instance, size_t part, int record, int repetitions,
+                                    std::vector<float>& objects) const {
+  const std::vector<float> now(objects.begin() + record, objects.end());
+  objects.insert(objects.end(), now.begin(), now.end());
+  const ObjectTransforms place = place_of(before(o), instance);
+  const PartValues& parameters = parameters_before_[o].empty() ? parameters_[o] : parameters_before_[o];
+  std::vector<float> words = parameters[part].words(instance, [&](int number) { return textures_.record(number); });
+  if (plan_.effects[effect_of_object_[o]].reads_previous) append_columns(place.model, words);
+  for (int repetition = 0; repetition < repetitions; ++repetition)
+    append_object(place, 0, {repetition, repetitions}, words, objects);
 }
 
-void Planner::finish_motion() {
+void Planner::see_motion(const PlacedPass& pass, size_t copy, int repetition, const backends::Draw& draw, float nearness,
+                         int& matrix_before, Seen& seen) const {
+  MovedDraw moved{nearness, draw, draw};
+  moved.now.blended = moved.before.blended = false;
+  const int stride = record_words(placed_.copies[copy].object);
+  moved.now.object = pass.record + (pass.repetitions + repetition) * stride;
+  moved.before.object = pass.record + (2 * pass.repetitions + repetition) * stride;
+  moved.now.pixel_program = static_cast<uint32_t>(
+      plan_.frame.objects[static_cast<size_t>(moved.now.object) + lower::object_word::program]);
+  if (matrix_before < 0)
+    matrix_before =
+        append_matrix(scene::multiply(projection_before_, placed_.models_before[copy]), seen.words_before);
+  moved.before.projected = matrix_before;
+  (draw.blended ? seen.moved_blended : seen.moved).push_back(std::move(moved));
+}
+
+void Planner::finish_motion(Seen& all) {
   if (!plan_.motion) return;
   plan_.motion->now.words = plan_.frame.picture().words;
-  if (scene_.sort == scene::Sort::back_to_front) std::ranges::stable_sort(moved_blended_, {}, &MovedDraw::nearness);
-  for (const std::vector<MovedDraw>* all : {&moved_, &moved_blended_}) {
-    for (const MovedDraw& draw : *all) {
+  if (scene_->sort == scene::Sort::back_to_front)
+    std::ranges::stable_sort(all.moved_blended, {}, &MovedDraw::nearness);
+  for (const std::vector<MovedDraw>* moved : {&all.moved, &all.moved_blended}) {
+    for (const MovedDraw& draw : *moved) {
       plan_.motion->now.draws.push_back(draw.now);
       plan_.motion->before.draws.push_back(draw.before);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plan is made, for the files of this folder that make it: plan.cpp compiles and collects, plan_draws.cpp places.
+// How a plan is made, for the files of this folder that make it: plan.cpp compiles and collects, plan_place.cpp writes
+// the records of all copies, plan_views.cpp lists what each view draws, plan_lights.cpp places the shadow maps.
 #pragma once
 
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "runtime/render/parameters.h"
 #include "runtime/render/plan.h"
+#include "runtime/render/plan_keys.h"
 #include "runtime/render/records.h"
 #include "runtime/render/shadows.h"
 #include "runtime/render/skips.h"
@@ -18,113 +20,208 @@ namespace isoshade::render {
 
 class Planner {
  public:
-  Planner(const scene::Scene& scene, const PlanOptions& options, support::Diagnostics& diagnostics)
-      : scene_(scene),
-        options_(options),
-        diagnostics_(diagnostics),
-        textures_(options.compiler.library != nullptr ? &options.compiler.library->files() : nullptr) {}
+  Planner(const PlanOptions& options, threads::Workers& workers)
+      : options_(options),
+        workers_(workers),
+        textures_(options.compiler.library != nullptr ? &options.compiler.library->files() : nullptr, workers),
+        meshes_(plan_.meshes, plan_.frame.vertices, workers) {}
 
-  std::optional<Plan> plan();
+  /// Plans a scene; false after an error, and then the planner is of no further use.
+  bool plan(const scene::Scene& scene, support::Diagnostics& diagnostics);
+  /// Plans the next scene and keeps what stays. False, perhaps with diagnostics, if another planner must begin anew.
+  bool plan_next(const scene::Scene& scene, support::Diagnostics& diagnostics);
+  Plan& made() { return plan_; }
 
  private:
+  // What the camera does not change (plan.cpp).
   struct PassPrograms {
     uint32_t vertex, pixel, blend;  // in Frame::programs
   };
-
+  void begin(const scene::Scene& scene, support::Diagnostics& diagnostics);
   bool compile_effects();
   bool compile_posts();
   /// What the programs are compiled for.
   driver::CompileOptions compile_options() const;
-  /// Adds the maps of the environment to the textures; its first record, or -1 without one. Nothing after an error.
-  std::optional<int> add_environment();
+  /// Adds the maps of the environment behind the textures. False after an error.
+  bool add_environment();
   support::Source read_document(const std::string& path, const support::Span& where);
   /// `cutout`: of a pixel program, the index of the one that belongs to it.
   uint32_t add_program(const driver::Program& program, uint32_t cutout = backends::Frame::no_program);
   bool may_read(const std::string& path, const support::Span& where);
   bool make_objects();
-  std::optional<size_t> find_mesh(const scene::Object& object);
+  /// Makes what has changed since the last scene. False if textures or programs may have changed, and after an error.
+  bool update_objects(const PlanKeys& keys);
+  std::optional<size_t> find_mesh(size_t o);
   void note_largest_mesh(const scene::Object& object, const StoredMesh& mesh);
-  std::optional<std::vector<ParameterValues>> resolve_parts(const scene::Object& object, const driver::Effect& effect,
-                                                            const StoredMesh& mesh, const FindTexture& find_texture);
+  /// The parameters of an object for each part of its mesh.
+  using PartValues = std::vector<ParameterValues>;
+  std::optional<PartValues> resolve_parts(const scene::Object& object, const driver::Effect& effect,
+                                          const StoredMesh& mesh, const FindTexture& find_texture);
   int64_t most_draws(const driver::Effect& effect, const ParameterValues& values) const;
-  void place_object(size_t o);
-  /// Adds a view. The camera and the size of a pixel are those of an image of this size.
+  struct Count {
+    std::string_view what;
+    int64_t limit;
+    int64_t total = 0;
+  };
+  struct Counts {
+    Count vertices, triangles, words, draws;
+    size_t views;  ///< at most
+  };
+  Counts begin_counting() const;
+  /// Counts an object; false, and reported, if a limit is exceeded.
+  bool count_object(size_t o, Counts& counts);
+  std::optional<int> find_texture(const ImageSource& source, const lower::ImageSlot& slot);
+  /// The object at the frame before.
+  const scene::Object& before(size_t o) const { return object_before(*scene_, o); }
+  void finish_stats(double seconds);
+
+  // The records of all copies (plan_place.cpp).
+  /// One pass over a part of a copy. Its records stand one behind the other: of each repetition; where motion is drawn
+  /// those again for the motion, and once more as they were at the frame before.
+  struct PlacedPass {
+    int record = 0;       ///< the first one
+    int repetitions = 0;  ///< 0: disabled
+    bool blended = false, double_sided = false, cutout = false;
+    bool moves = false;  ///< it has records for motion
+  };
+  struct PlacedCopy {
+    glm::mat4 model;
+    uint32_t object = 0;
+    uint32_t first_pass = 0;  ///< in placed_: for each pass of the effect, each part of the mesh
+  };
+  struct Placed {
+    std::vector<PlacedCopy> copies;
+    std::vector<PlacedPass> passes;
+    std::vector<glm::mat4> models_before;  ///< of each copy, if motion is drawn
+    std::vector<Hull> hulls;               ///< of each copy, if a light has a shadow
+    std::vector<float> objects;            ///< their records
+    std::vector<RecordOrigin> origins;
+  };
+  void place_all();
+  void place_copy(size_t o, int64_t number, Placed& placed) const;
+  void append(Placed& part);
+  Hull hull_of(size_t o, const glm::mat4& model) const;
+  /// How often a pass is drawn over a part: of a plan for programs that change parameters, as often as it may be.
+  int repetitions_of(const driver::Effect& effect, const driver::EffectPass& pass, std::span<const float> parameters) const;
+  int record_words(size_t o) const;
+  /// Calls use(part) for parts of [0, copies), on all threads; returns their results in order.
+  template <class Part, class Make>
+  std::vector<Part> in_parts(size_t copies, const Make& make);
+
+  // What each view draws (plan_views.cpp).
+  bool make_views(int width, int height);
   void add_view(const scene::Camera& camera, const scene::View& view, int width, int height, backends::Target target);
-  /// Adds the records of the lights, and a view for each of their shadow maps.
-  void add_lights(const scene::View& picture);
-  void note_largest_shadow(const scene::Light& light, size_t maps);
-  std::vector<Hull> find_hulls(const scene::View& picture) const;
+  void add_views(int width, int height);
   bool is_shadow_map(size_t view) const { return view < shadow_maps_; }
   /// The number of the view that draws what is opaque alone, if there is one.
   size_t opaque_view() const { return shadow_maps_; }
   /// One copy of an object in one view.
   struct Appearance {
     glm::mat4 projected;
-    bool outside;     ///< of the view: passes that do not move vertices draw nothing
-    float nearness;   ///< of the middle of its mesh's bounds: greater the nearer it is
-    int matrix = -1;  ///< the first word of `projected` in View::words, once a draw needs it
+    bool outside = true;  ///< of the view: passes that do not move vertices draw nothing
+    float nearness = 0;   ///< of the middle of its mesh's bounds: greater the nearer it is
+    int matrix = -1;      ///< the first word of `projected` in View::words, once a draw needs it
   };
-  /// One copy of an object.
-  struct Copy {
-    scene::Instance instance;
-    ObjectTransforms place;
-    std::span<Appearance> views;  ///< one for each view
-  };
-  void place_copy(size_t o, const Copy& copy, std::vector<PassSkips>& skipped);
-  /// Places one pass over a copy, one repetition after the other. `parameters`: of each part.
-  void place_pass(size_t o, size_t pass, const Copy& copy, std::span<const std::vector<float>> parameters, PassSkips& skipped);
-  /// How often a pass is drawn over a part: of a plan for programs that change parameters, as often as it may be.
-  int repetitions_of(const driver::Effect& effect, const driver::EffectPass& pass, std::span<const float> parameters) const;
-  /// Appends the record of a draw.
-  backends::Draw make_draw(const ObjectTransforms& place, const PassPrograms& programs, const MeshPart& part,
-                           Repetition repetition, const std::vector<float>& parameters);
-  /// Adds the draw to a view, or to `blended_`.
-  void place_draw(backends::Draw draw, Appearance& appearance, size_t view);
-  void add_views(int width, int height, int side);
-  /// Adds the draws that are blended to each view, behind all others.
-  void append_blended();
-
-  // How far things have moved (plan_motion.cpp), if a post reads that.
-  /// The same object at the frame before.
-  const scene::Object& before(size_t o) const { return before_.objects.empty() ? scene_.objects[o] : before_.objects[o]; }
-  void begin_motion(int width, int height);
-  /// A program that draws motion, with the cut-out of a pixel program.
-  uint32_t motion_program(uint32_t pixel);
-  /// Adds a draw of the picture to both views.
-  void place_motion(size_t o, const Copy& copy, size_t part, const backends::Draw& draw, const Appearance& appearance);
-  void finish_motion();
-
-  const scene::Scene& scene_;
-  const PlanOptions& options_;
-  support::Diagnostics& diagnostics_;
-  Plan plan_;
-  std::vector<scene::View> cameras_;  ///< of each view of the frame
-  size_t shadow_maps_ = 0;            ///< the views that begin the frame
-  uint64_t shadow_texels_ = 0, most_shadow_texels_ = 0;  ///< of all shadow maps; of those of one light
-  bool has_opaque_view_ = false;
   struct BlendedDraw {
     float nearness;
     backends::Draw draw;
   };
-  std::vector<std::vector<BlendedDraw>> blended_;  ///< of each view, in the order of the scene
-  std::vector<size_t> effect_of_object_;
-  std::vector<std::vector<PassPrograms>> programs_of_effect_;
-  std::map<std::string, uint32_t> program_by_text_;
-  std::vector<std::vector<ParameterValues>> parameters_;  ///< of each object, for each part of its mesh
-  scene::Scene before_;                                   ///< the frame before; without objects if none has changed
-  std::vector<std::vector<ParameterValues>> parameters_before_;  ///< empty if none has changed
   struct MovedDraw {
     float nearness;  ///< of what is blended; the rest is drawn first
     backends::Draw now, before;
   };
-  std::vector<MovedDraw> moved_, moved_blended_;
-  glm::mat4 projection_before_{1};
-  std::map<uint32_t, uint32_t> motion_programs_;  ///< by the program of the cut-out
-  MeshStore meshes_;
-  uint32_t most_vertices_ = 0;  ///< of a mesh
-  std::vector<size_t> mesh_of_object_;
-  TextureStore textures_;
+  /// What some copies add to the views, in the order of the scene.
+  struct Seen {
+    struct OfView {
+      std::vector<float> words;  ///< matrices
+      std::vector<backends::Draw> draws;
+      std::vector<BlendedDraw> blended;
+    };
+    std::vector<OfView> views;
+    std::vector<MovedDraw> moved, moved_blended;
+    std::vector<float> words_before;  ///< matrices of MotionPlan::before
+    std::map<uint32_t, std::vector<PassSkips>> skipped;  ///< by object
+    PlanStats stats;                                     ///< counts of draws
+    std::vector<Appearance> appearances;                 ///< of the copy that is looked at
+  };
+  void see_copy(size_t number, Seen& seen) const;
+  void see_pass(const PlacedCopy& copy, size_t number, size_t pass, Seen& seen) const;
+  backends::Draw draw_of(const PlacedCopy& copy, size_t pass, size_t part, int repetition) const;
+  void place_draw(backends::Draw draw, size_t view, Seen& seen) const;
+  void append(Seen& seen, Seen& all);
+  /// Adds the draws that are blended to each view, behind all others.
+  void append_blended(Seen& all);
+  void number_revisions(const std::vector<backends::View>& former);
+
+  // The lights and their shadow maps (plan_lights.cpp).
+  /// Adds the records of the lights, and a view for each of their shadow maps.
+  void add_lights(const scene::View& picture);
+  void note_largest_shadow(const scene::Light& light, size_t maps);
+  void look_at_hulls(const scene::View& picture);
+
+  // How far things have moved (plan_motion.cpp), if a post reads that.
+  bool may_read_motion() const;
+  void begin_motion(int width, int height);
+  /// A program that draws motion, with the cut-out of a pixel program.
+  uint32_t motion_program(uint32_t pixel);
+  void append_motion_records(size_t o, const scene::Instance& instance, size_t part, int record, int repetitions,
+                             std::vector<float>& objects) const;
+  /// Adds a draw of the picture to both views. `record`: the pass's.
+  void see_motion(const PlacedPass& pass, size_t copy, int repetition, const backends::Draw& draw, float nearness,
+                  int& matrix_before, Seen& seen) const;
+  void finish_motion(Seen& all);
+
+  const PlanOptions& options_;
+  threads::Workers& workers_;
+  const scene::Scene* scene_ = nullptr;           ///< the one that is planned
+  support::Diagnostics* diagnostics_ = nullptr;  ///< of the scene that is planned
+  PlanKeys keys_;                                ///< of the scene that was planned last
+  Plan plan_;
+
+  std::vector<size_t> effect_of_object_;
+  std::vector<std::vector<PassPrograms>> programs_of_effect_;
+  std::map<std::string, uint32_t> program_by_text_;
   std::vector<const driver::Post*> posts_;  ///< of each post of the scene
+  TextureStore textures_;
+  MeshStore meshes_;
+  size_t texels_of_textures_ = 0, words_of_textures_ = 0;  ///< in Frame::texels and Frame::textures; maps of the environment follow
+  int environment_ = -1;                                   ///< the first record of its maps
+  uint32_t most_vertices_ = 0;                             ///< of a mesh
+  std::vector<size_t> mesh_of_object_;
+  std::vector<PartValues> parameters_;         ///< of each object
+  std::vector<PartValues> parameters_before_;  ///< likewise at the frame before; empty where they are the same
+  Placed placed_;                              ///< its records and their origins are in the plan
+  size_t programs_without_motion_ = 0;
+  std::map<uint32_t, uint32_t> motion_programs_;  ///< by the program of the cut-out
+  bool has_motion_ = false;                       ///< a post may read it
+
+  std::vector<scene::View> cameras_;                     ///< of each view of the frame
+  size_t shadow_maps_ = 0;                               ///< the views that begin the frame
+  uint64_t shadow_texels_ = 0, most_shadow_texels_ = 0;  ///< of all shadow maps; of those of one light
+  bool has_opaque_view_ = false;
+  std::vector<float> lights_before_, frame_before_;  ///< arrays of the frame before, to compare with
+  std::vector<const driver::Program*> programs_before_;
+  std::vector<uint32_t> cutouts_before_;
+  glm::mat4 projection_before_{1};
 };
+
+/// A number that no array has had so far.
+uint64_t next_revision();
+
+/// How many copies are worth a task.
+inline constexpr size_t copies_of_part = 64;
+
+template <class Part, class Make>
+std::vector<Part> Planner::in_parts(size_t copies, const Make& make) {
+  std::vector<Part> parts((copies + copies_of_part - 1) / copies_of_part);
+  const auto one = [&](size_t p) {
+    for (size_t i = p * copies_of_part; i < std::min(copies, (p + 1) * copies_of_part); ++i) make(i, parts[p]);
+  };
+  if (parts.size() > 1)
+    workers_.for_each(parts.size(), one);
+  else if (!parts.empty())
+    one(0);
+  return parts;
+}
 
 }  // namespace isoshade::render

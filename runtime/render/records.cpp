@@ -37,8 +37,8 @@ void append_object(const ObjectTransforms& place, uint32_t pixel_program, Repeti
 }
 
 void append_columns(const glm::mat4& model, std::vector<float>& words) {
-  words.resize(words.size() + 12);
-  store_rows(model, 3, &words[words.size() - 12]);
+  words.resize(words.size() + columns_words);
+  store_rows(model, 3, &words[words.size() - columns_words]);
 }
 
 std::vector<float> frame_words(const scene::Scene& scene, int environment) {

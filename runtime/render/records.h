@@ -32,6 +32,7 @@ void append_object(const ObjectTransforms& place, uint32_t pixel_program, Repeti
                    std::span<const float> parameters, std::vector<float>& objects);
 
 /// Appends four columns of 3, as object_word::model.
+inline constexpr int columns_words = 12;
 void append_columns(const glm::mat4& model, std::vector<float>& words);
 
 /// The words of lower::frame_word. `environment`: its first record, or -1.

@@ -32,6 +32,12 @@ struct Bounds {
       high[i] = std::max(high[i], point[i]);
     }
   }
+  void add(const Bounds& more) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], more.low[i]);
+      high[i] = std::max(high[i], more.high[i]);
+    }
+  }
   bool empty() const { return !(low.x <= high.x); }
   /// The longest side.
   float largest() const {
@@ -45,12 +51,28 @@ struct Bounds {
   }
 };
 
-/// The box around everything.
-Bounds bounds_of(std::span<const Hull> hulls) {
+/// Calls make(hull, bounds) for all hulls, on all threads, and joins the bounds in their order.
+template <class Make>
+Bounds bounds_over(std::span<const Hull> hulls, threads::Workers& workers, const Make& make) {
+  constexpr size_t task = 256;
+  std::vector<Bounds> parts((hulls.size() + task - 1) / task);
+  const auto one = [&](size_t p) {
+    for (const Hull& hull : hulls.subspan(p * task, std::min(task, hulls.size() - p * task))) make(hull, parts[p]);
+  };
+  if (parts.size() > 1)
+    workers.for_each(parts.size(), one);
+  else if (!parts.empty())
+    one(0);
   Bounds all;
-  for (const Hull& hull : hulls)
-    for (const vec3& corner : hull.corners) all.add(corner);
+  for (const Bounds& part : parts) all.add(part);
   return all;
+}
+
+/// The box around everything.
+Bounds bounds_of(std::span<const Hull> hulls, threads::Workers& workers) {
+  return bounds_over(hulls, workers, [](const Hull& hull, Bounds& bounds) {
+    for (const vec3& corner : hull.corners) bounds.add(corner);
+  });
 }
 
 /// A plane through the eye, or along the view: distance(p) = dot(normal, p) + offset, not negative inside.
@@ -70,14 +92,25 @@ std::array<Plane, 4> sides_of(const glm::mat4& projection) {
   return {plane(w + row(0)), plane(w - row(0)), plane(w + row(1)), plane(w - row(1))};
 }
 
-/// The part of a convex polygon that is inside.
-std::vector<vec3> clip(const std::vector<vec3>& polygon, const Plane& plane) {
-  std::vector<vec3> kept;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const float at_a = plane.distance(a), at_b = plane.distance(b);
-    if (at_a >= 0) kept.push_back(a);
-    if ((at_a >= 0) != (at_b >= 0)) kept.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+/// A polygon of four corners, clipped by up to four planes. Each adds at most half as many points, even if rounding
+/// makes the polygon concave.
+struct Polygon {
+  std::array<vec3, 19> points;
+  size_t count = 0;
+  void add(const vec3& p) { points[count++] = p; }
+};
+
+/// The part of a polygon that is inside.
+Polygon clip(const Polygon& polygon, const Plane& plane) {
+  Polygon kept;
+  std::array<float, 19> distances;
+  for (size_t i = 0; i < polygon.count; ++i) distances[i] = plane.distance(polygon.points[i]);
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const size_t next = i + 1 < polygon.count ? i + 1 : 0;
+    const vec3 &a = polygon.points[i], &b = polygon.points[next];
+    const float at_a = distances[i], at_b = distances[next];
+    if (at_a >= 0) kept.add(a);
+    if ((at_a >= 0) != (at_b >= 0)) kept.add(a + (b - a) * (at_a / (at_a - at_b)));
   }
   return kept;
 }
@@ -86,12 +119,17 @@ std::vector<vec3> clip(const std::vector<vec3>& polygon, const Plane& plane) {
 template <class Use>
 void for_seen_points(const std::array<vec3, 8>& corners, const scene::View& picture,
                      const std::array<Plane, 4>& sides, const Use& use) {
+  const bool is_whole = std::ranges::all_of(sides, [&](const Plane& side) {
+    return std::ranges::all_of(corners, [&](const vec3& corner) { return side.distance(corner) >= 0; });
+  });
+  if (is_whole) std::ranges::for_each(corners, use);
   constexpr int faces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
   for (const auto& face : faces) {
-    std::vector<vec3> polygon;
-    for (const int corner : face) polygon.push_back(corners[static_cast<size_t>(corner)]);
+    if (is_whole) break;
+    Polygon polygon;
+    for (const int corner : face) polygon.add(corners[static_cast<size_t>(corner)]);
     for (const Plane& side : sides) polygon = clip(polygon, side);
-    std::ranges::for_each(polygon, use);
+    for (size_t i = 0; i < polygon.count; ++i) use(polygon.points[i]);
   }
   // The sides meet in the eye, which may lie in the box. Whether it does is not asked: it is near enough.
   if (picture.eye.w == 0) return;
@@ -143,7 +181,7 @@ ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow, float
 }
 
 std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<const Hull> hulls,
-                                          const scene::View& picture) {
+                                          const scene::View& picture, threads::Workers& workers) {
   const vec3 back = scene::normalize(-light.direction);
   const vec3 up = up_across(back);
   const vec3 right = scene::normalize(scene::cross(up, back)), upright = scene::cross(back, right);
@@ -152,16 +190,16 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
   };
   const std::array<Plane, 4> sides = sides_of(picture.projection);
   if (std::ranges::none_of(hulls, &Hull::darkens)) return {};
-  Bounds seen;
-  const auto see = [&](const std::array<vec3, 8>& corners) {
-    for_seen_points(corners, picture, sides, [&](const vec3& p) { seen.add(in_light(p)); });
+  const auto see = [&](const std::array<vec3, 8>& corners, Bounds& bounds) {
+    for_seen_points(corners, picture, sides, [&](const vec3& p) { bounds.add(in_light(p)); });
   };
-  for (const Hull& hull : hulls)
-    if (hull.shows) see(hull.corners);
-  const Bounds all = bounds_of(hulls);
+  Bounds seen = bounds_over(hulls, workers, [&](const Hull& hull, Bounds& bounds) {
+    if (hull.shows) see(hull.corners, bounds);
+  });
+  const Bounds all = bounds_of(hulls, workers);
   const bool may_show = std::ranges::any_of(hulls, [](const Hull& hull) { return hull.shows && hull.moves; });
   // Nothing is where it was: look wherever vertices may have been moved to.
-  if (seen.empty() && may_show) see(all.widened(moved_sizes));
+  if (seen.empty() && may_show) see(all.widened(moved_sizes), seen);
   if (seen.empty()) return {};
   float nearest = seen.high.z;
   bool casts = false, casts_anywhere = false;
@@ -227,13 +265,14 @@ size_t shadow_map_count(const scene::Light& light) {
   return light.kind == scene::LightKind::point || is_wide ? 6 : 1;
 }
 
-std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture) {
-  if (light.kind == scene::LightKind::directional) return map_of_directional(light, hulls, picture);
+std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture,
+                                   threads::Workers& workers) {
+  if (light.kind == scene::LightKind::directional) return map_of_directional(light, hulls, picture, workers);
   const auto is_darkened = [&](const Hull& hull) { return hull.darkens && may_reach(light, hull); };
   if (std::ranges::none_of(hulls, is_darkened) || std::ranges::none_of(hulls, &Hull::casts)) return {};
   scene::Camera camera;
   camera.position = light.position;
-  camera.near = bounds_of(hulls).largest() * near_part;
+  camera.near = bounds_of(hulls, workers).largest() * near_part;
   std::vector<ShadowMap> maps;
   // Far enough to differ from the position.
   const vec3 away = glm::abs(light.position);

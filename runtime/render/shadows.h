@@ -11,6 +11,7 @@
 #include "runtime/raster/clip.h"
 #include "runtime/scene/placement.h"
 #include "runtime/scene/scene.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::render {
 
@@ -19,9 +20,11 @@ struct Hull {
   std::array<glm::vec3, 8> corners;  ///< bit i of the index: the high end along axis i of object space
   bool casts = false;                ///< a shadow
   bool casts_anywhere = false;       ///< a pass that casts moves vertices, maybe out of the box
-  bool shows = false;                ///< shadows that fall on it, maybe: it receives them, and the camera may see it
-  bool darkens = false;              ///< it shows shadows, and has a pass whose color depends on them
+  bool may_show = false;             ///< it receives shadows
+  bool may_darken = false;           ///< it receives shadows, and has a pass whose color depends on them
   bool moves = false;                ///< a pass moves vertices, maybe out of the box
+  bool shows = false;                ///< it receives shadows, and the camera may see it
+  bool darkens = false;              ///< it shows shadows, and has a pass whose color depends on them
 };
 /// The corners low ... high of a box in object space. `margin`: of what its passes may move vertices beyond it, as a part
 /// of its diagonal.
@@ -41,6 +44,7 @@ size_t shadow_map_count(const scene::Light& light);
 /// as deep as what may darken it (of vertices that are moved: up to twice the size of the scene away); one for a spot, around its cone; six for a point light, and for a spot wider than 60
 /// degrees, towards +x -x +y -y +z -z. Every map has a margin for the filter. Empty if there is nothing that it could
 /// darken. The caller holds a lanes::FpGuard.
-std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture);
+std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture,
+                                   threads::Workers& workers);
 
 }  // namespace isoshade::render

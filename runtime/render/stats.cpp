@@ -12,7 +12,9 @@ std::string text(const PlanStats& stats) {
                                                  stats.textures, stats.texels, stats.texture_bytes);
   const std::string environment =
       stats.environment ? fmt::format("environment: maps {} in {:.1f} ms\n",
-                                      stats.environment_cached ? "found in the cache" : "computed",
+                                      stats.environment_kept     ? "kept"
+                                      : stats.environment_cached ? "found in the cache"
+                                                                 : "computed",
                                       1e3 * stats.environment_seconds)
                         : "";
   std::string text = fmt::format(

@@ -27,6 +27,7 @@ struct PlanStats {
   int64_t textures = 0, texels = 0;       ///< stored; with mip levels
   bool environment = false;
   bool environment_cached = false;  ///< its maps were found in the cache
+  bool environment_kept = false;    ///< its maps are those of the frame before
   double environment_seconds = 0;   ///< to compute or find its maps
   int64_t texture_bytes = 0;              ///< that they take
   int64_t lights = 0;

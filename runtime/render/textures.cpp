@@ -2,7 +2,10 @@
 #include "runtime/render/textures.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
+#include <iterator>
+#include <type_traits>
 
 #include "compiler/graph/files.h"
 #include "compiler/lower/frame_layout.h"
@@ -25,6 +28,9 @@ int64_t texel_count(const ImageShape& shape, bool mips) {
 int64_t bytes_of(const ImageShape& shape, bool mips) {
   return texel_count(shape, mips) * (shape.header.bytes ? 4 : 16);
 }
+
+/// Of files that wait to be decoded together.
+constexpr size_t most_waiting_bytes = size_t{1} << 28;
 
 bool is_srgb(lower::Decoding decoding, const ImageSource& source, const scene::ImageHeader& header) {
   const bool by_itself = header.bytes || (source.srgb && header.integers);
@@ -88,6 +94,7 @@ std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding
     if (known != numbers_.end()) {
       Texture& texture = textures_[static_cast<size_t>(known->second)];
       if (mips && !texture.mips) {
+        if (is_stored_) return std::nullopt;
         const int64_t more = bytes_of(texture.shape, true) - texture.bytes();
         if (!fits(more, false, source, diagnostics)) return std::nullopt;
         texture.mips = true;
@@ -95,18 +102,30 @@ std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding
       return known->second;
     }
   }
-  const auto image = LayeredImage::open(source, rule_, diagnostics);
+  if (is_stored_) return std::nullopt;
+  auto image = LayeredImage::open(source, rule_, diagnostics);
   if (!image || !fits(bytes_of(image->shape(), mips), true, source, diagnostics)) return std::nullopt;
-  auto layers = image->decode(diagnostics);
-  if (!layers) return std::nullopt;
-  const ImageShape& shape = image->shape();
+  const ImageShape shape = image->shape();
   const bool srgb = is_srgb(decoding, source, shape.header);
   const auto number = static_cast<int>(textures_.size());
   shapes_[canonical] = shape;
   numbers_[{canonical, srgb}] = number;
-  Texture& texture = textures_.emplace_back(Texture{source, srgb, mips, shape, {}});
-  for (std::vector<scene::FileImage>& layer : *layers) {
-    Levels& levels = texture.layers.emplace_back();
+  Texture& texture = textures_.emplace_back(Texture{source, srgb, mips, shape, std::move(image), {}});
+  if (shape.header.bytes) {
+    waiting_bytes_ += texture.image->file_bytes();
+    if (waiting_bytes_ > most_waiting_bytes && !decode_all(diagnostics)) return std::nullopt;
+  } else if (!texture.decode(diagnostics)) {  // here, because decoding computes floats in the mode of this thread
+    return std::nullopt;
+  }
+  return number;
+}
+
+bool TextureStore::Texture::decode(support::Diagnostics& diagnostics) {
+  auto decoded = image->decode(diagnostics);
+  image.reset();
+  if (!decoded) return false;
+  for (std::vector<scene::FileImage>& layer : *decoded) {
+    Levels& levels = layers.emplace_back();
     for (scene::FileImage& level : layer) {
       if (shape.header.bytes)
         levels.emplace_back(scene::ByteLevel{level.width, level.height, std::move(level.bytes)});
@@ -114,7 +133,32 @@ std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding
         levels.emplace_back(scene::linear_level(std::move(level), srgb));
     }
   }
-  return number;
+  return true;
+}
+
+bool TextureStore::decode_all(support::Diagnostics& diagnostics) {
+  std::vector<Texture*> waiting;
+  for (Texture& texture : textures_)
+    if (texture.image) waiting.push_back(&texture);
+  waiting_bytes_ = 0;
+  std::vector<support::Diagnostics> reports(waiting.size());
+  std::atomic<bool> good = true;
+  workers_.for_each(waiting.size(), [&](size_t i) {
+    if (!waiting[i]->decode(reports[i])) good = false;
+  });
+  for (const support::Diagnostics& report : reports) {
+    for (const support::Diagnostic& one : report.all()) {
+      support::Diagnostic& added = diagnostics.report(one.id, one.where, one.message);
+      added.notes = one.notes;
+      added.fix = one.fix;
+    }
+  }
+  return good;
+}
+
+int TextureStore::Texture::smaller_levels() const {
+  const auto side = static_cast<unsigned>(std::max(shape.header.width, shape.header.height));
+  return mips ? std::bit_width(side) - 1 : 0;
 }
 
 namespace {
@@ -127,7 +171,7 @@ struct Follow {
   int layers = 1;
 };
 
-/// Adds the record of a level whose texels will come after those that are stored.
+/// Adds the record of a level. `table`: of bytes; -1 for floats.
 void add_record(size_t first, int width, int height, Follow follow, int table, backends::Frame& frame) {
   int32_t record[word::stride];
   record[word::first] = static_cast<int32_t>(first);
@@ -139,44 +183,64 @@ void add_record(size_t first, int width, int height, Follow follow, int table, b
   frame.textures.insert(frame.textures.end(), std::begin(record), std::end(record));
 }
 
-void add_level(const scene::ByteLevel& level, bool srgb, Follow follow, backends::Frame& frame) {
-  const int table = srgb ? lower::byte_table::srgb : lower::byte_table::linear;
-  add_record(frame.texel_bytes.size(), level.width, level.height, follow, table, frame);
-  frame.texel_bytes.insert(frame.texel_bytes.end(), level.texels.begin(), level.texels.end());
-}
-
-void add_level(const scene::TextureLevel& level, Follow follow, backends::Frame& frame) {
-  add_record(frame.texels.size(), level.width, level.height, follow, -1, frame);
-  frame.texels.insert(frame.texels.end(), level.texels.begin(), level.texels.end());
-}
-
-int smaller_levels(const scene::ImageHeader& header) {
-  return std::bit_width(static_cast<unsigned>(std::max(header.width, header.height))) - 1;
-}
+/// Writes the texels of a level, and returns where those of the next one belong.
+uint32_t* write_level(const scene::ByteLevel& level, uint32_t* to) { return std::ranges::copy(level.texels, to).out; }
+float* write_level(const scene::TextureLevel& level, float* to) { return std::ranges::copy(level.texels, to).out; }
 
 }  // namespace
 
 int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Frame& frame) {
   const auto first = static_cast<int>(frame.textures.size() / word::stride);
-  for (size_t i = 0; i < levels.size(); ++i) add_level(levels[i], {}, frame);
+  size_t floats = frame.texels.size();
+  for (const scene::TextureLevel& level : levels) floats += level.texels.size();
+  frame.texels.reserve(floats);
+  for (const scene::TextureLevel& level : levels) {
+    add_record(frame.texels.size(), level.width, level.height, {}, -1, frame);
+    frame.texels.insert(frame.texels.end(), level.texels.begin(), level.texels.end());
+  }
   return first;
 }
 
-void TextureStore::store(backends::Frame& frame) {
-  size_t byte_words = 0, float_words = 0;
-  for (const Texture& texture : textures_)
-    (texture.shape.header.bytes ? byte_words : float_words) += static_cast<size_t>(texture.bytes()) / 4;
-  frame.texel_bytes.reserve(1 + byte_words);
-  if (!textures_.empty()) frame.texel_bytes.push_back(0);
-  frame.texels.reserve(2 * lower::byte_table::size + float_words);
-  if (byte_words > 0) {
-    for (const bool srgb : {false, true})
-      frame.texels.insert(frame.texels.end(), scene::byte_table(srgb).begin(), scene::byte_table(srgb).end());
-  }
+bool TextureStore::store(backends::Frame& frame, support::Diagnostics& diagnostics) {
+  if (!decode_all(diagnostics)) return false;
+  is_stored_ = true;
+  const bool has_bytes =
+      std::ranges::any_of(textures_, [](const Texture& texture) { return texture.shape.header.bytes; });
+  size_t bytes = textures_.empty() ? 0 : 1, floats = has_bytes ? 2 * lower::byte_table::size : 0;
+  struct Job {
+    Texture* texture;
+    size_t layer, first;  ///< word
+  };
+  std::vector<Job> jobs;
   for (Texture& texture : textures_) {
     records_.push_back(static_cast<int>(frame.textures.size() / word::stride));
-    for (Levels& levels : texture.layers) store_layer(texture, std::exchange(levels, {}), frame);
+    const scene::ImageHeader& header = texture.shape.header;
+    const int smaller = texture.smaller_levels();
+    const int table = texture.srgb ? lower::byte_table::srgb : lower::byte_table::linear;
+    for (size_t layer = 0; layer < texture.layers.size(); ++layer) {
+      size_t& next = header.bytes ? bytes : floats;
+      jobs.push_back({&texture, layer, next});
+      for (int level = 0; level <= smaller; ++level) {
+        const int width = std::max(1, header.width >> level), height = std::max(1, header.height >> level);
+        add_record(next, width, height, {smaller - level, texture.shape.layers}, header.bytes ? table : -1, frame);
+        next += static_cast<size_t>(width) * static_cast<size_t>(height) * (header.bytes ? 1 : 4);
+      }
+    }
   }
+  frame.texel_bytes.resize(bytes);
+  frame.texels.resize(floats);
+  if (has_bytes) {
+    float* to = frame.texels.data();
+    for (const bool srgb : {false, true}) to = std::ranges::copy(scene::byte_table(srgb), to).out;
+  }
+  workers_.for_each(jobs.size(), [&](size_t j) {
+    const Job& job = jobs[j];
+    Levels levels = std::exchange(job.texture->layers[job.layer], {});
+    if (job.texture->shape.header.bytes)
+      store_layer(*job.texture, std::move(levels), frame.texel_bytes.data() + job.first);
+    else
+      store_layer(*job.texture, std::move(levels), frame.texels.data() + job.first);
+  });
   const Texture* largest[] = {nullptr, nullptr};
   for (const Texture& texture : textures_) {
     const Texture*& known = largest[texture.shape.header.bytes ? 1 : 0];
@@ -184,34 +248,37 @@ void TextureStore::store(backends::Frame& frame) {
   }
   if (largest[0] != nullptr) frame.largest_in_texels = largest[0]->described();
   if (largest[1] != nullptr) frame.largest_in_texel_bytes = largest[1]->described();
+  return true;
 }
 
-/// Stores the levels of files, then those that are computed from the last of them.
-void TextureStore::store_layer(const Texture& texture, Levels levels, backends::Frame& frame) const {
-  Follow follow{texture.mips ? smaller_levels(texture.shape.header) : 0, texture.shape.layers};
+/// Writes the levels of files, then those that are computed from the last of them.
+template <class Word>
+void TextureStore::store_layer(const Texture& texture, Levels levels, Word* to) const {
+  using Level = std::conditional_t<std::is_same_v<Word, float>, scene::TextureLevel, scene::ByteLevel>;
+  constexpr bool is_float = std::is_same_v<Word, float>;
+  int smaller = texture.smaller_levels();
   scene::TextureLevel next;
   for (size_t i = 0; i < levels.size(); ++i) {
-    const bool is_last = i + 1 == levels.size() || follow.smaller == 0;
-    const bool continues = is_last && follow.smaller > 0;
-    if (const auto* bytes = std::get_if<scene::ByteLevel>(&levels[i])) {
-      add_level(*bytes, texture.srgb, follow, frame);
-      if (continues) next = scene::half_size(*bytes, texture.srgb);
-    } else {
-      const auto& floats = std::get<scene::TextureLevel>(levels[i]);
-      add_level(floats, follow, frame);
-      if (continues) next = scene::half_size(floats);
+    const auto& level = std::get<Level>(levels[i]);
+    to = write_level(level, to);
+    const bool is_last = i + 1 == levels.size();
+    if (is_last && smaller > 0) {
+      if constexpr (is_float)
+        next = scene::half_size(level, &workers_);
+      else
+        next = scene::half_size(level, texture.srgb, &workers_);
     }
     levels[i] = scene::ByteLevel{};
-    if (is_last) break;
-    --follow.smaller;
+    if (is_last || smaller == 0) break;
+    --smaller;
   }
   // Each level of bytes is computed from floats before they are rounded to bytes, so that errors do not accumulate.
-  while (follow.smaller-- > 0) {
-    if (texture.shape.header.bytes)
-      add_level(scene::byte_level(next, texture.srgb), texture.srgb, follow, frame);
+  while (smaller-- > 0) {
+    if constexpr (is_float)
+      to = write_level(next, to);
     else
-      add_level(next, follow, frame);
-    if (follow.smaller > 0) next = scene::half_size(next);
+      to = write_level(scene::byte_level(next, texture.srgb), to);
+    if (smaller > 0) next = scene::half_size(next, &workers_);
   }
 }
 

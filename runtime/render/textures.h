@@ -15,6 +15,7 @@
 #include "runtime/render/image_layers.h"
 #include "runtime/render/stats.h"
 #include "runtime/scene/texture.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::render {
 
@@ -34,16 +35,17 @@ int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Fram
 class TextureStore {
  public:
   /// `rule`: which files image documents may name; null for any.
-  explicit TextureStore(const graph::FileRule* rule = nullptr, int64_t most_bytes = max_texture_bytes)
-      : rule_(rule), most_bytes_(most_bytes) {}
+  TextureStore(const graph::FileRule* rule, threads::Workers& workers, int64_t most_bytes = max_texture_bytes)
+      : rule_(rule), workers_(workers), most_bytes_(most_bytes) {}
 
   /// The number of the texture; it has mip levels if any caller passes `mips`. Reports what is not an image, or too
-  /// large.
+  /// large. After store() finds, and does not report, only what is stored.
   std::optional<int> find(const ImageSource& source, lower::Decoding decoding, bool mips,
                           support::Diagnostics& diagnostics);
 
-  /// Fills the texture buffers of the frame. Call it after the last find(); it releases the images.
-  void store(backends::Frame& frame);
+  /// Fills the texture buffers of the frame. Call it once; it releases the images. Images of bytes are decoded only now, on
+  /// all threads. Reports damaged ones.
+  bool store(backends::Frame& frame, support::Diagnostics& diagnostics);
   /// The record of a stored texture, by its number; -1 for -1.
   int record(int number) const { return number < 0 ? -1 : records_[static_cast<size_t>(number)]; }
 
@@ -58,18 +60,27 @@ class TextureStore {
     bool srgb;
     bool mips;
     ImageShape shape;
-    std::vector<Levels> layers;  ///< what the files have
+    std::optional<LayeredImage> image;  ///< until it is decoded
+    std::vector<Levels> layers;         ///< what the files have
 
+    bool decode(support::Diagnostics& diagnostics);
+    int smaller_levels() const;  ///< of each layer
     int64_t texel_count() const;
     int64_t bytes() const;
     backends::Largest described() const;
   };
-  void store_layer(const Texture& texture, Levels levels, backends::Frame& frame) const;
+  /// Decodes the images that are not yet decoded, on all threads.
+  bool decode_all(support::Diagnostics& diagnostics);
+  template <class Word>
+  void store_layer(const Texture& texture, Levels levels, Word* to) const;
   /// Whether this many more bytes fit the limits, and one more texture if it is new.
   bool fits(int64_t bytes, bool is_new, const ImageSource& source, support::Diagnostics& diagnostics) const;
 
   const graph::FileRule* rule_;
+  threads::Workers& workers_;
   int64_t most_bytes_;
+  size_t waiting_bytes_ = 0;  ///< of the files of images that are not yet decoded
+  bool is_stored_ = false;
   std::vector<Texture> textures_;
   std::map<std::pair<std::string, bool>, int> numbers_;  ///< by path and srgb
   std::map<std::string, ImageShape> shapes_;             ///< by path, of images that were read

@@ -14,16 +14,24 @@ struct Corner {
   double magnitude[4];
 };
 
-Corner project(const glm::mat4& projected, double x, double y, double z) {
-  Corner corner{};
+/// The corners of a box; false if a coordinate is not finite.
+bool project(const glm::mat4& projected, const glm::vec3& low, const glm::vec3& high, Corner (&corners)[8]) {
+  bool is_finite = true;
   for (int r = 0; r < 4; ++r) {
-    const double terms[4] = {projected[0][r] * x, projected[1][r] * y, projected[2][r] * z, projected[3][r]};
-    for (const double term : terms) {
-      corner.at[r] += term;
-      corner.magnitude[r] += std::abs(term);
+    double terms[3][2];
+    for (int axis = 0; axis < 3; ++axis) {
+      terms[axis][0] = double{projected[axis][r]} * double{low[axis]};
+      terms[axis][1] = double{projected[axis][r]} * double{high[axis]};
+    }
+    const double offset = projected[3][r];
+    for (int i = 0; i < 8; ++i) {
+      const double x = terms[0][i & 1], y = terms[1][i >> 1 & 1], z = terms[2][i >> 2];
+      corners[i].at[r] = x + y + z + offset;
+      corners[i].magnitude[r] = std::abs(x) + std::abs(y) + std::abs(z) + std::abs(offset);
+      is_finite = is_finite && std::isfinite(corners[i].magnitude[r]);
     }
   }
-  return corner;
+  return is_finite;
 }
 
 }  // namespace
@@ -35,27 +43,18 @@ bool outside_view(const glm::vec3& low, const glm::vec3& high, const glm::mat4& 
   const double wide = 1 + 2.0 / width;
   const double tall = 1 + 2.0 / height;
   constexpr double rounding = 0x1p-16;
-  struct Plane {
-    double x, y, z, w;
-  };
-  const Plane planes[] = {
-      {1, 0, 0, wide}, {-1, 0, 0, wide}, {0, 1, 0, tall}, {0, -1, 0, tall}, {0, 0, -1, 1}};
-  bool outside[5] = {true, true, true, true, true};
-  for (int i = 0; i < 8; ++i) {
-    const Corner corner = project(projected, (i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
-                                  (i & 4) != 0 ? high.z : low.z);
-    for (int p = 0; p < 5; ++p) {
-      const double plane[4] = {planes[p].x, planes[p].y, planes[p].z, planes[p].w};
-      double distance = 0;
-      double magnitude = 0;
-      for (int r = 0; r < 4; ++r) {
-        distance += plane[r] * corner.at[r];
-        magnitude += std::abs(plane[r]) * corner.magnitude[r];
-      }
-      outside[p] = outside[p] && distance < -rounding * magnitude;  // false for NaN and infinities
+  Corner corners[8];
+  if (!project(projected, low, high, corners)) return false;
+  const auto is_outside = [&](int r, double sign, double w) {
+    for (const Corner& corner : corners) {
+      const double distance = sign * corner.at[r] + w * corner.at[3];
+      const double magnitude = corner.magnitude[r] + w * corner.magnitude[3];
+      if (!(distance < -rounding * magnitude)) return false;
     }
-  }
-  return outside[0] || outside[1] || outside[2] || outside[3] || outside[4];
+    return true;
+  };
+  return is_outside(0, 1, wide) || is_outside(0, -1, wide) || is_outside(1, 1, tall) || is_outside(1, -1, tall) ||
+         is_outside(2, -1, 1);
 }
 
 }  // namespace isoshade::render

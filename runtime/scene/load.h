@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/graph/document.h"
@@ -17,6 +18,26 @@ namespace isoshade::scene {
 std::optional<Scene> load_scene(const support::Source& source, const std::vector<std::string>& settings,
                                 const graph::FileRule& files, support::Diagnostics& diagnostics,
                                 std::optional<float> time = {});
+
+/// A document of a scene, read once, for scenes at several times.
+class SceneDocument {
+ public:
+  /// Reads the document with what it extends. Reports what is wrong with its syntax.
+  static std::optional<SceneDocument> load(const support::Source& source, const std::vector<std::string>& settings,
+                                           const graph::FileRule& files, support::Diagnostics& diagnostics);
+  /// Whether scenes at different times differ in more than their `time`.
+  bool is_animated() const;
+  /// What load_scene() makes of the document.
+  std::optional<Scene> at(std::optional<float> time, support::Diagnostics& diagnostics) const;
+
+ private:
+  SceneDocument(graph::Document document, std::vector<std::string> settings, graph::FileRule files)
+      : document_(std::move(document)), settings_(std::move(settings)), files_(std::move(files)) {}
+
+  graph::Document document_;
+  std::vector<std::string> settings_;
+  graph::FileRule files_;
+};
 
 /// Writes values into a scene document, one setting after the other:
 ///

@@ -2,6 +2,7 @@
 #include "runtime/scene/mesh.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
@@ -21,7 +22,8 @@ void add_vertex(Mesh& mesh, glm::vec3 position, glm::vec3 normal, float u, float
       tangent.x,  tangent.y,  tangent.z,  1,        1,        1,        1, 1};
   record[word::texcoord1] = u;
   record[word::texcoord1 + 1] = v;
-  for (const float value : record) mesh.vertices.push_back(canonical(value));
+  for (float& value : record) value = canonical(value);
+  mesh.vertices.insert(mesh.vertices.end(), std::begin(record), std::end(record));
 }
 
 void add_triangle(Mesh& mesh, int64_t a, int64_t b, int64_t c) {
@@ -92,7 +94,24 @@ void make_box(const MeshShape& shape, Mesh& mesh) {
 
 }  // namespace
 
-Mesh make_mesh(const MeshShape& shape) {
+int64_t most_vertices(const MeshShape& shape) {
+  const int64_t around = int64_t{shape.segments} + 1, along = int64_t{shape.rings} + 1;
+  switch (shape.kind) {
+    case MeshKind::sphere:
+    case MeshKind::torus: return around * along;
+    case MeshKind::plane: return around * around;
+    case MeshKind::box: return 24;
+    // Points, and a second time those on the seam and at the poles.
+    case MeshKind::icosphere: return (int64_t{10} << (2 * shape.rings)) + (int64_t{8} << shape.rings) + 16;
+    case MeshKind::cylinder:
+    case MeshKind::cone: return around * (along + 4);
+    case MeshKind::lathe: return around * 2 * static_cast<int64_t>(shape.profile.size());
+    case MeshKind::file: support::bug("a file is not a mesh made by rule");
+  }
+  support::bug("a mesh of no kind");
+}
+
+Mesh make_mesh(const MeshShape& shape, threads::Workers* workers) {
   Mesh mesh;
   const lanes::FpGuard guard;
   switch (shape.kind) {
@@ -106,7 +125,7 @@ Mesh make_mesh(const MeshShape& shape) {
     case MeshKind::lathe: make_lathe(shape, mesh); break;
     case MeshKind::file: support::bug("a file is not a mesh made by rule");
   }
-  add_outline_normals(mesh);
+  add_outline_normals(mesh, workers);
   find_box(mesh);
   return mesh;
 }
@@ -123,6 +142,14 @@ void fit_to_unit_size(Mesh& mesh) {
   find_box(mesh);
 }
 
+Model model_of(Mesh mesh) {
+  Model model{std::move(mesh), {}};
+  ModelPart& all = model.parts.emplace_back();
+  all.index_count = model.mesh.indices.size();
+  all.vertex_count = model.mesh.vertices.size() / word::stride;
+  return model;
+}
+
 std::optional<Model> make_model(const MeshShape& shape, const support::Span& where,
                                 support::Diagnostics& diagnostics) {
   if (shape.kind == MeshKind::file) {
@@ -130,11 +157,7 @@ std::optional<Model> make_model(const MeshShape& shape, const support::Span& whe
     if (model && shape.fit) fit_to_unit_size(model->mesh);
     return model;
   }
-  Model model{make_mesh(shape), {}};
-  ModelPart& all = model.parts.emplace_back();
-  all.index_count = model.mesh.indices.size();
-  all.vertex_count = model.mesh.vertices.size() / lower::vertex_word::stride;
-  return model;
+  return model_of(make_mesh(shape));
 }
 
 }  // namespace isoshade::scene

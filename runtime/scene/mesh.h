@@ -10,6 +10,10 @@
 #include <string_view>
 #include <vector>
 
+namespace isoshade::threads {
+class Workers;
+}
+
 namespace isoshade::scene {
 
 /// Shapes that are made by rule, and meshes that are read from files.
@@ -65,8 +69,10 @@ struct Mesh {
 /// is the remaining fraction of the profile's length. Tangents run along u, normal x tangent against v; vertices
 /// are white.
 ///
-/// `shape` is not a file.
-Mesh make_mesh(const MeshShape& shape);
+/// `shape` is not a file. Works on the threads of `workers` if there are any; the bits do not depend on that.
+Mesh make_mesh(const MeshShape& shape, threads::Workers* workers = nullptr);
+/// At least as many vertices as the mesh of a shape that is not a file has; not many more.
+int64_t most_vertices(const MeshShape& shape);
 
 /// Centres the bounding box on the origin and scales it so that its longest edge is 1.
 void fit_to_unit_size(Mesh& mesh);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "runtime/scene/mesh.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::scene {
 
@@ -33,8 +34,8 @@ void make_lathe(const MeshShape& shape, Mesh& mesh);
 /// normals of all triangles that meet at exactly its position, weighted by their angles there. Where they cancel out,
 /// as on a sheet with two sides, it is the shading normal. Triangles without area do not count. Also computes corner
 /// normals: up to three very different shading normals of the vertices at the position; if there is only one, the
-/// outline normal.
-void add_outline_normals(Mesh& mesh);
+/// outline normal. Works on the threads of `workers` if there are any; the bits do not depend on that.
+void add_outline_normals(Mesh& mesh, threads::Workers* workers = nullptr);
 void find_box(Mesh& mesh);
 
 }  // namespace isoshade::scene

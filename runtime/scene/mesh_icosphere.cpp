@@ -3,7 +3,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "compiler/functions/inverse_trigonometric.h"
@@ -49,15 +48,39 @@ Ball icosahedron() {
   return ball;
 }
 
+/// Numbers of pairs: an open hash table.
+class Pairs {
+ public:
+  /// For at most so many pairs.
+  explicit Pairs(size_t most) : slots_(std::bit_ceil(2 * most + 1)) {}
+
+  /// The number of the pair, and whether it is new; it then gets the number `next`.
+  std::pair<uint32_t, bool> try_emplace(uint32_t a, uint32_t b, size_t next) {
+    const uint64_t pair = uint64_t{a} << 32 | b, mixed = pair * 0x9e3779b97f4a7c15u;
+    size_t at = static_cast<size_t>(mixed ^ (mixed >> 32)) & (slots_.size() - 1);
+    while (slots_[at].is_used && slots_[at].pair != pair) at = (at + 1) & (slots_.size() - 1);
+    const bool is_new = !slots_[at].is_used;
+    if (is_new) slots_[at] = {pair, static_cast<uint32_t>(next), true};
+    return {slots_[at].number, is_new};
+  }
+
+ private:
+  struct Slot {
+    uint64_t pair = 0;
+    uint32_t number = 0;
+    bool is_used = false;
+  };
+  std::vector<Slot> slots_;
+};
+
 /// Divides each triangle into four.
 Ball subdivided(const Ball& coarse) {
   Ball fine{coarse.points, {}};
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
+  Pairs middles(coarse.triangles.size() * 3 / 2);  // one for each edge
   const auto middle = [&](uint32_t a, uint32_t b) {
-    const auto [found, is_new] =
-        middles.try_emplace(std::minmax(a, b), static_cast<uint32_t>(fine.points.size()));
+    const auto [number, is_new] = middles.try_emplace(std::min(a, b), std::max(a, b), fine.points.size());
     if (is_new) fine.points.push_back(normalize(coarse.points[a] + coarse.points[b]));
-    return found->second;
+    return number;
   };
   for (const auto& [a, b, c] : coarse.triangles) {
     const uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
@@ -108,16 +131,16 @@ std::array<Placing, 3> place(const std::array<glm::vec3, 3>& points) {
 void make_icosphere(const MeshShape& shape, Mesh& mesh) {
   Ball ball = icosahedron();
   for (int i = 0; i < shape.rings; ++i) ball = subdivided(ball);
-  std::map<std::pair<uint32_t, uint32_t>, int64_t> known;  // by point and bits of u
+  Pairs known(3 * ball.triangles.size());  // by point and bits of u
   for (const Corners& triangle : ball.triangles) {
     const std::array<Placing, 3> placed =
         place({ball.points[triangle[0]], ball.points[triangle[1]], ball.points[triangle[2]]});
     std::array<int64_t, 3> vertices;
     for (size_t i = 0; i < 3; ++i) {
       const glm::vec3& point = ball.points[triangle[i]];
-      const auto [found, is_new] =
-          known.try_emplace(std::pair(triangle[i], std::bit_cast<uint32_t>(placed[i].u)), vertices_of(mesh));
-      vertices[i] = found->second;
+      const auto [number, is_new] = known.try_emplace(triangle[i], std::bit_cast<uint32_t>(placed[i].u),
+                                                      static_cast<size_t>(vertices_of(mesh)));
+      vertices[i] = number;
       if (is_new)
         add_vertex(mesh, point * shape.size.x, point, placed[i].u, latitude_of(point), placed[i].tangent);
     }

@@ -16,23 +16,31 @@ struct Ring {
   float v;
 };
 
+/// What the vertices of all rings at one longitude share. Seen from outside, u runs to the right.
+struct Meridian {
+  float u;
+  SinCos longitude;
+  glm::vec3 tangent;
+
+  /// At part / whole of a turn.
+  Meridian(int64_t part, int64_t whole)
+      : u(fraction(part, whole)),
+        longitude(sin_cos_of_turn(part % whole, whole)),
+        tangent(normalize(glm::vec3(-longitude.cos, 0, longitude.sin))) {}
+};
+
 /// Adds the vertices of `rings` rings from top to bottom and the bands between them. A pole is one point but many
 /// vertices, as each triangle has its own u there. Other rings have a seam: their first and last vertices coincide.
-/// `add(ring, u, longitude)` adds a vertex.
+/// `add(ring, meridian)` adds a vertex.
 template <class IsPole, class Add>
 void add_bands(Mesh& mesh, int64_t rings, int64_t segments, const IsPole& is_pole, const Add& add) {
+  std::vector<Meridian> of_poles, of_rings;
+  for (int64_t s = 0; s < segments; ++s) of_poles.emplace_back(2 * s + 1, 2 * segments);
+  for (int64_t s = 0; s <= segments; ++s) of_rings.emplace_back(s, segments);
   std::vector<int64_t> first;
   for (int64_t ring = 0; ring < rings; ++ring) {
     first.push_back(vertices_of(mesh));
-    if (is_pole(ring)) {
-      for (int64_t s = 0; s < segments; ++s) {
-        const int64_t part = 2 * s + 1, whole = 2 * segments;
-        add(ring, fraction(part, whole), sin_cos_of_turn(part, whole));
-      }
-    } else {
-      for (int64_t s = 0; s <= segments; ++s)
-        add(ring, fraction(s, segments), sin_cos_of_turn(s % segments, segments));
-    }
+    for (const Meridian& meridian : is_pole(ring) ? of_poles : of_rings) add(ring, meridian);
   }
   for (int64_t ring = 0; ring + 1 < rings; ++ring) {
     for (int64_t s = 0; s < segments; ++s) {
@@ -48,22 +56,19 @@ void add_bands(Mesh& mesh, int64_t rings, int64_t segments, const IsPole& is_pol
   }
 }
 
-/// Seen from outside, u runs to the right.
-glm::vec3 tangent_at(SinCos longitude) { return normalize(glm::vec3(-longitude.cos, 0, longitude.sin)); }
-
 /// Rings from top to bottom: the outside is to the left of the direction along them.
 void add_surface(Mesh& mesh, const std::vector<Ring>& rings, int64_t segments) {
   const auto ring_at = [&](int64_t i) -> const Ring& { return rings[static_cast<size_t>(i)]; };
   const auto is_pole = [&](int64_t i) { return ring_at(i).radius == 0; };
   add_bands(mesh, static_cast<int64_t>(rings.size()), segments, is_pole,
-            [&](int64_t i, float u, SinCos longitude) {
+            [&](int64_t i, const Meridian& at) {
               const Ring& ring = ring_at(i);
               const auto turned = [&](float away, float up) {
                 // Removes the sign of zeros, so that a pole is one point.
-                return glm::vec3(away * -longitude.sin + 0.0f, up, away * -longitude.cos + 0.0f);
+                return glm::vec3(away * -at.longitude.sin + 0.0f, up, away * -at.longitude.cos + 0.0f);
               };
               add_vertex(mesh, turned(ring.radius, ring.height),
-                         normalize(turned(ring.normal.x, ring.normal.y)), u, ring.v, tangent_at(longitude));
+                         normalize(turned(ring.normal.x, ring.normal.y)), at.u, ring.v, at.tangent);
             });
 }
 
@@ -132,12 +137,14 @@ class Way {
 void make_sphere(const MeshShape& shape, Mesh& mesh) {
   const int64_t rings = shape.rings;
   const auto is_pole = [&](int64_t ring) { return ring == 0 || ring == rings; };
-  add_bands(mesh, rings + 1, shape.segments, is_pole, [&](int64_t ring, float u, SinCos longitude) {
-    const SinCos latitude = sin_cos_of_turn(ring, 2 * rings);
-    const SinCos around = is_pole(ring) ? SinCos{0, 1} : longitude;
+  std::vector<SinCos> latitudes;
+  for (int64_t ring = 0; ring <= rings; ++ring) latitudes.push_back(sin_cos_of_turn(ring, 2 * rings));
+  add_bands(mesh, rings + 1, shape.segments, is_pole, [&](int64_t ring, const Meridian& at) {
+    const SinCos latitude = latitudes[static_cast<size_t>(ring)];
+    const SinCos around = is_pole(ring) ? SinCos{0, 1} : at.longitude;
     const glm::vec3 normal =
         normalize(glm::vec3(-latitude.sin * around.sin, latitude.cos, -latitude.sin * around.cos));
-    add_vertex(mesh, normal * shape.size.x, normal, u, fraction(ring, rings), tangent_at(longitude));
+    add_vertex(mesh, normal * shape.size.x, normal, at.u, fraction(ring, rings), at.tangent);
   });
 }
 

@@ -59,6 +59,8 @@ struct Model {
   std::vector<ModelPart> parts;  ///< consecutive parts of the mesh; at least one, none without triangles
 };
 
+/// All of a mesh as one part without material.
+Model model_of(Mesh mesh);
 /// Makes or reads the model of a shape. `where` is the text that names its file, if a document does.
 std::optional<Model> make_model(const MeshShape& shape, const support::Span& where,
                                 support::Diagnostics& diagnostics);

@@ -10,6 +10,7 @@
 #include "compiler/functions/color.h"
 #include "runtime/lanes/float_rules.h"
 #include "runtime/scene/host_math.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::scene {
 namespace {
@@ -53,24 +54,35 @@ float weighted(const Cover& cover, const float* from, size_t step) {
   return finite(sum);
 }
 
-/// half_size of a level whose row y is row(y).
+/// half_size of a level whose row y is row(y, room), which may write to room, a row of floats.
 template <class Row>
-TextureLevel halved(int width, int height, Row row) {
+TextureLevel halved(int width, int height, threads::Workers* workers, const Row& row) {
   const lanes::FpGuard guard;
   const std::vector<Cover> across = covers(width), down = covers(height);
   const size_t values = channels * across.size();
   TextureLevel half{static_cast<int>(across.size()), static_cast<int>(down.size()), {}};
-  half.texels.reserve(values * down.size());
-  std::vector<float> narrow(3 * values);  // the rows that a row of the next level covers
-  for (const Cover& rows : down) {
-    for (size_t i = 0; i < rows.count; ++i) {
-      const float* from = row(rows.first + i);
-      for (size_t x = 0; x < across.size(); ++x)
-        for (size_t c = 0; c < channels; ++c)
-          narrow[i * values + x * channels + c] =
-              weighted(across[x], from + across[x].first * channels + c, channels);
+  half.texels.resize(values * down.size());
+  const auto make_rows = [&](size_t begin, size_t end) {
+    std::vector<float> narrow(3 * values), room(channels * static_cast<size_t>(width));
+    for (size_t y = begin; y < end; ++y) {
+      const Cover& rows = down[y];
+      for (size_t i = 0; i < rows.count; ++i) {
+        const float* from = row(rows.first + i, room.data());
+        for (size_t x = 0; x < across.size(); ++x)
+          for (size_t c = 0; c < channels; ++c)
+            narrow[i * values + x * channels + c] =
+                weighted(across[x], from + across[x].first * channels + c, channels);
+      }
+      for (size_t i = 0; i < values; ++i) half.texels[y * values + i] = weighted(rows, &narrow[i], values);
     }
-    for (size_t i = 0; i < values; ++i) half.texels.push_back(weighted(rows, &narrow[i], values));
+  };
+  constexpr size_t rows_of_task = 32;
+  if (workers == nullptr || down.size() <= rows_of_task) {
+    make_rows(0, down.size());
+  } else {
+    workers->for_each((down.size() + rows_of_task - 1) / rows_of_task, [&](size_t task) {
+      make_rows(task * rows_of_task, std::min(down.size(), (task + 1) * rows_of_task));
+    });
   }
   return half;
 }
@@ -155,17 +167,16 @@ ByteLevel byte_level(const TextureLevel& level, bool srgb) {
   return bytes;
 }
 
-TextureLevel half_size(const TextureLevel& level) {
+TextureLevel half_size(const TextureLevel& level, threads::Workers* workers) {
   const size_t row = channels * static_cast<size_t>(level.width);
-  return halved(level.width, level.height, [&](size_t y) { return &level.texels[y * row]; });
+  return halved(level.width, level.height, workers, [&](size_t y, float*) { return &level.texels[y * row]; });
 }
 
-TextureLevel half_size(const ByteLevel& level, bool srgb) {
+TextureLevel half_size(const ByteLevel& level, bool srgb, threads::Workers* workers) {
   const auto width = static_cast<size_t>(level.width);
-  std::vector<float> row(channels * width);
-  return halved(level.width, level.height, [&](size_t y) {
-    decode(std::span(level.texels).subspan(y * width, width), byte_table(srgb), row.data());
-    return row.data();
+  return halved(level.width, level.height, workers, [&](size_t y, float* row) {
+    decode(std::span(level.texels).subspan(y * width, width), byte_table(srgb), row);
+    return row;
   });
 }
 

@@ -8,6 +8,10 @@
 
 #include "runtime/scene/image_file.h"
 
+namespace isoshade::threads {
+class Workers;
+}
+
 namespace isoshade::scene {
 
 /// A level of a texture. Rows from top to bottom, r g b a per texel. No value is infinite, NaN or denormal.
@@ -38,9 +42,9 @@ ByteLevel byte_level(const TextureLevel& level, bool srgb);
 
 /// The next mip level: max(1, floor(n / 2)) of n columns, and rows likewise. Each texel is the mean of the texels it
 /// covers: two columns, or three if n is odd, the outer ones weighted by the covered fraction. Columns first, then rows.
-/// Alpha does not affect the weights.
-TextureLevel half_size(const TextureLevel& level);
+/// Alpha does not affect the weights. Works on the threads of `workers` if there are any; the bits do not depend on that.
+TextureLevel half_size(const TextureLevel& level, threads::Workers* workers = nullptr);
 /// The same for the floats of bytes.
-TextureLevel half_size(const ByteLevel& level, bool srgb);
+TextureLevel half_size(const ByteLevel& level, bool srgb, threads::Workers* workers = nullptr);
 
 }  // namespace isoshade::scene

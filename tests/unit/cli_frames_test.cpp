@@ -88,7 +88,8 @@ TEST_F(Frames, NeedANameWithOneNumber) {
 
 TEST_F(Frames, UsageErrorsAreReported) {
   for (const char* options : {"--frames 1:0:2", "--frames 0:1", "--frames 0:1:0", "--frames 0:1:x", "--frames 0:1:1000000",
-                              "--frames a:1:2", "--frames 0:1:2 --time 1", "--turntable"})
+                              "--frames a:1:2", "--frames 0", "--frames -3", "--frames 2.5", "--frames 0:1:2 --time 1",
+                              "--turntable"})
     EXPECT_EQ(render(std::string(options) + " " + out("f_%d.png")).exit, 2) << options;
 }
 
@@ -102,6 +103,35 @@ TEST_F(Frames, ARunThatFailsLeavesWholeFilesAlone) {
   EXPECT_FALSE(exists("f_1.png") || exists("f_2.png"));
   EXPECT_EQ(render("--frames 0:1:3 " + out("f.gif")).exit, 2);
   EXPECT_FALSE(exists("f.gif"));
+}
+
+TEST_F(Frames, WithoutAnAnimationAreReadOnceAndAlike) {
+  const std::string render_borders = "render " + graphs + "/scenes/borders.json --size 24x16 --backend interpreter ";
+  ASSERT_EQ(run(render_borders + "--frames 3 " + out("s_%d.exr")).exit, 0);
+  ASSERT_EQ(run(render_borders + out("still.exr")).exit, 0);
+  for (const char* name : {"s_0.exr", "s_1.exr", "s_2.exr"}) EXPECT_EQ(read(folder_ / name), read(folder_ / "still.exr"));
+}
+
+TEST_F(Frames, AreOnlyMeasuredWithoutAnOutput) {
+  const Outcome outcome = render("--frames 0:1:4 --turntable --stats");
+  ASSERT_EQ(outcome.exit, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("times of 4 frames of 24 x 16"), std::string::npos) << outcome.text;
+  for (const char* step : {"load ", "plan ", "build ", "vertices ", "clip ", "draw ", "posts ", "write ", "frame "})
+    EXPECT_NE(outcome.text.find(std::string("\n") + step), std::string::npos) << step << outcome.text;
+  // What was drawn is reported once, of the first frame.
+  EXPECT_EQ(outcome.text.find("scene:"), outcome.text.rfind("scene:")) << outcome.text;
+  EXPECT_EQ(render("--frames 2").exit, 2);
+  EXPECT_EQ(render("--stats").exit, 2);
+  EXPECT_EQ(render("--stats-json x.json " + out("f.png")).exit, 2);
+}
+
+TEST_F(Frames, WriteTheirTimesAsJson) {
+  const std::string path = (folder_ / "times.json").string();
+  ASSERT_EQ(render("--frames 3 --stats-json " + path).exit, 0);
+  EXPECT_NE(read(path).find("\"isoshade_frame_times\": 1"), std::string::npos) << read(path);
+  const Outcome outcome = render("--frames 3 --stats-json " + (folder_ / "scene.json").string());
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.text.find("would destroy an input"), std::string::npos) << outcome.text;
 }
 
 TEST_F(Frames, NeverOverwriteAnInput) {

@@ -84,6 +84,7 @@ class Textures : public ::testing::Test {
 
   testing::Folder folder_;
   check::Library library_;
+  threads::Workers workers_{2};
   render::PlanOptions options_;
   support::Diagnostics diagnostics_;
   std::optional<scene::Scene> scene_;
@@ -305,8 +306,10 @@ TEST_F(Textures, OfBytesAndOfFloatsGiveTheSamePixels) {
 TEST_F(Textures, AreRefusedBeforeDecompressionIfTooLarge) {
   const auto refusal = [&](const std::string& name, int64_t room, bool mips) {
     diagnostics_ = support::Diagnostics();
-    render::TextureStore store(nullptr, room);
-    EXPECT_FALSE(store.find({path(name), nullptr, {}}, lower::Decoding::linear, mips, diagnostics_));
+    render::TextureStore store(nullptr, workers_, room);
+    backends::Frame frame;
+    EXPECT_FALSE(store.find({path(name), nullptr, {}}, lower::Decoding::linear, mips, diagnostics_) &&
+                 store.store(frame, diagnostics_));
     return diagnostics_.text();
   };
   const auto expect_limit = [&](const std::string& name, int64_t bytes, bool mips) {
@@ -331,7 +334,7 @@ TEST_F(Textures, AreRefusedBeforeDecompressionIfTooLarge) {
 TEST_F(Textures, AreRefusedIfTheirMipsDoNotFit) {
   for (const int64_t room : {4 * 16, 4 * 20, 4 * 21}) {
     diagnostics_ = support::Diagnostics();
-    render::TextureStore store(nullptr, room);
+    render::TextureStore store(nullptr, workers_, room);
     const render::ImageSource source{path("a.png"), nullptr, {}};
     EXPECT_EQ(store.find(source, lower::Decoding::linear, false, diagnostics_), 0);
     EXPECT_EQ(store.find(source, lower::Decoding::linear, true, diagnostics_).has_value(), room == 4 * 21);
@@ -391,7 +394,7 @@ TEST_F(Textures, LayersCountInTheLimits) {
   folder_.write("strip.json", R"({"isoshade": 1, "image": "s", "layers": [{"file": "strip.png", "count": 2}]})");
   for (const int64_t room : {4 * 41, 4 * 42}) {
     diagnostics_ = support::Diagnostics();
-    render::TextureStore store(nullptr, room);
+    render::TextureStore store(nullptr, workers_, room);
     EXPECT_EQ(store.find({path("strip.json"), nullptr, {}}, lower::Decoding::linear, true, diagnostics_).has_value(),
               room == 4 * 42)
         << diagnostics_.text();

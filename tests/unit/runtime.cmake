@@ -49,6 +49,11 @@ isoshade_test(render_test
   LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter PkgConfig::jpeg)
 target_compile_definitions(render_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
+isoshade_test(frame_planner_test
+  SOURCES unit/render_frame_planner_test.cpp
+  LINKS isoshade_render)
+target_compile_definitions(frame_planner_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
 isoshade_test(page_test
   SOURCES unit/page_test.cpp
   LINKS isoshade_page isoshade_interpreter nlohmann_json::nlohmann_json)
