@@ -13,6 +13,34 @@
 
 namespace isoshade::backends {
 
+/// What is known of the contents of an array: where two revisions are equal and not 0, the first bytes are too.
+struct Known {
+  uint64_t revision = 0;
+  size_t bytes = 0;
+};
+/// Of an array of a frame; of the vertices those of the meshes. `view`: the one whose matrices and words are meant.
+inline Known known_of(const Frame& frame, const View* view, lower::FrameBuffer buffer) {
+  using lower::FrameBuffer;
+  const auto all = [](uint64_t revision, const auto& array) {
+    return Known{revision, array.size() * sizeof(array[0])};
+  };
+  switch (buffer) {
+    case FrameBuffer::vertices: return all(frame.revisions.vertices, frame.vertices);
+    case FrameBuffer::objects: return all(frame.revisions.objects, frame.objects);
+    case FrameBuffer::lights: return all(frame.revisions.lights, frame.lights);
+    case FrameBuffer::texels: return all(frame.revisions.texels, frame.texels);
+    case FrameBuffer::texel_bytes: return all(frame.revisions.texel_bytes, frame.texel_bytes);
+    case FrameBuffer::textures: return all(frame.revisions.textures, frame.textures);
+    case FrameBuffer::view: return view == nullptr ? Known{} : all(view->revision, view->words);
+    case FrameBuffer::frame:
+    case FrameBuffer::triangles:
+    case FrameBuffer::inputs:
+    case FrameBuffer::layers:
+    case FrameBuffer::layer_records: break;
+  }
+  return {};
+}
+
 /// The arrays `layers` and `layer_records`, as programs are given them.
 struct Layers {
   std::span<const float> floats;

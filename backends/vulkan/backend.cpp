@@ -29,14 +29,21 @@ using support::Diagnostics;
 /// Uploads an array or reports that it is larger than the device allows. `frame`: the frame that owns it, or null.
 template <class T>
 bool upload_array(Device& device, FrameBuffer buffer, std::span<const T> data, const Frame* frame,
-                  Diagnostics& diagnostics) {
+                  const backends::Known& known, Diagnostics& diagnostics) {
   if (data.size_bytes() > device.max_buffer_bytes()) {
     const backends::ArrayLimit limit{device.info().name, device.max_buffer_bytes()};
     backends::report_too_large(buffer, data.size_bytes(), limit, frame, diagnostics);
     return false;
   }
-  device.upload(buffer, data.data(), data.size_bytes());
+  device.upload(buffer, data.data(), data.size_bytes(), known);
   return true;
+}
+
+/// A post has a record and a view of its own; only textures are the frame's.
+backends::Known known_of(const backends::ScreenPass& pass, FrameBuffer buffer) {
+  const bool is_texture =
+      buffer == FrameBuffer::texels || buffer == FrameBuffer::texel_bytes || buffer == FrameBuffer::textures;
+  return is_texture && pass.textures != nullptr ? backends::known_of(*pass.textures, nullptr, buffer) : backends::Known{};
 }
 
 bool reads_textures(const Program& program) {
@@ -120,19 +127,19 @@ bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()
 bool VulkanBackend::upload(const ViewPass& pass, const backends::Layers& layers, std::span<const float> vertices,
                            Diagnostics& diagnostics) {
   return backends::for_each_array(pass, layers, vertices, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-    return upload_array(*device_, buffer, words, &pass.frame, diagnostics);
+    return upload_array(*device_, buffer, words, &pass.frame, backends::known_of(pass.frame, &pass.view, buffer), diagnostics);
   });
 }
 
 bool VulkanBackend::upload_textures(const Frame& frame, Diagnostics& diagnostics) {
   return backends::for_each_texture_array(frame, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-    return upload_array(*device_, buffer, words, &frame, diagnostics);
+    return upload_array(*device_, buffer, words, &frame, backends::known_of(frame, nullptr, buffer), diagnostics);
   });
 }
 
 bool VulkanBackend::upload_triangles(const Frame& frame, std::span<const int32_t> triangles,
                                      Diagnostics& diagnostics) {
-  return upload_array(*device_, FrameBuffer::triangles, triangles, &frame, diagnostics);
+  return upload_array(*device_, FrameBuffer::triangles, triangles, &frame, {}, diagnostics);
 }
 
 bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) {
@@ -253,7 +260,7 @@ bool VulkanBackend::post(std::span<const backends::ScreenPass> passes, const bac
     for (const backends::ScreenPass& pass : passes) {
       const std::vector<int32_t> records = backends::image_records(pass.width, pass.height, pass.images);
       const auto upload = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-        return upload_array(*device_, buffer, words, nullptr, diagnostics);
+        return upload_array(*device_, buffer, words, nullptr, known_of(pass, buffer), diagnostics);
       };
       if (!backends::for_each_array(pass, {{}, records}, upload)) return false;
       const auto pipeline = screen_pipeline(*pass.program, diagnostics);
@@ -268,7 +275,7 @@ bool VulkanBackend::screen(const backends::ScreenPass& pass, const backends::Lay
                            std::vector<float>& rgba, Diagnostics& diagnostics) {
   return guarded(diagnostics, [&] {
     const auto upload = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-      return upload_array(*device_, buffer, words, nullptr, diagnostics);
+      return upload_array(*device_, buffer, words, nullptr, known_of(pass, buffer), diagnostics);
     };
     if (!check_size(pass.width, first_row + rows, diagnostics) || !backends::for_each_array(pass, layers, upload))
       return false;

@@ -106,8 +106,8 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index, const VulkanOptio
     timestamp_mask = std::numeric_limits<uint64_t>::max() >> (64 - bits);
   }
   constexpr std::array<char, smallest_buffer> zeros{};
-  for (Array& array : arrays) upload(array, zeros.data(), zeros.size(), 0);
-  upload(zero, zeros.data(), zeros.size(), 0);
+  for (Array& array : arrays) upload(array, zeros.data(), zeros.size(), {});
+  upload(zero, zeros.data(), zeros.size(), {});
   reserve(output, smallest_buffer, own_memory ? BufferUse::device : BufferUse::shared);
   prepare_attachments(1, 1, true);
   no_target = vk::raii::Framebuffer(
@@ -189,6 +189,35 @@ void Device::Impl::copy_pending() {
                                   .dstAccessMask = vk::AccessFlagBits::eShaderRead};
   commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eAllGraphics, {}, barrier, {},
                            {});
+}
+
+void Device::Impl::record(const Call& call) {
+  if (state.pipeline != call.pipeline)
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
+  if (state.set != current_set)
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, current_set, {});
+  state.pipeline = call.pipeline;
+  state.set = current_set;
+  commands.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
+                               call.push);
+  const std::pair origin{call.push.origin_x, call.push.origin_y};
+  if (state.viewport != origin) {
+    // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
+    constexpr float edge = guard_band;
+    commands.setViewport(0, vk::Viewport{.x = -edge - static_cast<float>(origin.first),
+                                         .y = -edge - static_cast<float>(origin.second),
+                                         .width = 2 * edge,
+                                         .height = 2 * edge,
+                                         .minDepth = 0,
+                                         .maxDepth = 1});
+    state.viewport = origin;
+  }
+  const vk::Rect2D scissor{
+      .offset = {call.scissor.x - origin.first, call.scissor.y - origin.second},
+      .extent = {static_cast<uint32_t>(call.scissor.width), static_cast<uint32_t>(call.scissor.height)}};
+  if (state.scissor != scissor) commands.setScissor(0, scissor);
+  state.scissor = scissor;
+  commands.draw(call.vertex_count, 1, call.first_vertex, 0);
 }
 
 void Device::Impl::finish() {

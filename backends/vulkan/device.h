@@ -121,9 +121,8 @@ class Device {
   std::optional<DeviceSeconds> seconds() const;
 
   /// Replaces the contents of a buffer that shaders read; at most max_buffer_bytes(). Writes only what differs from the
-  /// last upload to this buffer. `revision`: 0, or a number that no other contents of this buffer have; where the last
-  /// upload had the same, nothing is read or written.
-  void upload(lower::FrameBuffer buffer, const void* data, size_t bytes, uint64_t revision = 0);
+  /// last upload to this buffer, and does not even look at what is known to be the same.
+  void upload(lower::FrameBuffer buffer, const void* data, size_t bytes, const backends::Known& known = {});
 
   /// Runs vertex kernels, then copies the first words of the output buffer; at most max_buffer_bytes().
   void run_vertices(std::span<const Call> calls, std::span<int32_t> output);

@@ -49,8 +49,8 @@ enum class BufferUse : uint8_t {
 struct Array {
   Buffer buffer;
   Buffer staging;  ///< with the same contents, if the device has memory of its own
-  size_t held = 0;  ///< bytes of the last upload
-  uint64_t revision = 0;
+  size_t held = 0;  ///< bytes that are known: of the longest upload
+  backends::Known known;  ///< of the last upload
   std::vector<vk::BufferCopy> pending;  ///< from `staging`, before the next work
 };
 
@@ -136,7 +136,7 @@ struct Device::Impl {
   Attachment make_attachment(vk::Format format, int width, int height, vk::ImageUsageFlags usage);
   /// Makes it at least `bytes` long. Its contents are lost if it grows.
   void reserve(Buffer& buffer, size_t bytes, BufferUse use);
-  void upload(Array& array, const void* data, size_t bytes, uint64_t revision);
+  void upload(Array& array, const void* data, size_t bytes, const backends::Known& known);
 
   /// The render pass of an output; it clears every attachment and stores it. Made once.
   const vk::raii::RenderPass& render_pass(Output output, uint32_t attachments);

@@ -52,7 +52,7 @@ void Device::reserve_layers(size_t bytes) {
   Array& layers = impl_->layers();
   layers.pending.clear();
   layers.held = 0;  // what is uploaded later finds other contents
-  layers.revision = 0;
+  layers.known = {};
   impl_->reserve(layers.buffer, std::max<size_t>(bytes, sizeof(float)),
                  impl_->own_memory ? BufferUse::device : BufferUse::shared);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "backends/vulkan/device_impl.h"
 
@@ -104,8 +105,10 @@ void Device::Impl::reserve(Buffer& buffer, size_t bytes, BufferUse use) {
   buffer = make_buffer(wanted, use);
 }
 
-void Device::Impl::upload(Array& array, const void* data, size_t bytes, uint64_t revision) {
-  if (bytes == 0 || (revision != 0 && array.revision == revision && array.held == bytes)) return;
+void Device::Impl::upload(Array& array, const void* data, size_t bytes, const backends::Known& known_now) {
+  const bool same = known_now.revision != 0 && array.known.revision == known_now.revision;
+  const size_t skipped = same ? std::min({known_now.bytes, array.known.bytes, array.held}) : 0;
+  if (bytes <= skipped) return;
   if (array.buffer.bytes < bytes) {
     array.held = 0;
     array.pending.clear();
@@ -116,8 +119,8 @@ void Device::Impl::upload(Array& array, const void* data, size_t bytes, uint64_t
   const auto* from = static_cast<const char*>(data);
   auto* to = static_cast<char*>(written.data);
   const size_t known = written.host_cached ? std::min(array.held, bytes) : 0;
-  array.held = 0;  // in case of an exception
-  for (size_t at = 0; at < bytes; at += block_bytes) {
+  const size_t held = std::exchange(array.held, 0);  // in case of an exception
+  for (size_t at = skipped / block_bytes * block_bytes; at < bytes; at += block_bytes) {
     const size_t size = std::min(block_bytes, bytes - at);
     if (at + size <= known && std::memcmp(to + at, from + at, size) == 0) continue;
     std::memcpy(to + at, from + at, size);
@@ -128,12 +131,12 @@ void Device::Impl::upload(Array& array, const void* data, size_t bytes, uint64_t
     else
       pending.push_back({.srcOffset = at, .dstOffset = at, .size = size});
   }
-  array.held = bytes;
-  array.revision = revision;
+  array.held = std::max(held, bytes);
+  array.known = known_now;
 }
 
-void Device::upload(lower::FrameBuffer buffer, const void* data, size_t bytes, uint64_t revision) {
-  impl_->upload(impl_->arrays[static_cast<size_t>(buffer)], data, bytes, revision);
+void Device::upload(lower::FrameBuffer buffer, const void* data, size_t bytes, const backends::Known& known) {
+  impl_->upload(impl_->arrays[static_cast<size_t>(buffer)], data, bytes, known);
 }
 
 }  // namespace isoshade::vulkan

@@ -93,33 +93,6 @@ class PassEncoder {
 
 }  // namespace
 
-void Device::Impl::record(const Call& call) {
-  if (state.pipeline != call.pipeline)
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
-  if (state.set != current_set)
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, current_set, {});
-  state.pipeline = call.pipeline;
-  state.set = current_set;
-  commands.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
-                               call.push);
-  const std::pair origin{call.push.origin_x, call.push.origin_y};
-  if (state.viewport != origin) {
-    // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
-    constexpr float edge = guard_band;
-    commands.setViewport(0, vk::Viewport{.x = -edge - static_cast<float>(origin.first),
-                                         .y = -edge - static_cast<float>(origin.second),
-                                         .width = 2 * edge,
-                                         .height = 2 * edge,
-                                         .minDepth = 0,
-                                         .maxDepth = 1});
-    state.viewport = origin;
-  }
-  const vk::Rect2D scissor = area(moved(call.scissor, origin.first, origin.second));
-  if (state.scissor != scissor) commands.setScissor(0, scissor);
-  state.scissor = scissor;
-  commands.draw(call.vertex_count, 1, call.first_vertex, 0);
-}
-
 void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output) {
   const bool own_memory = impl_->own_memory;
   impl_->reserve(impl_->output, output.size_bytes(), own_memory ? BufferUse::device : BufferUse::shared);

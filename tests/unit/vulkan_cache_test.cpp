@@ -167,7 +167,7 @@ void main() { result = ivec4(inputs[0]); }
                                            diagnostics);
     ASSERT_TRUE(pipeline) << diagnostics.text();
     const auto result_of = [&](int32_t input, uint64_t revision) {
-      device->upload(lower::FrameBuffer::inputs, &input, sizeof input, revision);
+      device->upload(lower::FrameBuffer::inputs, &input, sizeof input, {revision, sizeof input});
       int32_t result = 0;
       device->run_table(*pipeline, 1, 1, 1, {&result, 1});
       return result;
