@@ -139,6 +139,7 @@ struct ScreenPass {
 struct Drawing {
   ViewPass pass;
   std::span<const float> vertices;     ///< Frame::vertices, followed by those that clipping made
+  bool has_other_vertices = false;     ///< `vertices` do not begin with those of the frame
   std::span<const int32_t> triangles;  ///< records of lower/frame_layout.h, in draw order, in pixels of the target
   Window window;                       ///< in pixels of the target
   /// The samples along each axis in each pixel of the images: 1, 2 or 4. A target without color has 1.

@@ -125,9 +125,11 @@ bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()
 }
 
 bool VulkanBackend::upload(const ViewPass& pass, const backends::Layers& layers, std::span<const float> vertices,
-                           Diagnostics& diagnostics) {
+                           bool knows_vertices, Diagnostics& diagnostics) {
   return backends::for_each_array(pass, layers, vertices, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-    return upload_array(*device_, buffer, words, &pass.frame, backends::known_of(pass.frame, &pass.view, buffer), diagnostics);
+    const bool is_known = buffer != FrameBuffer::vertices || knows_vertices;
+    const backends::Known known = is_known ? backends::known_of(pass.frame, &pass.view, buffer) : backends::Known{};
+    return upload_array(*device_, buffer, words, &pass.frame, known, diagnostics);
   });
 }
 
@@ -146,7 +148,7 @@ bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip,
   const Frame& frame = pass.frame;
   const std::vector<Draw>& draws = pass.view.draws;
   return guarded(diagnostics, [&] {
-    if (!upload(pass, {}, frame.vertices, diagnostics)) return false;
+    if (!upload(pass, {}, frame.vertices, true, diagnostics)) return false;
     const auto reads = [&](const Draw& draw) { return reads_textures(*frame.programs[draw.vertex_program]); };
     if (std::ranges::any_of(draws, reads) && !upload_textures(frame, diagnostics)) return false;
     std::vector<std::optional<PipelineIndex>> pipelines(frame.programs.size());

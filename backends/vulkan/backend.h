@@ -119,9 +119,10 @@ class VulkanBackend : public backends::HostBackend {
   /// The text of a program; nothing if it is too large for drivers, which is reported.
   std::optional<std::string> text_of(const driver::Program& program, support::Diagnostics& diagnostics) const;
   bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
-  /// Uploads what the programs of a view read, except textures and triangles.
+  /// Uploads what the programs of a view read, except textures and triangles. `knows_vertices`: they begin with those of
+  /// the frame.
   bool upload(const backends::ViewPass& pass, const backends::Layers& layers, std::span<const float> vertices,
-              support::Diagnostics& diagnostics);
+              bool knows_vertices, support::Diagnostics& diagnostics);
   bool upload_textures(const backends::Frame& frame, support::Diagnostics& diagnostics);
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
                         support::Diagnostics& diagnostics);

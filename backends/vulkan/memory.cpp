@@ -106,14 +106,14 @@ void Device::Impl::reserve(Buffer& buffer, size_t bytes, BufferUse use) {
 }
 
 void Device::Impl::upload(Array& array, const void* data, size_t bytes, const backends::Known& known_now) {
-  const bool same = known_now.revision != 0 && array.known.revision == known_now.revision;
-  const size_t skipped = same ? std::min({known_now.bytes, array.known.bytes, array.held}) : 0;
-  if (bytes <= skipped) return;
   if (array.buffer.bytes < bytes) {
     array.held = 0;
     array.pending.clear();
     reserve(array.buffer, bytes, own_memory ? BufferUse::device : BufferUse::shared);
   }
+  const bool same = known_now.revision != 0 && array.known.revision == known_now.revision;
+  const size_t skipped = same ? std::min({known_now.bytes, array.known.bytes, array.held}) : 0;
+  if (bytes <= skipped) return;
   if (own_memory) reserve(array.staging, array.buffer.bytes, BufferUse::staging);
   const Buffer& written = own_memory ? array.staging : array.buffer;
   const auto* from = static_cast<const char*>(data);

@@ -117,8 +117,8 @@ Window window_of(const Box& box) { return {box.x0, box.y0, box.x1 - box.x0 + 1, 
 class VulkanViewRenderer final : public backends::ViewRenderer {
  public:
   VulkanViewRenderer(VulkanBackend& backend, const ViewPass& pass, const backends::Layers& layers,
-                     std::span<const float> vertices)
-      : backend_(backend), pass_(pass), layers_(layers), vertices_(vertices), shading_(pass.frame.programs.size()) {}
+                     std::span<const float> vertices, bool knows_vertices)
+      : backend_(backend), pass_(pass), layers_(layers), vertices_(vertices), knows_vertices_(knows_vertices), shading_(pass.frame.programs.size()) {}
 
   bool draw(const Window& window, std::span<const int32_t> triangles, backends::Image& image,
             Diagnostics& diagnostics) override {
@@ -222,7 +222,7 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   /// Uploads the triangles; the first time, also everything that cut-outs and pixel programs read.
   bool upload(std::span<const int32_t> triangles, Diagnostics& diagnostics) {
     uploaded_ = uploaded_ || (!pass_.view.target.has_color && pass_.frame.cutouts.empty()) ||
-                (backend_.upload(pass_, layers_, vertices_, diagnostics) &&
+                (backend_.upload(pass_, layers_, vertices_, knows_vertices_, diagnostics) &&
                  backend_.upload_textures(pass_.frame, diagnostics));
     return uploaded_ && backend_.upload_triangles(pass_.frame, triangles, diagnostics);
   }
@@ -265,6 +265,7 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   const ViewPass pass_;
   const backends::Layers layers_;
   std::span<const float> vertices_;
+  bool knows_vertices_;
   bool uploaded_ = false;
   /// By the program of the cut-out, or null, whether the depth test always passes, and whether it draws layers.
   std::map<std::tuple<const driver::Program*, bool, bool>, std::optional<PipelineIndex>> visibility_;
@@ -298,7 +299,7 @@ bool VulkanBackend::draw(const backends::Drawing& drawing, Diagnostics& diagnost
   const std::vector<int32_t> records =
       backends::image_records(view.target.width, view.target.height, drawing.pass.images);
   bool is_finite = true;
-  VulkanViewRenderer renderer(*this, drawing.pass, {{}, records}, drawing.vertices);
+  VulkanViewRenderer renderer(*this, drawing.pass, {{}, records}, drawing.vertices, !drawing.has_other_vertices);
   const Device::Places places{drawing.depth.first * sizeof(float), drawing.color.first * sizeof(float)};
   if (!renderer.draw(drawing.window, drawing.triangles, places, is_finite, diagnostics)) return false;
   made_finite_ = made_finite_ && is_finite;
@@ -307,7 +308,7 @@ bool VulkanBackend::draw(const backends::Drawing& drawing, Diagnostics& diagnost
 
 std::unique_ptr<backends::ViewRenderer> VulkanBackend::begin(const ViewPass& pass, const backends::Layers& layers,
                                                              std::span<const float> vertices, Diagnostics&) {
-  return std::make_unique<VulkanViewRenderer>(*this, pass, layers, vertices);
+  return std::make_unique<VulkanViewRenderer>(*this, pass, layers, vertices, false);
 }
 
 }  // namespace isoshade::vulkan

@@ -234,6 +234,7 @@ class FrameRenderer {
     const auto& drawn = layout_.drawn_motion;
     if (!backend_.draw({.pass = now,
                         .vertices = vertices,
+                        .has_other_vertices = true,
                         .triangles = memory_.triangles_,
                         .window = {0, 0, width, height},
                         .depth = drawn.depth,
