@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interpreter backend runs the IR itself, one pixel at a time on one thread. It needs neither a compiler nor a
-// device, and shares neither generated text nor the fast rasteriser with the other backends: tests compare both with
-// it.
+// The interpreter backend runs the IR itself, on all threads. It needs neither a compiler nor a device, and shares neither
+// generated text nor the fast rasteriser with the other backends: tests compare both with it.
 #pragma once
 
 #include <functional>
@@ -9,24 +8,27 @@
 #include <string>
 
 #include "backends/backend.h"
+#include "backends/interpreter/code.h"
 
 namespace isoshade::interpreter {
 
-std::unique_ptr<backends::Backend> create();
+/// `threads`: 0: as many as there are cores. `lanes`: see Code.
+std::unique_ptr<backends::Backend> create(int threads = 0, int lanes = Code::widest_lanes());
 
-/// Runs one kernel of a module, with a number type of its own. See ir::Interpreter for the interface.
+/// Runs the kernel of a program, with a number type of its own.
 class Machine {
  public:
   virtual ~Machine() = default;
-  virtual void bind(uint32_t buffer, std::span<const uint32_t> words) = 0;
-  virtual void run(uint32_t function, std::span<const uint32_t> arguments, std::span<uint32_t> results) = 0;
+  /// See Code::run; of each call's result words the first stored_words() are stored. All runs of a machine are given the
+  /// same buffers.
+  virtual void run(const BufferView* buffers, std::span<const Argument> arguments, int count, void* results) = 0;
 };
 using MakeMachine = std::function<std::unique_ptr<Machine>(const driver::Program&)>;
 
-/// The machine of this backend: ir::Interpreter.
-std::unique_ptr<Machine> make_machine(const driver::Program& program);
+/// The machine of this backend: batched.
+std::unique_ptr<Machine> make_machine(const driver::Program& program, int lanes = Code::widest_lanes());
 
-/// The same backend on other machines.
+/// The same backend on other machines, which run one at a time on one thread.
 std::unique_ptr<backends::Backend> create(std::string name, std::string description, MakeMachine make);
 
 }  // namespace isoshade::interpreter

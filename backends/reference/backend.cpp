@@ -3,9 +3,11 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
 #include <utility>
 
 #include "backends/interpreter/backend.h"
+#include "backends/interpreter/stages.h"
 #include "backends/reference/evaluator.h"
 #include "compiler/lower/frame_layout.h"
 
@@ -16,35 +18,68 @@ using support::Diagnostics;
 
 class EvaluatingMachine final : public interpreter::Machine {
  public:
-  explicit EvaluatingMachine(const ir::Module& module) : module_(module), evaluator_(module) {}
-  void bind(uint32_t buffer, std::span<const uint32_t> words) override { evaluator_.bind(buffer, words); }
-  void run(uint32_t function, std::span<const uint32_t> arguments, std::span<uint32_t> results) override {
-    arguments_.resize(arguments.size());
-    size_t word = 0;
-    for (const ir::Parameter& parameter : module_.functions[function].parameters)
-      for (uint32_t i = 0; i < parameter.type.width; ++i, ++word) {
-        arguments_[word].word = arguments[word];
-        if (parameter.type.is_float()) arguments_[word].number = Real(std::bit_cast<float>(arguments[word]));
-      }
-    results_.resize(results.size());
-    evaluator_.run(function, arguments_, results_);
-    size_t next = 0;
-    for (const ir::Result& result : module_.functions[function].results)
-      for (uint32_t i = 0; i < result.type.width; ++i, ++next)
-        results[next] = result.type.is_float() ? std::bit_cast<uint32_t>(stored(results_[next].number))
-                                               : results_[next].word;
+  explicit EvaluatingMachine(const driver::Program& program)
+      : module_(program.module),
+        entry_(program.entry),
+        stored_(interpreter::stored_words(program)),
+        words_(module_.buffers.size()),
+        evaluator_(module_) {}
+
+  void run(const interpreter::BufferView* buffers, std::span<const interpreter::Argument> arguments, int count,
+           void* results) override {
+    if (!std::exchange(is_bound_, true)) bind(buffers);
+    for (int call = 0; call < count; ++call) {
+      run_once(arguments, call);
+      for (size_t i = 0; i < stored_; ++i)
+        std::memcpy(static_cast<std::byte*>(results) + sizeof(uint32_t) * (static_cast<size_t>(call) * stored_ + i),
+                    &stored_words_[i], sizeof(uint32_t));
+    }
   }
 
  private:
+  void bind(const interpreter::BufferView* buffers) {
+    for (uint32_t i = 0; i < words_.size(); ++i) {
+      words_[i].resize(static_cast<size_t>(buffers[i].size));
+      std::memcpy(words_[i].data(), buffers[i].data, sizeof(uint32_t) * words_[i].size());
+      evaluator_.bind(i, words_[i]);
+    }
+  }
+
+  void run_once(std::span<const interpreter::Argument> arguments, int call) {
+    const ir::Function& kernel = module_.functions[entry_];
+    arguments_.resize(arguments.size());
+    size_t word = 0;
+    for (const ir::Parameter& parameter : kernel.parameters)
+      for (uint32_t i = 0; i < parameter.type.width; ++i, ++word) {
+        arguments_[word].word = arguments[word].of(call);
+        if (parameter.type.is_float()) arguments_[word].number = Real(std::bit_cast<float>(arguments_[word].word));
+      }
+    size_t words = 0;
+    for (const ir::Result& result : kernel.results) words += result.type.width;
+    results_.resize(words);
+    evaluator_.run(entry_, arguments_, results_);
+    stored_words_.clear();
+    for (const ir::Result& result : kernel.results)
+      for (uint32_t i = 0; i < result.type.width; ++i) {
+        const Cell& cell = results_[stored_words_.size()];
+        stored_words_.push_back(result.type.is_float() ? std::bit_cast<uint32_t>(stored(cell.number)) : cell.word);
+      }
+  }
+
   const ir::Module& module_;
+  uint32_t entry_;
+  size_t stored_;
+  std::vector<std::vector<uint32_t>> words_;  ///< of the buffers
+  bool is_bound_ = false;
   Evaluator evaluator_;
   std::vector<Cell> arguments_, results_;
+  std::vector<uint32_t> stored_words_;
 };
 
 /// What decides visibility is computed in floats: otherwise a pixel might show another triangle.
 std::unique_ptr<interpreter::Machine> make_machine(const driver::Program& program) {
   if (lower::decides_visibility(program.stage)) return interpreter::make_machine(program);
-  return std::make_unique<EvaluatingMachine>(program.module);
+  return std::make_unique<EvaluatingMachine>(program);
 }
 
 class ReferenceBackend final : public backends::Backend {

@@ -10,10 +10,9 @@ namespace {
 
 class Uniformity {
  public:
-  explicit Uniformity(const Function& f) : f_(f), uniform_(f.values.size(), true) {
+  Uniformity(const Function& f, const std::vector<bool>& parameters) : f_(f), uniform_(f.values.size(), true) {
     if (f.is_declaration()) return;
-    for (size_t i = 0; i < f.parameters.size(); ++i)
-      uniform_[f.blocks[0].parameters[i]] = f.parameters[i].uniform;
+    for (size_t i = 0; i < parameters.size(); ++i) uniform_[f.blocks[0].parameters[i]] = parameters[i];
     visit(0);
   }
   std::vector<bool> take() { return std::move(uniform_); }
@@ -70,6 +69,14 @@ class Uniformity {
 
 }  // namespace
 
-std::vector<bool> uniform_values(const Function& function) { return Uniformity(function).take(); }
+std::vector<bool> uniform_values(const Function& function) {
+  std::vector<bool> parameters;
+  for (const Parameter& parameter : function.parameters) parameters.push_back(parameter.uniform);
+  return uniform_values(function, parameters);
+}
+
+std::vector<bool> uniform_values(const Function& function, const std::vector<bool>& parameters) {
+  return Uniformity(function, parameters).take();
+}
 
 }  // namespace isoshade::ir

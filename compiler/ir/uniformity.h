@@ -12,5 +12,7 @@ namespace isoshade::ir {
 /// uniform where its operands are, a branch's where condition and yields are, a loop's index always, and a
 /// carried value where count, initial value and yield are.
 std::vector<bool> uniform_values(const Function& function);
+/// The same where these parameters are uniform.
+std::vector<bool> uniform_values(const Function& function, const std::vector<bool>& parameters);
 
 }  // namespace isoshade::ir

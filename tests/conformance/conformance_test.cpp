@@ -9,6 +9,7 @@
 #include "backends/cpu/lane_count.h"
 #include "backends/interpreter/backend.h"
 #include "tests/conformance/cases.h"
+#include "tests/unit/scalar_interpreter.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
 #include "compiler/passes/pipeline.h"
@@ -29,12 +30,12 @@ const std::vector<int32_t>& table() {
   return words;
 }
 
-/// The interpreter's results, computed once.
+/// The results of the scalar interpreter, which enforces the preconditions of ops, computed once.
 const std::vector<Expected>& expected() {
   static const std::vector<Expected> all = [] {
     std::vector<Expected> out;
     support::Diagnostics diagnostics;
-    const auto interpreter = interpreter::create();
+    const auto interpreter = interpreter::create_scalar();
     for (auto* cases : {&op_cases, &function_cases, &tier_cases, &idiom_cases})
       for (Case& made : cases()) {
         Expected e{std::move(made), {}};
@@ -85,6 +86,16 @@ TEST_P(CpuLanes, MatchTheInterpreterBitForBit) {
   ASSERT_NE(backend, nullptr) << diagnostics.text();
   expect_same_bits(*backend);
 }
+
+class InterpreterLanes : public testing::TestWithParam<int> {};
+
+TEST_P(InterpreterLanes, MatchTheScalarInterpreterBitForBit) {
+  if (GetParam() > interpreter::Code::widest_lanes()) GTEST_SKIP() << "this machine has no registers of so many lanes";
+  expect_same_bits(*interpreter::create(0, GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, InterpreterLanes, testing::Values(4, 8, 16),
+                         [](const auto& info) { return std::to_string(info.param); });
 
 INSTANTIATE_TEST_SUITE_P(Conformance, CpuLanes, testing::Values("1", "4", "8", "16", "8x2", "16x2"),
                          [](const auto& info) { return std::string(info.param); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs made at random, rich in what drivers and compilers fold: the same bits on the interpreter, on Vulkan
-// and in C++. With ISOSHADE_FULL set there are many more; ISOSHADE_SEEDS=first,last runs those of a report again.
+// Programs made at random, rich in what drivers and compilers fold: the same bits on the scalar and the batched
+// interpreter, on Vulkan and in C++. With ISOSHADE_FULL set there are many more; ISOSHADE_SEEDS=first,last runs those of a report again.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -17,6 +17,7 @@
 #include "compiler/targets/cpp/cpp.h"
 #include "tests/conformance/cases.h"
 #include "tests/unit/random_module.h"
+#include "tests/unit/scalar_interpreter.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
 #endif
@@ -145,7 +146,7 @@ std::vector<int32_t> evaluate(backends::Backend& backend, const driver::Program&
 template <class MakeBackend>
 void expect_same_bits(Seeds seeds, MakeBackend make_backend) {
   constexpr int programs_per_backend = 200;
-  const auto interpreter = interpreter::create();
+  const auto scalar = interpreter::create_scalar();
   std::unique_ptr<backends::Backend> owner;
   int number = 0;
   for (uint64_t seed = seeds.first; seed < seeds.last;) {
@@ -157,7 +158,7 @@ void expect_same_bits(Seeds seeds, MakeBackend make_backend) {
     }
     backends::Backend& backend = *owner;
     const RandomProgram made = make_program(seed, seeds.last);
-    const std::vector<int32_t> expected = evaluate(*interpreter, made.program);
+    const std::vector<int32_t> expected = evaluate(*scalar, made.program);
     const std::vector<int32_t> results = evaluate(backend, made.program);
     ASSERT_EQ(results.size(), expected.size());
     uint64_t reported = ~uint64_t{0};
@@ -237,8 +238,20 @@ TEST(RandomPrograms, LargeProgramsAreIdenticalInCpp) {
   support::Diagnostics diagnostics;
   const auto cpu = cpu::create({}, diagnostics);
   ASSERT_NE(cpu, nullptr) << diagnostics.text();
-  EXPECT_EQ(evaluate(*cpu, program), evaluate(*interpreter::create(), program));
+  const std::vector<int32_t> expected = evaluate(*interpreter::create_scalar(), program);
+  EXPECT_EQ(evaluate(*cpu, program), expected);
+  EXPECT_EQ(evaluate(*interpreter::create(), program), expected);
 }
+
+class InterpreterLanes : public testing::TestWithParam<int> {};
+
+TEST_P(InterpreterLanes, RunRandomProgramsIdentically) {
+  if (GetParam() > interpreter::Code::widest_lanes()) GTEST_SKIP() << "this machine has no such registers";
+  expect_same_bits(seeds(400, 20'000), [](support::Diagnostics&) { return interpreter::create(1, GetParam()); });
+}
+
+INSTANTIATE_TEST_SUITE_P(RandomPrograms, InterpreterLanes, testing::Values(4, 8, 16),
+                         [](const auto& info) { return std::to_string(info.param); });
 
 TEST(RandomPrograms, AreIdenticalInCpp) {
   expect_same_bits(seeds(12, 1'000),
