@@ -154,6 +154,15 @@ std::optional<EntryKind> kind_of(std::string_view name) {
   return std::nullopt;
 }
 
+constexpr std::string_view shared_ending = ".making";
+
+/// The entry that is made in a folder of this name; empty if none is.
+std::string made_in(const std::string& name) {
+  if (!name.ends_with(shared_ending)) return "";
+  const std::string entry = name.substr(0, name.size() - shared_ending.size());
+  return kind_of(entry) ? entry : "";
+}
+
 struct Entry {
   fs::file_time_type used;
   uint64_t bytes = 0;
@@ -175,9 +184,15 @@ struct Listing {
         const fs::file_time_type used = at->last_write_time(gone);
         const uint64_t bytes = gone ? 0 : at->file_size(gone);
         if (!gone) entries.push_back({used, bytes, at->path(), *kind});
-      } else if (support::TemporaryFolder::is_name(name) && fs::is_directory(status)) {
+      } else if (!fs::is_directory(status)) {
+        continue;
+      } else if (std::string entry = made_in(name); support::TemporaryFolder::is_name(name) || !entry.empty()) {
         const fs::file_time_type made = at->last_write_time(gone);
-        if (!gone && now - made > oldest_workshop) abandoned.push_back(at->path());
+        if (gone) continue;
+        if (now - made > oldest_workshop)
+          abandoned.push_back(at->path());
+        else if (!entry.empty())
+          shared.push_back(std::move(entry));
       }
     }
   }
@@ -194,6 +209,7 @@ struct Listing {
 
   std::vector<Entry> entries;
   std::vector<fs::path> abandoned;
+  std::vector<std::string> shared;  ///< the entries that are made in shared workshops
 };
 
 void remove_abandoned(const Listing& listing) {
@@ -273,6 +289,7 @@ CacheContents Cache::clear() const {
   remove_abandoned(listing);
   std::error_code ignored;
   for (const Entry& entry : listing.entries) fs::remove(entry.path, ignored);
+  for (const std::string& entry : listing.shared) fs::remove_all(shared_workshop(entry), ignored);
   return contents();
 }
 
@@ -314,6 +331,12 @@ std::optional<support::TemporaryFolder> Cache::workshop(Diagnostics& diagnostics
   if (!made) report_unwritable(folder_, diagnostics);
   return made;
 }
+
+std::string Cache::shared_workshop(const std::string& name) const {
+  return folder_ + "/" + name + std::string(shared_ending);
+}
+
+std::vector<std::string> Cache::shared_workshops() const { return Listing(folder_).shared; }
 
 bool Cache::store(const std::string& name, const std::string& path, Diagnostics& diagnostics) const {
   std::string contents;

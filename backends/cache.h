@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/temporary.h"
@@ -69,6 +70,12 @@ class Cache {
   std::optional<support::TemporaryFolder> workshop(support::Diagnostics& diagnostics,
                                                    const CacheLimit& limit = {}) const;
 
+  /// The folder in which an entry is made that processes may leave to each other; it need not exist. It is abandoned after a
+  /// day.
+  std::string shared_workshop(const std::string& name) const;
+  /// The entries for which there is such a folder.
+  std::vector<std::string> shared_workshops() const;
+
   /// Turns a file of a workshop into the entry; it is on the disk before it appears under its name. Appends a checksum
   /// of its name and contents, which ELF and most other formats ignore.
   bool store(const std::string& name, const std::string& file, support::Diagnostics& diagnostics) const;
@@ -76,7 +83,7 @@ class Cache {
   /// Makes the bytes an entry. Fails silently: an entry that cannot be kept is made again when it is needed.
   void keep(const std::string& name, std::string_view bytes) const;
 
-  /// Deletes all entries and all abandoned workshops; returns what is left.
+  /// Deletes all entries, all abandoned workshops and those that are shared; returns what is left.
   CacheContents clear() const;
 
  private:

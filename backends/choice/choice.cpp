@@ -19,6 +19,7 @@ std::unique_ptr<backends::Backend> create_cpu(const Options& options, support::D
   cpu::CpuOptions cpu;
   cpu.lanes = options.lanes;
   cpu.threads = options.threads;
+  cpu.execution = options.execution;
   cpu.compiler = options.compiler;
   cpu.cache = options.cache;
   cpu.build_timeout = options.build_timeout;
@@ -48,7 +49,7 @@ std::unique_ptr<backends::Backend> create_vulkan(const Options& options, support
 std::unique_ptr<backends::Backend> create(const Options& options, support::Diagnostics& diagnostics) {
   if (options.name == "cpu") return create_cpu(options, diagnostics);
   if (options.name == "vulkan") return create_vulkan(options, diagnostics);
-  if (options.name == "interpreter") return interpreter::create();
+  if (options.name == "interpreter") return interpreter::create(options.threads);
   if (options.name == "reference") return reference::create();
   diagnostics
       .report(support::Id::unknown_choice, "there is no backend " + support::quote(options.name))

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "backends/backend.h"
+#include "backends/cpu/kernel.h"
 #include "compiler/support/process.h"
 
 namespace isoshade::choice {
@@ -15,6 +16,7 @@ struct Options {
   std::string name = "cpu";  ///< "cpu" "vulkan" "interpreter" "reference"
   std::string lanes;     ///< "1" "4" "8" "16" "8x2" "16x2"; empty: the widest that the machine has
   int threads = 0;       ///< 0: one for each core
+  cpu::Execution execution = cpu::Execution::compiled;  ///< of the cpu backend
   std::string compiler;  ///< for generated C++; empty: $ISOSHADE_CXX, c++, g++, clang++
   support::Seconds build_timeout = support::default_time_limit;  ///< for each run of the compiler
   std::string cache;     ///< the folder of the cache; empty: the user's
@@ -26,7 +28,7 @@ struct Options {
 std::unique_ptr<backends::Backend> create(const Options& options, support::Diagnostics& diagnostics);
 
 /// Whether the diagnostics say that the machine has no compiler for generated C++, and nobody asked for a certain one.
-/// The interpreter can then replace the cpu backend.
+/// The cpu backend can then interpret programs.
 bool may_stand_in(const Options& options, const support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::choice

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "backends/cpu/shade.h"
+#include "backends/interpreter/buffers.h"
 #include "backends/resolve.h"
 #include "backends/shared.h"
 #include "compiler/lower/frame_layout.h"
@@ -28,6 +29,7 @@ using backends::ScreenPass;
 using backends::Slot;
 using backends::ViewPass;
 using driver::Program;
+using interpreter::Buffers;
 using lower::FrameBuffer;
 using support::Diagnostics;
 using support::Id;
@@ -36,44 +38,7 @@ constexpr size_t vertex_chunk = 2048;
 constexpr size_t row_chunk = 2048;
 constexpr size_t triangle_chunk = 8192;
 
-/// The arrays that a call passes to generated code.
-class Buffers {
- public:
-  /// `frame`: the frame that owns the arrays, or null.
-  explicit Buffers(const Frame* frame) : frame_(frame) {
-    std::fill(std::begin(views_), std::end(views_), BufferView{&nothing, 1});
-  }
-
-  /// Reports an array that is too long to be indexed.
-  template <class T>
-  bool bind(FrameBuffer buffer, std::span<const T> words, Diagnostics& diagnostics) {
-    if (words.size() > INT_MAX) {
-      const backends::ArrayLimit limit{"the cpu backend", size_t{4} * INT_MAX, true};
-      backends::report_too_large(buffer, words.size_bytes(), limit, frame_, diagnostics);
-      return false;
-    }
-    BufferView& view = views_[static_cast<size_t>(buffer)];
-    view = words.empty() ? BufferView{&nothing, 1} : BufferView{words.data(), static_cast<int>(words.size())};
-    return true;
-  }
-  bool bind(const ViewPass& pass, const Layers& layers, std::span<const float> vertices, Diagnostics& diagnostics) {
-    const auto use = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-      return bind(buffer, words, diagnostics);
-    };
-    return backends::for_each_array(pass, layers, vertices, use) && backends::for_each_texture_array(pass.frame, use);
-  }
-  bool bind(const ScreenPass& pass, const Layers& layers, Diagnostics& diagnostics) {
-    return backends::for_each_array(pass, layers, [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
-      return bind(buffer, words, diagnostics);
-    });
-  }
-  const BufferView* views() const { return views_; }
-
- private:
-  static constexpr int32_t nothing = 0;
-  BufferView views_[std::size(lower::frame_buffers)];
-  const Frame* frame_;
-};
+constexpr std::string_view taker = "the cpu backend";
 
 class CpuBackend final : public backends::Backend {
  public:
@@ -82,8 +47,7 @@ class CpuBackend final : public backends::Backend {
   std::string_view name() const override { return "cpu"; }
   std::string description() const override {
     const int count = workers().count();
-    return kernels_.compiler().version() + ", lanes " + std::string(kernels_.lanes().name) + ", " +
-           std::to_string(count) + (count == 1 ? " thread" : " threads") +
+    return kernels_.description() + ", " + std::to_string(count) + (count == 1 ? " thread" : " threads") +
            ", native division";
   }
   double build_seconds() const override { return kernels_.seconds(); }
@@ -161,7 +125,7 @@ bool CpuBackend::transform(const ViewPass& pass, support::Array<float>& clip, Di
   for (const Draw& draw : draws) asked[draw.vertex_program] = true;
   FrameKernels kernels(frame.programs.size());
   if (!find_kernels(frame, asked, kernels, diagnostics)) return false;
-  Buffers buffers(&frame);
+  Buffers buffers(taker, &frame);
   if (!buffers.bind(pass, {}, frame.vertices, diagnostics)) return false;
 
   struct Task {
@@ -212,7 +176,7 @@ bool CpuBackend::bind(std::span<const ScreenPass> passes, Screens& screens, Diag
     screens.records.push_back(backends::image_records(pass.width, pass.height, pass.images));
   }
   for (size_t i = 0; i < passes.size(); ++i)
-    if (!screens.buffers.emplace_back(nullptr).bind(passes[i], {layers_, screens.records[i]}, diagnostics)) return false;
+    if (!screens.buffers.emplace_back(taker, nullptr).bind(passes[i], {layers_, screens.records[i]}, diagnostics)) return false;
   auto kernels = kernels_.kernels(programs, diagnostics);
   if (kernels) screens.kernels = *std::move(kernels);
   return kernels.has_value();
@@ -223,7 +187,7 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
   const std::span<const int32_t> triangles = drawing.triangles;
   const backends::Window& window = drawing.window;
   const std::vector<int32_t> records = backends::image_records(view.target.width, view.target.height, images);
-  Buffers buffers(&frame);
+  Buffers buffers(taker, &frame);
   FrameKernels kernels(frame.programs.size());
   Screens posts;
   if (!buffers.bind(drawing.pass, {layers_, records}, drawing.vertices, diagnostics) ||
@@ -300,7 +264,7 @@ bool CpuBackend::evaluate(const Program& program, std::span<const int32_t> input
         .suggest("evaluate fewer rows at a time");
     return false;
   }
-  Buffers buffers(nullptr);
+  Buffers buffers(taker, nullptr);
   if (!buffers.bind(FrameBuffer::inputs, inputs, diagnostics)) return false;
   const size_t width = backends::word_count(program.results);
   outputs.resize(rows * width);
@@ -329,13 +293,16 @@ std::unique_ptr<backends::Backend> create(const CpuOptions& options, Diagnostics
     report.suggest("choose one of " + choices);
     return nullptr;
   }
-  std::optional<Compiler> compiler = Compiler::find(options.compiler, diagnostics, options.build_timeout);
-  if (!compiler) return nullptr;
-  std::optional<Cache> cache = Cache::open(options.cache, diagnostics);
-  if (!cache) return nullptr;
+  std::optional<Toolchain> toolchain;
+  if (options.execution != Execution::interpreted) {
+    std::optional<Compiler> compiler = Compiler::find(options.compiler, diagnostics, options.build_timeout);
+    if (!compiler) return nullptr;
+    std::optional<Cache> cache = Cache::open(options.cache, diagnostics);
+    if (!cache) return nullptr;
+    toolchain.emplace(std::move(*compiler), std::move(*cache), *lanes);
+  }
   return std::make_unique<CpuBackend>(
-      KernelStore(std::move(*compiler), std::move(*cache), *lanes, options.cpp, options.keep),
-      options.threads);
+      KernelStore(std::move(toolchain), options.execution, options.cpp, options.keep), options.threads);
 }
 
 }  // namespace isoshade::cpu

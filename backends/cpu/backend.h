@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU backend: generated C++, compiled by the machine's compiler, run over tiles on all cores.
+// The CPU backend: generated C++, compiled by the machine's compiler, run over tiles on all cores. Until it is compiled,
+// or if it cannot be, the interpreter may run the programs.
 #pragma once
 
 #include <memory>
@@ -22,6 +23,7 @@ struct CpuOptions {
   std::string cache;
   /// The time that the compiler may take for one program.
   support::Seconds build_timeout = support::default_time_limit;
+  Execution execution = Execution::compiled;
   /// A folder that receives the generated C++; empty: none does.
   std::string keep;
   /// The text of a program; see targets/cpp/stages.h for its exports.
@@ -29,7 +31,7 @@ struct CpuOptions {
 };
 
 /// Null if the lanes, the compiler or the cache are not available, which is reported. After Id::no_compiler, callers
-/// should use the interpreter instead.
+/// may ask for Execution::interpreted instead.
 std::unique_ptr<backends::Backend> create(const CpuOptions& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::cpu

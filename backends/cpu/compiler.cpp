@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "backends/cache.h"
 #include "compiler/support/temporary.h"
 #include "compiler/support/visible.h"
 
@@ -54,6 +56,12 @@ std::string_view way_out_of(std::string_view words) {
   for (const int failure : {ENOSPC, EDQUOT, EFBIG, EROFS})
     if (words.find(std::strerror(failure)) != std::string_view::npos) return support::write_failure_fix(failure);
   return way_out;
+}
+
+std::string quoted_for_shell(const std::string& argument) {
+  std::string text = "'";
+  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
 }
 
 // Enough for a program that only prints its version, even on a busy machine.
@@ -131,12 +139,40 @@ bool Compiler::compile(const std::string& folder, const std::string& what, const
                              : end->status > 128 ? " was ended by signal " + std::to_string(end->status - 128)
                              : end->status > 0   ? " failed with status " + std::to_string(end->status)
                                                  : " ended well but wrote no program";
-  const std::string words = end ? end->output : "";
+  report_failure(what, failed, end ? end->output : "", diagnostics);
+  return false;
+}
+
+void Compiler::report_failure(const std::string& what, const std::string& how, const std::string& words,
+                              Diagnostics& diagnostics) const {
   support::Diagnostic& report =
-      diagnostics.report(Id::compiler_failed, quote(path_) + failed + " as it compiled " + what)
+      diagnostics.report(Id::compiler_failed, quote(path_) + how + " as it compiled " + what)
           .suggest(std::string(way_out_of(words)));
   note_lines(words, report);
-  return false;
+}
+
+std::string Compiler::script(const LaneCount& lanes) const {
+  const std::string seconds = std::to_string(std::lround(std::ceil(limit_.count())));
+  // Where there is no process that watches it any more, these end a compiler that hangs.
+  std::string text = "ulimit -t " + seconds + "\nexec";
+  const std::string timeout = support::find_program("timeout");
+  std::vector<std::string> arguments;
+  if (!timeout.empty()) arguments = {timeout, "-s", "KILL", seconds};
+  arguments.push_back(path_);
+  for (std::string& flag : flags(lanes)) arguments.push_back(std::move(flag));
+  arguments.insert(arguments.end(), {"-I.", "-o", "made.so", "program.cpp"});
+  for (const std::string& argument : arguments) text += " " + quoted_for_shell(argument);
+  return text + "\n";
+}
+
+bool write_sources(const std::string& folder, const std::string& text, Diagnostics& diagnostics) {
+  for (const char* made : {"/isoshade", "/isoshade/lanes"}) mkdir((folder + made).c_str(), 0700);
+  return std::ranges::all_of(lanes_headers(),
+                             [&](const Header& header) {
+                               return backends::write_file(folder + "/" + std::string(header.path), header.text,
+                                                           diagnostics);
+                             }) &&
+         backends::write_file(folder + "/program.cpp", text, diagnostics);
 }
 
 }  // namespace isoshade::cpu

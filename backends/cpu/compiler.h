@@ -27,6 +27,9 @@ class Compiler {
   /// Changes when another compiler is installed at the path.
   const std::string& identity() const { return identity_; }
 
+  /// The time that a program may take.
+  support::Seconds limit() const { return limit_; }
+
   /// The options that every shared object is compiled with.
   std::vector<std::string> flags(const LaneCount& lanes) const;
 
@@ -34,6 +37,11 @@ class Compiler {
   /// messages: "the pixel program of \"a.json\"".
   bool compile(const std::string& folder, const std::string& what, const LaneCount& lanes,
                support::Diagnostics& diagnostics) const;
+  /// A shell script that compiles program.cpp to made.so, both in the working directory, which also holds the headers.
+  std::string script(const LaneCount& lanes) const;
+  /// Reports that the compiler did not compile `what`. `how`: " failed with status 1"; `words`: what it said.
+  void report_failure(const std::string& what, const std::string& how, const std::string& words,
+                      support::Diagnostics& diagnostics) const;
 
  private:
   std::string path_;
@@ -48,5 +56,8 @@ struct Header {
   std::string_view text;
 };
 std::span<const Header> lanes_headers();
+
+/// Writes what a compiler needs to a folder: program.cpp and the headers.
+bool write_sources(const std::string& folder, const std::string& text, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::cpu

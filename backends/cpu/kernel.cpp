@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/cpu/kernel.h"
 
-#include <algorithm>
 #include <dlfcn.h>
-#include <sys/stat.h>
 #include <tbb/parallel_for.h>
 #include <utility>
 
@@ -27,13 +25,6 @@ void add_part(support::Sha256& hash, std::string_view part) {
   hash.add(std::to_string(part.size())).add(":").add(part);
 }
 
-bool write_headers(const std::string& folder, Diagnostics& diagnostics) {
-  for (const char* made : {"/isoshade", "/isoshade/lanes"}) mkdir((folder + made).c_str(), 0700);
-  return std::ranges::all_of(lanes_headers(), [&](const Header& header) {
-    return write_file(folder + "/" + std::string(header.path), header.text, diagnostics);
-  });
-}
-
 /// A file name for a program; names of documents are free text.
 std::string file_name(const driver::Program& program) {
   std::string name = program.name.empty() ? "program" : program.name;
@@ -42,10 +33,16 @@ std::string file_name(const driver::Program& program) {
   return name + "." + std::string(lower::name(program.stage)) + ".cpp";
 }
 
+/// For messages.
+std::string what(const driver::Program& program) {
+  return "the " + std::string(lower::name(program.stage)) + " program of " +
+         quote(program.document.empty() ? program.name : program.document);
+}
+
 }  // namespace
 
-std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stage, Diagnostics& diagnostics) {
-  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+bool Kernel::load(const std::string& path, Diagnostics& diagnostics) {
+  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) {
     diagnostics.report(Id::unloadable_code, "cannot load " + quote(path))
         .note(dlerror())
@@ -53,52 +50,27 @@ std::unique_ptr<Kernel> Kernel::load(const std::string& path, driver::Stage stag
             "code must be loadable from the cache: set XDG_CACHE_HOME to a folder on a disk that is not "
             "mounted "
             "noexec, or delete the file if it is damaged");
-    return nullptr;
+    return false;
   }
-  std::unique_ptr<Kernel> kernel(new Kernel(library));
-  void* function = nullptr;
-  switch (stage) {
-    case driver::Stage::vertex:
-      function = dlsym(library, "isoshade_vertex");
-      kernel->vertex = reinterpret_cast<VertexFunction*>(function);
-      break;
-    case driver::Stage::cutout:
-      function = dlsym(library, "isoshade_cutout");
-      kernel->cutout = reinterpret_cast<CutoutFunction*>(function);
-      break;
-    case driver::Stage::pixel:
-      function = dlsym(library, "isoshade_pixel");
-      kernel->pixel = reinterpret_cast<PixelFunction*>(function);
-      break;
-    case driver::Stage::blend:
-      function = dlsym(library, "isoshade_blend");
-      kernel->blend = reinterpret_cast<BlendFunction*>(function);
-      break;
-    case driver::Stage::eval:
-      function = dlsym(library, "isoshade_eval");
-      kernel->eval = reinterpret_cast<EvalFunction*>(function);
-      break;
-    case driver::Stage::post:
-      function = dlsym(library, "isoshade_post");
-      kernel->post = reinterpret_cast<PostFunction*>(function);
-      break;
-    case driver::Stage::depth: support::bug("the CPU rasteriser computes depth itself");
-  }
+  library_ = library;
+  void* const function = dlsym(library, ("isoshade_" + std::string(lower::name(stage_))).c_str());
   support::assert_that(function != nullptr, "generated C++ exports no function of its stage");
-  return kernel;
+  function_.store(function, std::memory_order_release);
+  return true;
 }
 
-Kernel::~Kernel() { dlclose(library_); }
+Kernel::~Kernel() {
+  if (library_ != nullptr) dlclose(library_);
+}
 
-KernelStore::KernelStore(Compiler compiler, Cache cache, LaneCount lanes, CppText cpp, std::string keep)
-    : compiler_(std::move(compiler)),
-      cache_(std::move(cache)),
-      lanes_(lanes),
-      cpp_(std::move(cpp)),
-      keep_(std::move(keep)) {
+KernelStore::KernelStore(std::optional<Toolchain> toolchain, Execution execution, CppText cpp, std::string keep)
+    : execution_(execution), cpp_(std::move(cpp)), keep_(std::move(keep)) {
+  if (!toolchain) return;
+  toolchain_ = std::make_unique<const Toolchain>(std::move(*toolchain));
+  if (execution_ == Execution::at_once) builds_ = std::make_unique<Builds>(*toolchain_);
   support::Sha256 hash;
-  add_part(hash, compiler_.identity());
-  for (const std::string& flag : compiler_.flags(lanes_)) add_part(hash, flag);
+  add_part(hash, toolchain_->compiler.identity());
+  for (const std::string& flag : toolchain_->compiler.flags(toolchain_->lanes)) add_part(hash, flag);
   for (const Header& header : lanes_headers()) {
     add_part(hash, header.path);
     add_part(hash, header.text);
@@ -113,75 +85,100 @@ std::string KernelStore::key_of(const std::string& text) const {
   return hash.hex();
 }
 
+std::string KernelStore::entry_of(const std::string& text) const { return Cache::entry_name(key_of(text)); }
+
+std::string KernelStore::description() const {
+  std::string text = toolchain_ == nullptr
+                         ? "interpreter, lanes " + std::to_string(interpreter::Code::widest_lanes())
+                         : toolchain_->compiler.version() + ", lanes " + std::string(toolchain_->lanes.name);
+  if (execution_ != Execution::at_once) return text;
+  uint64_t compiled = 0, interpreted = 0;
+  for (const auto& [key, kernel] : kernels_) {
+    compiled += kernel->runs_compiled();
+    interpreted += kernel->runs_interpreted();
+  }
+  if (interpreted == 0) return text;
+  return text + " (" + std::to_string(interpreted) + " of " + std::to_string(interpreted + compiled) +
+         " vertices, pixels and rows by the interpreter)";
+}
+
 std::optional<std::vector<const Kernel*>> KernelStore::kernels(
     std::span<const driver::Program* const> programs, Diagnostics& diagnostics) {
   const backends::Timed timed(seconds_);
   struct Missing {
     const driver::Program* program;
     std::string text;
-    std::string key;
-    std::unique_ptr<Kernel> kernel = nullptr;
+    std::unique_ptr<Kernel> kernel;
+    bool is_found = false;
     Diagnostics diagnostics = Diagnostics();
   };
+  const bool waits = execution_ == Execution::compiled;
+  if (builds_ != nullptr) builds_->report(diagnostics);
   std::vector<std::string> keys;
-  std::vector<Missing> missing;
+  std::map<std::string, Missing> missing;
   for (const driver::Program* program : programs) {
-    if (!driver::within_limits(*program, driver::Target::cpu, driver::Division::native, diagnostics))
-      return std::nullopt;
+    const driver::Target target =
+        execution_ == Execution::interpreted ? driver::Target::interpreter : driver::Target::cpu;
+    if (!driver::within_limits(*program, target, driver::Division::native, diagnostics)) return std::nullopt;
     std::string text = cpp_(*program);
-    keys.push_back(key_of(text));
-    const std::string& key = keys.back();
-    if (!keep_.empty() && !write_file(keep_ + "/" + file_name(*program), text, diagnostics))
-      return std::nullopt;
-    const auto is_same = [&](const Missing& m) { return m.key == key; };
-    if (loaded_.contains(key) || std::ranges::any_of(missing, is_same)) continue;
-    missing.push_back({program, std::move(text), key});
+    if (!keep_.empty() && !write_file(keep_ + "/" + file_name(*program), text, diagnostics)) return std::nullopt;
+    const std::string& key = keys.emplace_back(key_of(text));
+    if (!kernels_.contains(key)) missing.try_emplace(key, program, std::move(text), std::make_unique<Kernel>(program->stage));
   }
 
-  tbb::parallel_for(size_t{0}, missing.size(), [&](size_t i) {
-    Missing& m = missing[i];
-    m.kernel = make(*m.program, m.text, m.key, m.diagnostics);
+  std::vector<Missing*> all;
+  for (auto& [key, m] : missing) all.push_back(&m);
+  tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) {
+    Missing& m = *all[i];
+    Diagnostics too_large;
+    const bool interprets =
+        !waits && driver::within_limits(*m.program, driver::Target::interpreter, driver::Division::native, too_large);
+    m.is_found = find(*m.program, m.text, interprets, *m.kernel, m.diagnostics);
   });
   bool failed = false;
-  for (Missing& m : missing) {
+  for (auto& [key, m] : missing) {
     for (support::Diagnostic& d : m.diagnostics.all()) diagnostics.report(d.id, d.where, d.message) = d;
-    if (m.kernel)
-      loaded_[m.key] = std::move(m.kernel);
-    else
-      failed = true;
+    failed = failed || !m.is_found;
+    if (!m.is_found) continue;
+    if (builds_ != nullptr && !m.kernel->is_compiled())
+      builds_->add({what(*m.program), std::move(m.text), Cache::entry_name(key),
+                    [kernel = m.kernel.get()](const std::string& path, Diagnostics& reports) { kernel->load(path, reports); }});
+    kernels_[key] = std::move(m.kernel);
   }
   if (failed) return std::nullopt;
 
   std::vector<const Kernel*> result;
-  for (const std::string& key : keys) result.push_back(loaded_[key].get());
+  for (const std::string& key : keys) result.push_back(kernels_[key].get());
   return result;
 }
 
-std::unique_ptr<Kernel> KernelStore::make(const driver::Program& program, const std::string& text,
-                                          const std::string& key, Diagnostics& diagnostics) const {
-  const std::string entry = Cache::entry_name(key);
-  std::optional<std::string> path = cache_.find(entry);
+/// Loads compiled code, or lets the interpreter run the program if it may, or compiles it.
+bool KernelStore::find(const driver::Program& program, const std::string& text, bool interprets, Kernel& kernel,
+                       Diagnostics& diagnostics) const {
+  std::optional<std::string> path;
+  if (toolchain_ != nullptr) path = toolchain_->cache.find(entry_of(text));
+  if (!path && interprets) {
+    kernel.interpret(program);
+    return true;
+  }
   if (!path) {
-    if (!compile(program, text, entry, diagnostics)) return nullptr;
-    path = cache_.find(entry);
+    if (!compile(program, text, diagnostics)) return false;
+    path = toolchain_->cache.find(entry_of(text));
   }
   if (!path) {
     diagnostics.report(Id::unwritable_cache,
-                       "the cache " + quote(cache_.folder()) + " does not keep what it is given");
-    return nullptr;
+                       "the cache " + quote(toolchain_->cache.folder()) + " does not keep what it is given");
+    return false;
   }
-  return Kernel::load(*path, program.stage, diagnostics);
+  return kernel.load(*path, diagnostics);
 }
 
-bool KernelStore::compile(const driver::Program& program, const std::string& text, const std::string& entry,
-                          Diagnostics& diagnostics) const {
-  const std::string what = "the " + std::string(lower::name(program.stage)) + " program of " +
-                           quote(program.document.empty() ? program.name : program.document);
-  const std::optional<support::TemporaryFolder> workshop = cache_.workshop(diagnostics);
-  return workshop && write_headers(workshop->path(), diagnostics) &&
-         write_file(workshop->path() + "/program.cpp", text, diagnostics) &&
-         compiler_.compile(workshop->path(), what, lanes_, diagnostics) &&
-         cache_.store(entry, workshop->path() + "/program.so", diagnostics);
+bool KernelStore::compile(const driver::Program& program, const std::string& text, Diagnostics& diagnostics) const {
+  const auto& [compiler, cache, lanes] = *toolchain_;
+  const std::optional<support::TemporaryFolder> workshop = cache.workshop(diagnostics);
+  return workshop && write_sources(workshop->path(), text, diagnostics) &&
+         compiler.compile(workshop->path(), what(program), lanes, diagnostics) &&
+         cache.store(entry_of(text), workshop->path() + "/program.so", diagnostics);
 }
 
 }  // namespace isoshade::cpu

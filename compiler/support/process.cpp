@@ -26,6 +26,7 @@ constexpr size_t most_output = 64 * 1024;
 
 class SpawnSettings {
  public:
+  /// `output`: what receives stdout and stderr.
   explicit SpawnSettings(int output) {
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -191,6 +192,32 @@ std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
   result.output = output.take();
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+std::optional<pid_t> start_process(const std::vector<std::string>& arguments, const Variables& variables, int descriptor) {
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere < 0) return std::nullopt;
+  const std::vector<std::string> environment = environment_with(variables);
+  // The shell ends at once, and leaves the program to the system's first process, which waits for orphans.
+  std::vector<std::string> shell = {"/bin/sh", "-c", "\"$@\" &", "sh"};
+  shell.insert(shell.end(), arguments.begin(), arguments.end());
+  pid_t group = 0;
+  int failure = 0;
+  {
+    SpawnSettings settings(nowhere);
+    // To itself: that keeps it open in the shell.
+    posix_spawn_file_actions_adddup2(&settings.files, descriptor, descriptor);
+    const auto lock = Leftovers::lock();
+    failure = posix_spawn(&group, shell[0].c_str(), &settings.files, &settings.attributes, pointers(shell).data(),
+                          pointers(environment).data());
+    if (failure == 0) Leftovers::add_group(group);
+  }
+  close(nowhere);
+  if (failure != 0) return std::nullopt;
+  int status = 0;
+  while (waitpid(group, &status, 0) < 0)
+    if (errno != EINTR) break;
+  return group;
 }
 
 Diagnostic& report_late(Id id, const std::string& program, const std::string& what, Seconds limit,

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <sys/types.h>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,11 @@ std::string find_program(const std::string& name);
 /// environment. After `limit`, kills it and every process that it started. Returns nullopt if it cannot be started.
 std::optional<ProcessEnd> run_process(const std::vector<std::string>& arguments,
                                       const Variables& variables = {}, Seconds limit = default_time_limit);
+
+/// Starts the program at path arguments[0] in a process group of its own, which may outlive this process: it has no input,
+/// its output is lost, and it is no child of this process. It inherits `descriptor`. Returns the group, nothing if it cannot
+/// be started. Until the group is removed from Leftovers, signals that end this process end it too.
+std::optional<pid_t> start_process(const std::vector<std::string>& arguments, const Variables& variables, int descriptor);
 
 /// Reports under `id` that a program did not finish `what` ("compile ...") in time. The caller adds the suggestion.
 Diagnostic& report_late(Id id, const std::string& program, const std::string& what, Seconds limit,

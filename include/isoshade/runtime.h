@@ -65,7 +65,7 @@ ISOSHADE_API Comparison compare_images(const Image& a, const Image& b) noexcept;
 
 struct BackendOptions {
   /// "cpu": generated C++, compiled by the machine's compiler, on all cores. "vulkan": any device that passes the probe.
-  /// "interpreter": neither, and slow. "reference": 57 decimal digits, not the same bits.
+  /// "interpreter": neither, and slower. "reference": 57 decimal digits, not the same bits.
   std::string name = "cpu";
   std::string lanes = {};     ///< cpu: "1" "4" "8" "16" "8x2" "16x2"; empty: the widest that the machine has
   int threads = 0;       ///< cpu: 0: one for each core

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "backends/choice/choice.h"
-#include "backends/interpreter/backend.h"
 #include "compiler/support/read_file.h"
 #include "compiler/support/visible.h"
 
@@ -79,11 +78,12 @@ void progress(const Common& common, const std::string& line) {
 
 std::unique_ptr<backends::Backend> make_backend(const std::string& name, const BackendChoice& choice,
                                                 const Common& common, support::Diagnostics& diagnostics,
-                                                StandIn stand_in) {
+                                                cpu::Execution execution) {
   choice::Options options;
   options.name = name;
   options.lanes = choice.lanes;
   options.threads = choice.threads;
+  options.execution = execution;
   options.compiler = choice.compiler;
   options.build_timeout = common.build_timeout;
   options.device = choice.device;
@@ -96,13 +96,14 @@ std::unique_ptr<backends::Backend> make_backend(const std::string& name, const B
         diagnostics.report(warning.id, warning.message).suggest(warning.fix);
     return backend;
   }
-  if (stand_in == StandIn::allowed && choice::may_stand_in(options, reported)) {
+  if (execution == cpu::Execution::at_once && choice::may_stand_in(options, reported)) {
     if (!common.quiet)
       std::fputs(
-          "note: there is no C++ compiler on this machine; using the interpreter, which is slower but computes the same "
-          "bits\n",
+          "note: there is no C++ compiler on this machine; the interpreter runs the programs, which is slower but "
+          "computes the same bits\n",
           stderr);
-    return interpreter::create();
+    options.execution = cpu::Execution::interpreted;
+    return choice::create(options, diagnostics);
   }
   diagnostics = std::move(reported);
   return nullptr;

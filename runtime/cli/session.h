@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backends/backend.h"
+#include "backends/cpu/kernel.h"
 #include "compiler/check/library.h"
 #include "runtime/cli/arguments.h"
 #include "runtime/scene/image_file.h"
@@ -57,14 +58,11 @@ std::optional<ImageOutput> image_output(const std::string& path, const OutputCho
 /// Returns false, with a diagnostic, if "-" occurs more than once among the inputs.
 bool read_standard_input_once(const std::vector<std::string>& inputs, support::Diagnostics& diagnostics);
 
-/// Whether the interpreter may replace the cpu backend if there is no compiler; not if the cpu backend is to be verified.
-enum class StandIn { allowed, refused };
-
-/// Creates a backend by its name. If there is no compiler and the user named none, the interpreter replaces the cpu
-/// backend, with a note on stderr.
+/// Creates a backend by its name. `execution`: of the cpu backend. With Execution::at_once, programs are interpreted if there
+/// is no compiler and the user named none, with a note on stderr.
 std::unique_ptr<backends::Backend> make_backend(const std::string& name, const BackendChoice& choice,
                                                 const Common& common, support::Diagnostics& diagnostics,
-                                                StandIn stand_in = StandIn::allowed);
+                                                cpu::Execution execution = cpu::Execution::at_once);
 
 int compile(const CompileArguments& arguments, const Common& common);
 int render(const RenderArguments& arguments, const Common& common);

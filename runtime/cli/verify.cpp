@@ -70,7 +70,7 @@ class Verifier {
       for (const std::string& count : lanes) {
         BackendChoice choice = arguments_.choice;
         choice.lanes = count;
-        auto backend = make_backend(name, choice, common_, diagnostics_, StandIn::refused);
+        auto backend = make_backend(name, choice, common_, diagnostics_, cpu::Execution::compiled);
         if (backend == nullptr) return false;
         if (!common_.quiet)
           std::printf("%-12s %s\n", label(name, count).c_str(), backend->description().c_str());

@@ -39,6 +39,7 @@ constexpr Elsewhere elsewhere[] = {
     {support::Id::validation, "tests/unit/vulkan_backend_test.cpp"},
     {support::Id::unwritable_cache, "tests/unit/cpu_cache_test.cpp"},
     {support::Id::unloadable_code, "tests/unit/cpu_kernel_test.cpp"},
+    {support::Id::not_compiled, "tests/unit/cpu_builds_test.cpp"},
     {support::Id::bad_lanes, "tests/unit/cpu_backend_test.cpp"},
     {support::Id::bad_image, "tests/unit/scene_image_file_test.cpp"},
 };

@@ -11,6 +11,7 @@ isoshade_test(backend_test SOURCES unit/backend_array_limit_test.cpp LINKS isosh
 isoshade_test(cpu_test
   SOURCES
     unit/cpu_backend_test.cpp
+    unit/cpu_builds_test.cpp
     unit/cpu_cache_test.cpp
     unit/cpu_compiler_test.cpp
     unit/cpu_kernel_test.cpp
@@ -18,7 +19,9 @@ isoshade_test(cpu_test
 target_compile_definitions(cpu_test PRIVATE ISOSHADE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 
 isoshade_test(interpreter_test
-  SOURCES unit/interpreter_backend_test.cpp
+  SOURCES
+    unit/interpreter_backend_test.cpp
+    unit/interpreter_code_test.cpp
   LINKS isoshade_cpu isoshade_interpreter)
 
 isoshade_test(reference_test

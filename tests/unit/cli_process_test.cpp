@@ -103,8 +103,8 @@ TEST_F(CliProcess, ASignalStopsTheCompilerAndLeavesNoFiles) {
 }
 
 TEST_F(CliProcess, ACompilerThatHangsIsStoppedAndTheDocumentNamed) {
-  const Outcome outcome = run_command(command("render " + scene_ + " --lanes 1 --build-timeout 0.5 --cxx " +
-                                              endless("c++") + " -o " + file("a.png")));
+  const Outcome outcome = run_command(command("verify " + scene_ + " --backends cpu,interpreter --lanes 1 " +
+                                              "--build-timeout 0.5 --cxx " + endless("c++")));
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_NE(outcome.text.find("did not compile"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("plain.json"), std::string::npos) << outcome.text;
@@ -113,6 +113,14 @@ TEST_F(CliProcess, ACompilerThatHangsIsStoppedAndTheDocumentNamed) {
   EXPECT_EQ(left_over(), "");
   EXPECT_EQ(run("render " + scene_ + " --build-timeout 0 -o " + file("a.png")).exit, 2);
   EXPECT_EQ(run("render " + scene_ + " --build-timeout nan -o " + file("a.png")).exit, 2);
+}
+
+TEST_F(CliProcess, ACompilerThatHangsDoesNotHoldUpAPictureAndIsStopped) {
+  const Outcome outcome =
+      run_command(command("render " + scene_ + " --lanes 1 --build-timeout 1 --cxx " + endless("c++") + " -o " + file("a.png")));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  EXPECT_TRUE(fs::exists(folder_ / "a.png"));
+  EXPECT_TRUE(is_gone(number_in("child")));
 }
 
 TEST_F(CliProcess, GraphvizThatHangsIsStopped) {

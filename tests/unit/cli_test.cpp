@@ -312,13 +312,15 @@ TEST_F(Cli, AFailureToWriteStandardOutputIsAnError) {
   EXPECT_EQ(read(folder_ / "a.png").substr(1, 3), "PNG") << "and nothing else is written to the file";
 }
 
-TEST_F(Cli, TheInterpreterReplacesTheCpuExceptForVerify) {
+TEST_F(Cli, TheCpuInterpretsWithoutACompilerExceptForVerify) {
   const std::string bare = "env -u ISOSHADE_CXX PATH=/nonexistent ";
   const std::string render = "render " + scene + " --size 8x8 -o " + file("a.png");
   const auto with = [](const std::string& environment, const std::string& arguments) {
     return run_command(environment + ISOSHADE_COMMAND + " " + arguments);
   };
-  EXPECT_EQ(with("/usr/bin/" + bare, render).exit, 0);
+  const Outcome rendered = with("/usr/bin/" + bare, render);
+  EXPECT_EQ(rendered.exit, 0);
+  EXPECT_NE(rendered.text.find("there is no C++ compiler"), std::string::npos) << rendered.text;
   const Outcome proof =
       with("/usr/bin/" + bare, "verify " + scene + " --backends cpu,interpreter --size 8x8");
   EXPECT_EQ(proof.exit, 2) << "it would compare the interpreter with itself";

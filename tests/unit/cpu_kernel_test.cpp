@@ -41,8 +41,9 @@ class CountedCompiler {
 KernelStore make_store(const std::string& compiler, const std::string& cache, const char* lanes = "4",
                        const std::string& keep = "") {
   Diagnostics diagnostics;
-  return KernelStore(*Compiler::find(compiler, diagnostics), *Cache::open(cache, diagnostics),
-                     *lane_count(lanes), text_of, keep);
+  return KernelStore(
+      Toolchain{*Compiler::find(compiler, diagnostics), *Cache::open(cache, diagnostics), *lane_count(lanes)},
+      Execution::compiled, text_of, keep);
 }
 
 /// Whether the kernel of the eval program is there and computes.
@@ -154,8 +155,8 @@ TEST(KernelStore, CompilesEqualTextsOnce) {
   const auto kernels = store.kernels(programs, diagnostics);
   ASSERT_TRUE(kernels) << diagnostics.text();
   EXPECT_EQ((*kernels)[0], (*kernels)[1]);
-  EXPECT_NE((*kernels)[0]->vertex, nullptr);
-  EXPECT_NE((*kernels)[2]->pixel, nullptr);
+  EXPECT_TRUE((*kernels)[0]->is_compiled());
+  EXPECT_NE((*kernels)[0], (*kernels)[2]);
   EXPECT_EQ(compiler.runs(), 2);
 }
 
