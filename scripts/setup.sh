@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 (or Ubuntu) that isoshade needs to build, run and test. Does nothing if all are
-# installed. Uses sudo only if it is needed.
+# installed. Uses sudo only if it is needed. Arguments are further packages.
 set -euo pipefail
 
 packages=(
@@ -19,6 +19,7 @@ packages=(
   libgtest-dev libbenchmark-dev glslang-tools clang valgrind vulkan-validationlayers python3-jsonschema
   g++-aarch64-linux-gnu qemu-user
   chromium chromium-driver
+  "$@"
 )
 
 missing=()

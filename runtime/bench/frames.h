@@ -34,8 +34,8 @@ struct FrameReport {
   std::vector<FramePoint> points;
 };
 
-/// Frames of a scene are interleaved: each repetition draws one with every backend, number of threads and size. Scenes
-/// of which a backend draws no more of a size than its device allows are left out there.
+/// Frames of a scene are interleaved: each repetition draws one with every backend, number of threads and size. Returns
+/// nothing, with diagnostics, if one cannot be drawn.
 std::optional<FrameReport> measure_frames(const FrameBenchOptions& options, support::Diagnostics& diagnostics);
 
 std::string csv_text(const FrameReport& report);

@@ -105,7 +105,7 @@ class Plot {
     double key = 0;
     for (const Step& step : steps) {
       objects += fmt::format(
-          "set object rectangle from graph {},1.02 to graph {},1.05 fc rgb \"{}\" fs solid noborder\n"
+          "set object rectangle from graph {},1.02 to graph {},1.05 noclip fc rgb \"{}\" fs solid noborder\n"
           "set label \"{}\" at graph {},1.035 left\n", key, key + 0.02, step.color, step.name, key + 0.026);
       key += 0.12;
     }
@@ -118,14 +118,16 @@ class Plot {
   struct Line {
     std::string name, data;
   };
-  void lines(const std::vector<Line>& lines, const std::string& title, const std::string& x, const std::string& y) {
+  void lines(const std::vector<Line>& lines, const std::string& title, const std::string& x, const std::string& y,
+             bool logarithmic = true) {
     std::string plots;
     for (const Line& line : lines) {
       const std::string block = fmt::format("$l{}", series_++);
       text_ += block + " << EOD\n" + line.data + "EOD\n";
       plots += fmt::format("{}{} with linespoints pt 7 ps 0.8 lw 2 title \"{}\"", plots.empty() ? "" : ", ", block, line.name);
     }
-    text_ += fmt::format("set title \"{}\" offset 0,0\nset xlabel \"{}\"\nset ylabel \"{}\"\nset key top left noenhanced font \",11\"\nset logscale xy\n", title, x, y);
+    text_ += fmt::format("set title \"{}\" offset 0,0\nset xlabel \"{}\"\nset ylabel \"{}\"\nset key top left noenhanced font \",11\"\n{}", title, x, y,
+                         logarithmic ? "set logscale xy\n" : "set xrange [0:*]\nset yrange [0:*]\n");
     text_ += lines.empty() ? "" : "plot " + plots + "\n";
     text_ += "unset logscale\n";
   }
@@ -153,7 +155,7 @@ class Plot {
       }
       all.push_back(std::move(line));
     }
-    lines(all, "Threads", "threads", "times as fast as one");
+    lines(all, "Threads", "threads", "times as fast as one", false);
   }
 
   void by_triangles() {

@@ -206,13 +206,17 @@ TEST_F(Cli, BenchMeasuresEveryFormPrecisionAndBackend) {
   std::string line;
   std::getline(csv, line);
   EXPECT_EQ(line,
-            "effect,form,precision,backend,lanes,nanoseconds,spread,transfer,max_ulp,mean_ulp,max_absolute,"
-            "identical");
+            "effect,form,precision,backend,lanes,compute,compute_spread,evaluation,making,nanoseconds,spread,transfer,"
+            "cycles,port_cycles,simulated_cycles,spills,busiest,max_ulp,mean_ulp,max_absolute,identical");
   int points = 0;
-  for (; std::getline(csv, line); ++points) {
+  while (std::getline(csv, line)) {
     const bool same = line.ends_with(",yes"), yardstick = line.find(",built-ins,") != std::string::npos;
-    EXPECT_TRUE(same || yardstick) << line;
+    const bool peer = line.find(",peer,") != std::string::npos;
+    EXPECT_TRUE(same || yardstick || peer) << line;
+    if (!peer) ++points;
   }
+  EXPECT_NE(read(folder_ / "bench/bench.csv").find("toon_highlight,library,peer,glm,1,"), std::string::npos);
+  EXPECT_NE(read(folder_ / "bench/bench.md").find("| toon_highlight |"), std::string::npos);
 #ifdef ISOSHADE_VULKAN
   EXPECT_EQ(points, 2 * 3 * 3 + 1)
       << "two forms, three precisions, three backends; built-ins for the source's form";
@@ -221,6 +225,23 @@ TEST_F(Cli, BenchMeasuresEveryFormPrecisionAndBackend) {
 #endif
   EXPECT_NE(read(folder_ / "bench/bench.json").find("\"max_ulp\""), std::string::npos);
   EXPECT_EQ(run("bench --only no_such_effect").exit, 2);
+}
+
+TEST_F(Cli, BenchMeasuresFramesByStep) {
+  const Outcome outcome = run("bench --frames --quick --only outline_cube --sizes 32,64 --threads 1 --repetitions 1 " +
+                              std::string("--no-vulkan -o ") + file("bench"));
+  EXPECT_EQ(outcome.exit, 0) << outcome.text;
+  std::istringstream csv(read(folder_ / "bench/frames.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "scene,size,backend,threads,triangles,plan_ms,vertices_ms,clip_ms,draw_ms,posts_ms,whole_ms,spread_ms");
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("outline_cube,32,cpu,1,")) << line;
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("outline_cube,64,cpu,1,")) << line;
+  EXPECT_FALSE(std::getline(csv, line)) << line;
+  EXPECT_NE(read(folder_ / "bench/frames.svg").find("outline_cube"), std::string::npos);
+  EXPECT_EQ(run("bench --frames --only no_such_scene").exit, 2);
 }
 
 std::string hash_of(const std::string& changes) {
