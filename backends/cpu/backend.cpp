@@ -299,7 +299,7 @@ std::unique_ptr<backends::Backend> create(const CpuOptions& options, Diagnostics
     if (!compiler) return nullptr;
     std::optional<Cache> cache = Cache::open(options.cache, diagnostics);
     if (!cache) return nullptr;
-    toolchain.emplace(std::move(*compiler), std::move(*cache), *lanes);
+    toolchain.emplace(Toolchain{std::move(*compiler), std::move(*cache), *lanes});
   }
   return std::make_unique<CpuBackend>(
       KernelStore(std::move(toolchain), options.execution, options.cpp, options.keep), options.threads);

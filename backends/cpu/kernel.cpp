@@ -123,7 +123,8 @@ std::optional<std::vector<const Kernel*>> KernelStore::kernels(
     std::string text = cpp_(*program);
     if (!keep_.empty() && !write_file(keep_ + "/" + file_name(*program), text, diagnostics)) return std::nullopt;
     const std::string& key = keys.emplace_back(key_of(text));
-    if (!kernels_.contains(key)) missing.try_emplace(key, program, std::move(text), std::make_unique<Kernel>(program->stage));
+    if (!kernels_.contains(key))
+      missing.try_emplace(key, Missing{program, std::move(text), std::make_unique<Kernel>(program->stage)});
   }
 
   std::vector<Missing*> all;

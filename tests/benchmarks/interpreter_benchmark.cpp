@@ -51,11 +51,10 @@ int main(int argc, char** argv) {
     const interpreter::Stages decoded(*kept);
     std::printf("%s: %zu steps, %zu registers\n", subject.effect.c_str(), decoded.code().step_count(),
                 decoded.code().register_count());
-    for (const auto& [name, backend] : {std::pair{"compiled", compiled.get()}, std::pair{"interpreted", interpreted.get()}}) {
+    for (backends::Backend* const backend : {compiled.get(), interpreted.get()}) {
       const auto add = [&](const char* what, const std::shared_ptr<const driver::Program>& run) {
-        benchmark::RegisterBenchmark((subject.effect + what + name).c_str(), [=, backend = backend](benchmark::State& state) {
-          measure(state, *backend, *run, inputs);
-        });
+        const std::string name = subject.effect + what + std::string(backend->name());
+        benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { measure(state, *backend, *run, inputs); });
       };
       add("/", kept);
       add("/idle/", idle);
