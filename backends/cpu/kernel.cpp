@@ -114,6 +114,11 @@ std::optional<std::vector<const Kernel*>> KernelStore::kernels(
   };
   const bool waits = execution_ == Execution::compiled;
   if (builds_ != nullptr) builds_->report(diagnostics);
+  std::vector<const Kernel*> result;
+  for (const driver::Program* program : programs)
+    if (const auto known = kernel_of_program_.find(program->number); known != kernel_of_program_.end())
+      result.push_back(known->second);
+  if (result.size() == programs.size()) return result;
   std::vector<std::string> keys;
   std::map<std::string, Missing> missing;
   for (const driver::Program* program : programs) {
@@ -148,8 +153,10 @@ std::optional<std::vector<const Kernel*>> KernelStore::kernels(
   }
   if (failed) return std::nullopt;
 
-  std::vector<const Kernel*> result;
+  result.clear();
   for (const std::string& key : keys) result.push_back(kernels_[key].get());
+  for (size_t i = 0; i < programs.size(); ++i)
+    if (programs[i]->number != 0) kernel_of_program_[programs[i]->number] = result[i];
   return result;
 }
 

@@ -139,6 +139,7 @@ class KernelStore {
   std::string keep_;
   std::string surroundings_;  ///< a hash of everything but the text that decides the machine code
   std::map<std::string, std::unique_ptr<Kernel>> kernels_;  ///< by key
+  std::map<uint64_t, const Kernel*> kernel_of_program_;     ///< by Program::number, of those that have one
   std::unique_ptr<Builds> builds_;  ///< which refers to kernels: the first to end
   double seconds_ = 0;
 };

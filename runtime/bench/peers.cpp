@@ -175,8 +175,8 @@ std::unique_ptr<PeerProgram> PeerProgram::make(PeerKind kind, const Subject& sub
     why = no_glm ? "there is no GLM (Debian: package libglm-dev)" : "the compiler rejects it";
     return nullptr;
   }
-  auto kernel = cpu::Kernel::load(object, driver::Stage::eval, ignored);
-  if (!kernel) return nullptr;
+  auto kernel = std::make_unique<cpu::Kernel>(driver::Stage::eval);
+  if (!kernel->load(object, ignored)) return nullptr;
   size_t words = 0;
   for (const driver::Field& field : program.results) words += static_cast<size_t>(field.words);
   return std::unique_ptr<PeerProgram>(new PeerProgram(std::move(kernel), words));
