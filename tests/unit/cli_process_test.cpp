@@ -87,8 +87,8 @@ TEST_F(CliProcess, ASignalStopsTheCompilerAndLeavesNoFiles) {
     const pid_t process = fork();
     if (process == 0) {
       setenv("XDG_CACHE_HOME", file("cache").c_str(), 1);
-      execl(ISOSHADE_COMMAND, "isoshade", "render", scene_.c_str(), "--lanes", "1", "--cxx", compiler.c_str(),
-            "-o", file("big.exr").c_str(), nullptr);
+      execl(ISOSHADE_COMMAND, "isoshade", "verify", scene_.c_str(), "--backends", "cpu,interpreter", "--lanes", "1",
+            "--cxx", compiler.c_str(), nullptr);
       _exit(99);
     }
     const pid_t program = number_in("program"), child = number_in("child");
@@ -146,7 +146,7 @@ TEST_F(CliProcess, AFileSizeLimitIsReportedAndLeavesNoPartialFile) {
     EXPECT_EQ(left_over(), "");
   }
   const Outcome compiled = run_command(
-      "ulimit -f 1; " + command("render " + scene_ + " --lanes 1 -o " + file("a.png")) + "; echo exit $?");
+      "ulimit -f 1; " + command("verify " + scene_ + " --backends cpu,interpreter --lanes 1") + "; echo exit $?");
   EXPECT_NE(compiled.text.find("File too large"), std::string::npos) << compiled.text;
   EXPECT_NE(compiled.text.find("exit 2"), std::string::npos) << compiled.text;
   EXPECT_EQ(left_over(), "");
@@ -282,7 +282,7 @@ TEST_F(CliProcess, ConcurrentUpdatesOfGoldensLoseNoEntry) {
 }
 
 TEST_F(CliProcess, CachePrintsItsFolderAndClears) {
-  EXPECT_EQ(run_command(command("render " + scene_ + " --lanes 1 -o " + file("a.png"))).exit, 0);
+  EXPECT_EQ(run_command(command("verify " + scene_ + " --backends cpu,interpreter --lanes 1")).exit, 0);
   file("cache/isoshade/photo.jpg", "precious");
   const Outcome told = run_command(command("cache"));
   EXPECT_EQ(told.exit, 0);
