@@ -7,7 +7,7 @@
 #include "backends/resolve.h"
 #include "compiler/support/assert.h"
 #include "runtime/lanes/lanes.h"
-#include "runtime/raster/triangle.h"
+#include "runtime/raster/bins.h"
 
 namespace isoshade::backends {
 namespace {
@@ -36,20 +36,6 @@ struct CopiedLayers {
   }
   Layers arrays() const { return {floats, records}; }
 };
-
-/// The triangles that may cover a sample of the window.
-std::vector<int32_t> select_triangles(std::span<const int32_t> triangles, const Window& window) {
-  constexpr int stride = lower::triangle_word::stride;
-  const raster::Box area = raster::box_at(window.x, window.y, window.width, window.height);
-  const int count = static_cast<int>(triangles.size() / stride);
-  std::vector<int32_t> selected;
-  for (int i = 0; i < count; ++i) {
-    const raster::Triangle triangle = raster::triangle_at(triangles.data(), i);
-    if (raster::bounds(triangle).within(area).empty() || !raster::Edges(triangle).reach(area)) continue;
-    selected.insert(selected.end(), triangle.words, triangle.words + stride);
-  }
-  return selected;
-}
 
 }  // namespace
 
@@ -116,7 +102,7 @@ bool HostBackend::draw(const Drawing& drawing, support::Diagnostics& diagnostics
       if (renderer == nullptr) return false;
       const bool drawn =
           whole ? renderer->draw(part, drawing.triangles, samples, diagnostics)
-                : renderer->draw(part, select_triangles(drawing.triangles, part), samples, diagnostics);
+                : renderer->draw(part, raster::triangles_within(drawing.triangles, raster::box_at(part.x, part.y, part.width, part.height)), samples, diagnostics);
       if (!drawn) return false;
     }
     is_finite_ = backends::is_finite(samples.rgba) && is_finite_;

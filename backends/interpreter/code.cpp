@@ -8,6 +8,7 @@
 
 #include "backends/interpreter/draft.h"
 #include "compiler/support/assert.h"
+#include "runtime/raster/tile.h"
 
 namespace isoshade::interpreter {
 
@@ -34,15 +35,7 @@ size_t align(size_t bytes) { return (bytes + alignment - 1) / alignment * alignm
 
 }  // namespace
 
-int Code::widest_lanes() {
-  static const int lanes = [] {
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-      return 16;
-    return __builtin_cpu_supports("avx2") ? 8 : 4;
-  }();
-  return lanes;
-}
+int Code::widest_lanes() { return raster::rasterizer_lanes(); }
 
 /// The registers of a thread, which it keeps.
 class Registers {

@@ -76,4 +76,15 @@ void Bins::sort(std::span<const int32_t> triangles, const TileGrid& grid, thread
   });
 }
 
+std::vector<int32_t> triangles_within(std::span<const int32_t> triangles, const Box& area) {
+  constexpr size_t stride = lower::triangle_word::stride;
+  std::vector<int32_t> selected;
+  for (size_t i = 0; i < triangles.size() / stride; ++i) {
+    const Triangle triangle = triangle_at(triangles.data(), static_cast<int>(i));
+    if (bounds(triangle).within(area).empty() || !Edges(triangle).reach(area)) continue;
+    selected.insert(selected.end(), triangle.words, triangle.words + stride);
+  }
+  return selected;
+}
+
 }  // namespace isoshade::raster

@@ -53,4 +53,7 @@ class Bins {
   support::Array<int32_t> triangles_;
 };
 
+/// Those that may cover a pixel of the area, in their order.
+std::vector<int32_t> triangles_within(std::span<const int32_t> triangles, const Box& area);
+
 }  // namespace isoshade::raster

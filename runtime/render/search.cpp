@@ -2,24 +2,13 @@
 #include "runtime/render/search.h"
 
 #include "compiler/lower/frame_layout.h"
+#include "runtime/raster/bins.h"
 #include "runtime/raster/triangle.h"
 
 namespace isoshade::render {
 namespace {
 
 constexpr size_t stride = lower::triangle_word::stride;
-
-/// The triangles that may cover a sample of the window.
-std::vector<int32_t> select_triangles(std::span<const int32_t> triangles, const backends::Window& window) {
-  const raster::Box area = raster::box_at(window.x, window.y, window.width, window.height);
-  std::vector<int32_t> selected;
-  for (size_t i = 0; i < triangles.size() / stride; ++i) {
-    const raster::Triangle triangle = raster::triangle_at(triangles.data(), static_cast<int>(i));
-    if (!raster::bounds(triangle).within(area).empty())
-      selected.insert(selected.end(), triangle.words, triangle.words + stride);
-  }
-  return selected;
-}
 
 }  // namespace
 
@@ -31,7 +20,8 @@ bool find_object(backends::Backend& backend, const backends::Drawing& drawing, c
   pixel.side = 1;
   pixel.depth = probe.depth;
   pixel.color = probe.color;
-  const std::vector<int32_t> selected = select_triangles(drawing.triangles, pixel.window);
+  const std::vector<int32_t> selected = 
+      raster::triangles_within(drawing.triangles, raster::box_at(pixel.window.x, pixel.window.y, side, side));
   const auto draw_first = [&](size_t count) {
     pixel.triangles = std::span(selected).first(count * stride);
     return backend.draw(pixel, diagnostics);
