@@ -76,6 +76,9 @@ ir::Builder& builder_of(const T&... values) {
   return *found;
 }
 
+/// What is recorded serves all values, so it must do what some of them need.
+inline bool any(Bool) { return true; }
+
 /// Records a primitive op.
 template <class Result, class... T>
 Result record(ir::Opcode op, const T&... operands) {
@@ -93,6 +96,8 @@ namespace isoshade::lanes {
 template <>
 struct traits<functions::traced::Float>
     : family<functions::traced::Float, functions::traced::Int, functions::traced::Bool, 1> {};
+template <>
+struct traits<functions::traced::Int> : traits<functions::traced::Float> {};
 
 /// One IR value of a vector type; components are extracted on demand.
 template <int N>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -41,26 +40,11 @@ int32_t blend_flags(const Surface& surface) {
   return 0;
 }
 
-/// A triangle that turns on the grid, whose y points down, turns the other way in the image.
-Culling culling_of(const Surface& surface, const Box& pixels) {
-  const auto is_culled = [&](bool front) {
-    switch (surface.state.cull) {
-      case interface::Cull::none: return false;
-      case interface::Cull::back: return !front;
-      case interface::Cull::front: return front;
-    }
-    return false;
-  };
-  return {is_culled(!surface.mirrored), is_culled(surface.mirrored), pixels};
-}
-
 /// Writes records of one surface.
 class Writer {
  public:
   explicit Writer(const Surface& surface)
-      : bias_(surface.bias),
-        turned_(word_of(surface, true)),
-        straight_(word_of(surface, false)) {}
+      : bias_(surface.bias), turned_(record_word(surface, true)), straight_(record_word(surface, false)) {}
 
   /// The corners and the indices of their vertices, in the order of the surface's indices.
   void write(std::array<const Corner*, 3> corners, std::array<int32_t, 3> vertices, bool turned, bool wide,
@@ -81,29 +65,17 @@ class Writer {
   }
 
  private:
-  static int32_t word_of(const Surface& surface, bool turned) {
-    const bool front = turned != surface.mirrored;
-    return (surface.object << flag::bits) | depth_flag(surface.state.depth) | (front ? 0 : flag::back) |
-           (surface.cutout ? flag::cutout : 0) | blend_flags(surface);
-  }
-
   /// The corners wind so that the area is positive.
   void move_away(const std::array<const Corner*, 3>& corners, int32_t* record) const {
-    const auto& [a, b, c] = corners;
-    const auto depth = [&](size_t i) { return static_cast<double>(lanes::from_bits_normal(corners[i]->depth)); };
-    const double z0 = depth(0), z1 = depth(1) - z0, z2 = depth(2) - z0;
-    const double x1 = b->x - a->x, x2 = c->x - a->x;
-    const double y1 = b->y - a->y, y2 = c->y - a->y;
-    const double area = x1 * y2 - y1 * x2;  // doubled, in square units; exact
-    const double pixel = static_cast<double>(units) / area;
-    const double across = std::abs(z1 * y2 - z2 * y1) * pixel, down = std::abs(z2 * x1 - z1 * x2) * pixel;
-    const double slope = bias_.slope * (across + down) + bias_.constant;
-    for (int i = 0; i < 3; ++i) {
-      const double z = depth(static_cast<size_t>(i));
-      const double moved = z - (slope + bias_.relative * z);  // may be negative, or the triangle would tilt
-      record[word::depth + i] =
-          lanes::bits_nonnan(lanes::from_bits_normal(lanes::bits(static_cast<float>(moved))));
+    int x[3], y[3];
+    float depth[3];
+    for (size_t i = 0; i < 3; ++i) {
+      x[i] = corners[i]->x;
+      y[i] = corners[i]->y;
+      depth[i] = lanes::from_bits_normal(corners[i]->depth);
     }
+    functions::move_depth(x, y, depth, bias_);
+    for (size_t i = 0; i < 3; ++i) record[word::depth + i] = lanes::bits(depth[i]);
   }
 
   DepthBias bias_;
@@ -135,7 +107,60 @@ void add(Polygon& polygon, const Culling& culling, const Writer& writer, std::ve
   }
 }
 
+/// The polygon of a triangle, clipped. False if nothing is left.
+bool clip(const Viewport& viewport, const Surface& surface, const CutTriangle& triangle,
+          std::span<const float> vertices, Outside outside, Polygon& polygon) {
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t record = size_t{surface.first_vertex} + triangle.indices[i];
+    ClipVertex vertex{triangle.points[i], static_cast<int32_t>(record), {}};
+    std::copy_n(vertices.data() + record * vertex_stride, vertex_stride, vertex.attributes.begin());
+    polygon.add(vertex);
+  }
+  return clip(viewport, outside, polygon);
+}
+
+/// Where a record names a vertex that clipping made, gives its number.
+void number_made(int32_t* record, int32_t first_made) {
+  for (int i = word::vertex; i < word::vertex + 3; ++i)
+    if (record[i] < 0) record[i] = first_made + ~record[i];
+}
+
 }  // namespace
+
+/// A triangle that turns on the grid, whose y points down, turns the other way in the image.
+Culling culling_of(const Surface& surface, const Box& pixels) {
+  const auto is_culled = [&](bool front) {
+    switch (surface.state.cull) {
+      case interface::Cull::none: return false;
+      case interface::Cull::back: return !front;
+      case interface::Cull::front: return front;
+    }
+    return false;
+  };
+  return {is_culled(!surface.mirrored), is_culled(surface.mirrored), pixels};
+}
+
+int32_t record_word(const Surface& surface, bool turned) {
+  const bool front = turned != surface.mirrored;
+  return (surface.object << flag::bits) | depth_flag(surface.state.depth) | (front ? 0 : flag::back) |
+         (surface.cutout ? flag::cutout : 0) | blend_flags(surface);
+}
+
+void cut_triangle(const Viewport& viewport, const Surface& surface, const CutTriangle& triangle,
+                  std::span<const float> vertices, int32_t first_made, std::vector<float>& made,
+                  std::vector<int32_t>& triangles) {
+  Outside any = 0, all = static_cast<Outside>(~0);
+  for (const Point& point : triangle.points) {
+    const Outside outside = viewport.classify(point);
+    any |= outside;
+    all &= outside;
+  }
+  Polygon polygon;
+  if ((any & unusable) != 0 || all != 0 || !clip(viewport, surface, triangle, vertices, any, polygon)) return;
+  const size_t former = triangles.size();
+  add(polygon, culling_of(surface, viewport.pixels()), Writer(surface), made, triangles);
+  for (size_t i = former; i < triangles.size(); i += word::stride) number_made(&triangles[i], first_made);
+}
 
 Clipper::Clipper(int lanes) : lanes_(lanes != 0 ? lanes : rasterizer_lanes()) {}
 
@@ -187,17 +212,17 @@ void Clipper::cut(Chunk& chunk, std::span<const float> vertices) const {
   for (const uint16_t entry : std::span(kept_).subspan(chunk.kept_at, static_cast<size_t>(chunk.kept))) {
     if ((entry & kept_flag::cut) == 0) continue;
     const size_t former = result.triangles.size();
+    CutTriangle triangle{surface.indices.subspan(3 * (chunk.first + (entry >> kept_flag::bits)), 3), {}};
     Polygon polygon;
     Outside outside = 0;
-    for (const uint32_t index : surface.indices.subspan(3 * (chunk.first + (entry >> kept_flag::bits)), 3)) {
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t index = triangle.indices[i];
       const float* p = surface.clip.data() + size_t{4} * index;
-      const size_t record = size_t{surface.first_vertex} + index;
-      ClipVertex vertex{{p[0], p[1], p[2], p[3]}, static_cast<int32_t>(record), {}};
-      std::copy_n(vertices.data() + record * vertex_stride, vertex_stride, vertex.attributes.begin());
-      polygon.add(vertex);
+      triangle.points[i] = {p[0], p[1], p[2], p[3]};
       if (corners[index].x == not_inside) outside |= static_cast<Outside>(corners[index].y);
     }
-    if (clip(viewport_, outside, polygon)) add(polygon, culling, writer, result.vertices, result.triangles);
+    if (clip(viewport_, surface, triangle, vertices, outside, polygon))
+      add(polygon, culling, writer, result.vertices, result.triangles);
     result.counts.push_back(static_cast<int>((result.triangles.size() - former) / word::stride));
   }
 }
@@ -212,8 +237,7 @@ void Clipper::write(const Chunk& chunk, int32_t first_made, int32_t* record) con
     if (entry & kept_flag::cut) {
       for (int left = *cut_count++; left > 0; --left, cut_record += word::stride, record += word::stride) {
         std::copy_n(cut_record, word::stride, record);
-        for (int i = word::vertex; i < word::vertex + 3; ++i)
-          if (record[i] < 0) record[i] = first_made + ~record[i];
+        number_made(record, first_made);
       }
       continue;
     }

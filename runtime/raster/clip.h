@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From clip space to triangles on the pixel grid: clipping, division, snapping, culling. The host does this once for
-// every backend, so that all of them rasterise the same integers.
+// From clip space to triangles on the pixel grid: clipping, division, snapping, culling. All backends rasterise the same
+// integers: the host makes them, or a GPU by the same functions (lower/setup.h), for which the host clips.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,8 @@ inline constexpr int max_image_size = 8192;
 /// How far to the left of and above the image positions may lie, in pixels.
 inline constexpr int max_before_image = 2048;
 
-/// How far the depth of a triangle is moved away from the viewer, as depth.
-struct DepthBias {
-  float slope = 0;     ///< times the sum of what the depth changes by from a pixel to the next, along x and along y
-  float relative = 0;  ///< times the depth
-  float constant = 0;
+/// How far the depth of a triangle is moved away from the viewer.
+struct DepthBias : functions::DepthBiasOf<float> {
   bool is_set() const { return slope > 0 || relative > 0 || constant > 0; }
 };
 
@@ -43,6 +40,24 @@ struct Surface {
   bool blended = false;  ///< its triangles get triangle_flag::blended, by `state.depth_write` with ::keeps_depth
   DepthBias bias = {};
 };
+
+/// How triangles of the surface are culled in an image of these pixels.
+Culling culling_of(const Surface& surface, const Box& pixels);
+
+/// The last word of the surface's triangle records, but for triangle_flag::wide: of those that turn counter-clockwise on
+/// the grid, and of the others.
+int32_t record_word(const Surface& surface, bool turned);
+
+/// A triangle whose vertices do not all lie well inside.
+struct CutTriangle {
+  std::span<const uint32_t> indices;  ///< of the surface
+  Point points[3];                    ///< in clip space
+};
+/// What Clipper makes of it: appends records to `triangles`, and those of the vertices that clipping makes to `made`, whose
+/// first has the number `first_made`.
+void cut_triangle(const Viewport& viewport, const Surface& surface, const CutTriangle& triangle,
+                  std::span<const float> vertices, int32_t first_made, std::vector<float>& made,
+                  std::vector<int32_t>& triangles);
 
 /// Makes the triangles of a view. Keeps its memory for the next one.
 ///

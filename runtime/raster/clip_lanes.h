@@ -17,7 +17,7 @@ ISOSHADE_INLINE void project_group(const Viewport& viewport, const float* clip, 
   load_quads<W>([&](int i) __attribute__((always_inline)) { return clip + 4 * i; }, words);
   const Float x = from_bits_normal(words[0]), y = from_bits_normal(words[1]), z = from_bits_normal(words[2]),
               w = from_bits_normal(words[3]);
-  const CornerOf<Int> corner = viewport.project(x, y, z, w);
+  const functions::CornerOf<Int> corner = viewport.project(x, y, z, w);
   const Int result[4] = {corner.x, corner.y, corner.depth, corner.inverse_w};
   store_quads<W>(result, [&](int i) __attribute__((always_inline)) { return corners + i; });
   const Bool inside = viewport.is_well_inside(x, y, z, w);
@@ -54,7 +54,11 @@ ISOSHADE_INLINE uint16_t* decide_group(const Corner* corners, const uint32_t* in
   Int x[3], y[3];
   for (int k = 0; k < 3; ++k)
     load_pairs<W>([&](int i) __attribute__((always_inline)) { return corners + indices[3 * i + k]; }, x[k], y[k]);
-  const Decision<Int> decision = decide(x, y, culling);
+  const Box& pixels = culling.pixels;
+  const Decision<Int> decision = decide(x, y,
+                                        {Bool(culling.turned),
+                                         Bool(culling.straight),
+                                         {Int(pixels.x0), Int(pixels.y0), Int(pixels.x1), Int(pixels.y1)}});
   const Int lane = lanes::lane_index<Int>();
   Int flags = select(decision.turned, Int(kept_flag::turned), Int(0)) |
               select(decision.wide, Int(kept_flag::wide), Int(0));

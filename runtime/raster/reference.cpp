@@ -117,7 +117,7 @@ class ReferenceClipper {
     const bool wide = right - left >= 1 << 15 || bottom - top >= 1 << 15;
     namespace flag = lower::triangle_flag;
     std::array<int32_t, word::stride> record{};
-    std::array<double, 3> z;
+    std::array<float, 3> z;
     for (size_t k = 0; k < 3; ++k) {
       record[word::vertex + k] = polygon.vertices[which[k]].index;
       record[word::position + 2 * k] = corner(k).x;
@@ -131,15 +131,19 @@ class ReferenceClipper {
                            (front ? 0 : flag::back) | (surface_.cutout ? flag::cutout : 0) |
                            (surface_.blended ? flag::blended : 0) | (keeps_depth ? flag::keeps_depth : 0);
     if (surface_.bias.is_set()) {
-      const double z1 = z[1] - z[0], z2 = z[2] - z[0];
-      const double x1 = corner(1).x - corner(0).x, x2 = corner(2).x - corner(0).x;
-      const double y1 = corner(1).y - corner(0).y, y2 = corner(2).y - corner(0).y;
-      const double pixel = static_cast<double>(units) / static_cast<double>(std::abs(area));
-      const double slope = std::abs(z1 * y2 - z2 * y1) * pixel + std::abs(z2 * x1 - z1 * x2) * pixel;
-      for (double& depth : z)
+      const auto difference = [](int32_t a, int32_t b) { return static_cast<float>(a - b); };
+      const float z1 = z[1] - z[0], z2 = z[2] - z[0];
+      const float x1 = difference(corner(1).x, corner(0).x), x2 = difference(corner(2).x, corner(0).x);
+      const float y1 = difference(corner(1).y, corner(0).y), y2 = difference(corner(2).y, corner(0).y);
+      // Rounded as functions::edge_wide does.
+      const int64_t doubled = std::abs(area), part = int64_t{1} << 23;
+      const float pixel = units / (static_cast<float>(doubled / part) * static_cast<float>(part) +
+                                   static_cast<float>(doubled % part));
+      const float slope = std::abs(z1 * y2 - z2 * y1) * pixel + std::abs(z2 * x1 - z1 * x2) * pixel;
+      for (float& depth : z)
         depth = depth - (surface_.bias.slope * slope + surface_.bias.constant + surface_.bias.relative * depth);
     }
-    for (size_t k = 0; k < 3; ++k) record[word::depth + k] = lanes::bits(static_cast<float>(z[k]));
+    for (size_t k = 0; k < 3; ++k) record[word::depth + k] = lanes::bits(z[k]);
     triangles_.insert(triangles_.end(), record.begin(), record.end());
   }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "compiler/functions/triangle_setup.h"
 #include "compiler/lower/frame_layout.h"
 #include "runtime/lanes/lanes.h"
 
@@ -56,39 +57,12 @@ inline int opaque_count(const int32_t* triangles, int count) {
   return begin;
 }
 
-template <class T>
-ISOSHADE_INLINE T least(T a, T b) {
-  using lanes::select;
-  return select(b < a, b, a);
-}
-template <class T>
-ISOSHADE_INLINE T greatest(T a, T b) {
-  using lanes::select;
-  return select(a < b, b, a);
-}
-
-/// A rectangle of pixels, both ends included; empty if an end lies before its beginning. For int, or one in each lane.
-template <class Int>
-struct BoxOf {
-  Int x0, y0, x1, y1;
-  ISOSHADE_INLINE lanes::bool_of<Int> empty() const { return (x1 < x0) | (y1 < y0); }
-  ISOSHADE_INLINE BoxOf within(const BoxOf& other) const {
-    return {greatest(x0, other.x0), greatest(y0, other.y0), least(x1, other.x1), least(y1, other.y1)};
-  }
-};
+using functions::BoxOf, functions::centres_between, functions::greatest, functions::least;
 using Box = BoxOf<int>;
 
 /// The pixels of a window.
 ISOSHADE_INLINE Box box_at(int x, int y, int width, int height) {
   return {x, y, x + width - 1, y + height - 1};
-}
-
-/// Positions are in 1/256 pixel; pixel i has its centre at 256 * i + 128.
-template <class Int>
-ISOSHADE_INLINE BoxOf<Int> centres_between(Int left, Int top, Int right, Int bottom) {
-  using lanes::shift_right_signed;
-  return {shift_right_signed(left + Int(127), 8), shift_right_signed(top + Int(127), 8),
-          shift_right_signed(right - Int(128), 8), shift_right_signed(bottom - Int(128), 8)};
 }
 
 ISOSHADE_INLINE Box bounds(Triangle t) {

@@ -18,8 +18,8 @@ bool finite(float x) { return (lanes::bits_nonnan(x) & lanes::exponent_bits) != 
 
 double beyond(float pixels, float half) { return static_cast<double>(pixels) / half; }
 
-/// Rounding, here and in the product with w, adds at most 2^-23 of it.
-float nearer(double plane) { return static_cast<float>(plane * (1 - 0x1p-20)); }
+/// A little nearer or farther: rounding, here and in the product with w, changes it by at most 2^-23 of it.
+float moved(double plane, int direction) { return static_cast<float>(plane * (1 + direction * 0x1p-20)); }
 
 }  // namespace
 
@@ -31,10 +31,11 @@ Viewport::Viewport(int width, int height)
       left_(beyond(guard_before + half_width_, half_width_)),
       bottom_(beyond(std::max(guard, lanes::to_float(height)) - half_height_, half_height_)),
       top_(beyond(guard_before + half_height_, half_height_)),
-      well_right_(nearer(right_)),
-      well_left_(nearer(left_)),
-      well_bottom_(nearer(bottom_)),
-      well_top_(nearer(top_)) {}
+      near_{moved(right_, -1), moved(left_, -1), moved(bottom_, -1), moved(top_, -1)} {}
+
+functions::GuardPlanes<float> Viewport::far_planes() const {
+  return {moved(right_, 1), moved(left_, 1), moved(bottom_, 1), moved(top_, 1)};
+}
 
 double Viewport::distance(Plane plane, const Point& p) const {
   switch (plane) {
