@@ -97,6 +97,8 @@ std::optional<Program> compile_function(const support::Source& source, const Com
 
 /// The program of the visibility pass, the same for every scene.
 const Program& depth_program();
+/// The program that makes triangle records (lower::add_setup_kernel).
+const Program& setup_program();
 /// The programs that draw how far what is seen has moved (lower::add_motion_kernel) and complete it where nothing is drawn
 /// (lower::add_backdrop_motion_kernel). `reference`: CompileOptions::reference.
 const Program& motion_program(bool reference);

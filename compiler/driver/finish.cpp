@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "compiler/driver/dumps.h"
+#include "compiler/lower/setup.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
 
@@ -28,12 +29,24 @@ void finish(Program& program, uint32_t kernel, const CompileOptions& options,
   program.entry = entries[0];
 }
 
+namespace {
+
+template <class Add>
+Program visibility_program(Stage stage, const Add& add) {
+  Program made{stage, std::string(lower::name(stage)), "", lower::frame_module(), 0, {}, {}};
+  finish(made, add(made.module), {});
+  return made;
+}
+
+}  // namespace
+
 const Program& depth_program() {
-  static const Program program = [] {
-    Program made{lower::Stage::depth, "depth", "", lower::frame_module(), 0, {}, {}};
-    finish(made, lower::add_depth_kernel(made.module), {});
-    return made;
-  }();
+  static const Program program = visibility_program(Stage::depth, lower::add_depth_kernel);
+  return program;
+}
+
+const Program& setup_program() {
+  static const Program program = visibility_program(Stage::setup, lower::add_setup_kernel);
   return program;
 }
 

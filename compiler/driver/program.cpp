@@ -49,14 +49,25 @@ std::string description(const Program& program) {
 
 std::string glsl(const Program& program, Division division) { return text(program, glsl::target(), division); }
 
-std::string glsl_with_vertex_eval(const Program& program, Division division) {
+namespace {
+
+std::string glsl_of(const Program& program, Division division, glsl::Variant variant) {
   const Prepared made = prepared(program, glsl::target(), division);
-  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), glsl::Variant::vertex_eval);
+  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), variant);
+}
+
+}  // namespace
+
+std::string glsl_with_vertex_eval(const Program& program, Division division) {
+  return glsl_of(program, division, glsl::Variant::vertex_eval);
+}
+
+std::string glsl_of_compute(const Program& program, Division division) {
+  return glsl_of(program, division, glsl::Variant::compute);
 }
 
 std::string glsl_of_layer(const Program& program, Division division) {
-  const Prepared made = prepared(program, glsl::target(), division);
-  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), glsl::Variant::layer);
+  return glsl_of(program, division, glsl::Variant::layer);
 }
 
 std::string cpp(const Program& program) { return text(program, cpp::target(), Division::native); }

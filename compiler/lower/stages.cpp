@@ -190,7 +190,8 @@ ir::ValueId load_field(Kernel& k, ir::Type type, Int object, int offset) {
 }
 
 std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"vertex", "depth", "cutout", "pixel", "blend", "eval", "post"};
+  constexpr std::string_view names[] = {"vertex", "setup", "depth", "cutout",
+                                        "pixel",  "blend", "eval",  "post"};
   return names[static_cast<size_t>(stage)];
 }
 

@@ -16,6 +16,7 @@ namespace isoshade::lower {
 
 /// Each kernel is a function of the module named as the enumerator:
 ///   vertex (vertex: int, object: int uniform, projected: int uniform) -> (clip: vec4)
+///   setup  (see setup.h)                                                           the same for every scene
 ///   depth  (x: int, y: int, triangle: int) -> (depth: float)                      the same for every scene
 ///   cutout (x: int, y: int, triangle: int, object: int uniform) -> (drawn: bool, depth: float)
 ///   pixel  (x: int, y: int, triangle: int, object: int uniform, light_count: int uniform) -> (color: vec4)
@@ -25,12 +26,13 @@ namespace isoshade::lower {
 ///   post   (x: int, y: int uniform) -> (color: vec4)
 /// `object` is the first word of the object's record, and `projected` that of its matrix in `view`; x and y are whole
 /// pixels.
-enum class Stage : uint8_t { vertex, depth, cutout, pixel, blend, eval, post };
+enum class Stage : uint8_t { vertex, setup, depth, cutout, pixel, blend, eval, post };
 std::string_view name(Stage stage);
 /// Whether it decides which triangle a pixel shows. The result must not depend on the precision or the number type.
 constexpr bool decides_visibility(Stage stage) {
   switch (stage) {
     case Stage::vertex:
+    case Stage::setup:
     case Stage::depth:
     case Stage::cutout: return true;
     case Stage::pixel:

@@ -189,7 +189,8 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
       signature = "isoshade_post(const BufferView* views, int first, int y, int count, float* rgba)";
       body = post_main;
       break;
-    case lower::Stage::depth: support::bug("depth has no C++ stage");
+    case lower::Stage::setup:
+    case lower::Stage::depth: support::bug(std::string(lower::name(stage)) + " has no C++ stage");
   }
   text.append("extern \"C\" __attribute__((visibility(\"default\"))) void ").append(signature);
   text.append(" {\n  using namespace isoshade_program;\n");

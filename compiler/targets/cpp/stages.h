@@ -21,7 +21,7 @@
 
 namespace isoshade::cpp {
 
-/// Not for Stage::depth, which the CPU rasteriser computes from the same templates.
+/// Not for Stage::setup and Stage::depth, which the CPU rasteriser computes from the same templates.
 std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, const emit::Heading& heading);
 
 }  // namespace isoshade::cpp

@@ -90,11 +90,20 @@ std::string validate(const std::vector<uint32_t>& spirv) {
   return tools.Validate(spirv) ? "" : "invalid SPIR-V: " + message;
 }
 
+EShLanguage language(ShaderKind kind) {
+  switch (kind) {
+    case ShaderKind::vertex: return EShLangVertex;
+    case ShaderKind::fragment: return EShLangFragment;
+    case ShaderKind::compute: return EShLangCompute;
+  }
+  support::bug("no such kind of shader");
+}
+
 /// What glslang makes of a text; else `error` tells why there is nothing.
 std::optional<std::vector<uint32_t>> translate(const std::string& glsl, ShaderKind kind, const char* preamble,
                                                std::string& error) {
   static const Process process;
-  const EShLanguage stage = kind == ShaderKind::vertex ? EShLangVertex : EShLangFragment;
+  const EShLanguage stage = language(kind);
   glslang::TShader shader(stage);
   const std::array texts = {glsl.data()};
   const std::array lengths = {static_cast<int>(glsl.size())};
@@ -130,6 +139,11 @@ void refuse(support::Diagnostics& diagnostics, const std::string& what, const st
 }
 
 }  // namespace
+
+std::string_view name(ShaderKind kind) {
+  constexpr std::string_view names[] = {"vertex", "fragment", "compute"};
+  return names[static_cast<size_t>(kind)];
+}
 
 std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, ShaderKind kind,
                                                    support::Diagnostics& diagnostics, const std::string& what,

@@ -12,7 +12,8 @@
 
 namespace isoshade::glsl {
 
-enum class ShaderKind : uint8_t { vertex, fragment };
+enum class ShaderKind : uint8_t { vertex, fragment, compute };
+std::string_view name(ShaderKind kind);
 
 /// Whether a shader promises bits. One that does begins with head(); a module of it without SignedZeroInfNanPreserve 32
 /// would be a bug of ours, so it aborts.

@@ -6,6 +6,7 @@
 #include "compiler/emit/result_words.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/assert.h"
+#include "compiler/targets/glsl/compute.h"
 #include "compiler/targets/glsl/glsl.h"
 
 namespace isoshade::glsl {
@@ -22,31 +23,16 @@ std::string head() {
 
 namespace {
 
-constexpr std::string_view push_constants =
-    "layout(push_constant) uniform Push { int object, light_count, program, first, count, width, origin_x, origin_y, "
-    "projected; } push;\n";
+std::string push_constants() { return std::string(push_words) + "; } push;\n"; }
 
 // A uniform will not do: lavapipe compiles a shader again for the values of some.
 constexpr std::string_view zero =
     "readonly buffer iso_zero_block { float iso_zero; };\n"
     "#define ISO_ZERO iso_zero  // 0.0 where a driver would fold arithmetic with a literal, by rules of its own\n";
 
-/// "layout(set = 0, binding = 8) ": the first after those of the frame, or a later one.
-std::string binding(size_t after_frame, std::string_view layout = "std430, ") {
-  return "layout(" + std::string(layout) +
-         "set = 0, binding = " + std::to_string(std::size(lower::frame_buffers) + after_frame) + ") ";
-}
-
-constexpr std::string_view canonical_bits =
-    "// The bits of a float; NaN is one value.\n"
-    "int canonical(float x) { int bits = floatBitsToInt(x); return (bits & 0x7fffffff) > 0x7f800000 ? 0x7fc00000 : bits; "
-    "}\n";
-constexpr std::string_view canonical_vector =
-    "ivec4 canonical(vec4 v) { return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w)); }\n";
-
 /// Of depth and cutout.
 std::string visibility_interface(Variant variant) {
-  std::string text(push_constants);
+  std::string text = push_constants();
   if (variant == Variant::layer)
     text += binding(3, "") + "uniform isampler2D former_ids;\n" + binding(4, "") + "uniform sampler2D former_depth;\n";
   return text + "layout(location = 0) flat in int triangle;\nlayout(location = 0) out int id;\n";
@@ -98,23 +84,54 @@ std::string cutout_main(const FunctionText& called) {
          "}\n";
 }
 
-std::string pixel_main() {
+std::string push_of(Variant variant, bool of_pixels) {
+  return variant == Variant::compute ? compute_interface(of_pixels) : push_constants();
+}
+
+/// The pixel of the target, as the ivec2 `name`; none beyond the rectangle of a compute shader.
+std::string pixel_head(Variant variant, const std::string& name) {
+  if (variant != Variant::compute) return "  ivec2 " + name + " = ivec2(gl_FragCoord.xy);\n";
+  return "  ivec2 " + name + " = ivec2(gl_GlobalInvocationID.xy);\n  if (" + name + ".x >= push.columns || " +
+         name + ".y >= push.rows) return;\n  " + name + " += ivec2(push.left, push.top);\n";
+}
+
+/// How a pixel ends that another program shows.
+std::string_view skip(Variant variant) { return variant == Variant::compute ? "return" : "discard"; }
+
+/// Stores the vec4 of an expression as the color of the pixel `at` of the target.
+std::string store_color(Variant variant, const std::string& at, const std::string& expression) {
+  if (variant != Variant::compute) return "  color = intBitsToFloat(canonical(" + expression + "));\n";
+  return "  ivec4 color = canonical(" + expression + ");\n  int word = push.place + 4 * (" + at +
+         ".y * push.pitch + " + at + ".x);\n  for (int i = 0; i < 4; ++i) made[word + i] = color[i];\n";
+}
+
+/// What pixel and post write to.
+std::string color_interface(Variant variant) {
+  if (variant != Variant::compute) return "layout(location = 0) out vec4 color;\n";
+  return "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(lower::FrameBuffer::layers)) +
+         ") buffer made_block { int made[]; };\n";
+}
+
+std::string pixel_main(Variant variant) {
   using namespace lower;
-  const std::string stride = std::to_string(triangle_word::stride);
-  return std::string(canonical_bits) + std::string(canonical_vector) +
-         "\nvoid main() {\n"
-         "  ivec2 target = ivec2(gl_FragCoord.xy), at = target + ivec2(push.origin_x, push.origin_y);\n"
-         "  int triangle = texelFetch(ids, target, 0).x - 1;\n"
-         "  if (triangle < 0) discard;\n"
+  const std::string stride = std::to_string(triangle_word::stride), skip(glsl::skip(variant));
+  return std::string(canonical_bits) + std::string(canonical_vector) + "\nvoid main() {\n" +
+         pixel_head(variant, "target") +
+         "  ivec2 at = target + ivec2(push.origin_x, push.origin_y);\n"
+         "  int triangle = " +
+         (variant == Variant::compute ? "seen[target.y * push.pitch + target.x]"
+                                      : "texelFetch(ids, target, 0).x - 1") +
+         ";\n"
+         "  if (triangle < 0) " +
+         skip +
+         ";\n"
          "  int object = triangles[triangle * " +
          stride + " + " + std::to_string(triangle_word::object) + "] >> " +
          std::to_string(triangle_flag::bits) +
          ";\n"
          "  if (int(objects[object + " +
-         std::to_string(object_word::program) +
-         "]) != push.program) discard;\n"
-         "  color = intBitsToFloat(canonical(pixel(at.x, at.y, triangle, object, push.light_count)));\n"
-         "}\n";
+         std::to_string(object_word::program) + "]) != push.program) " + skip + ";\n" +
+         store_color(variant, "target", "pixel(at.x, at.y, triangle, object, push.light_count)") + "}\n";
 }
 
 /// `BlendResult blended = blend(...)` over what is behind the pixel.
@@ -180,12 +197,9 @@ std::string cutout_layer_main(const FunctionText& called) {
          layer_tail();
 }
 
-std::string post_main() {
-  return std::string(canonical_bits) + std::string(canonical_vector) +
-         "\nvoid main() {\n"
-         "  ivec2 at = ivec2(gl_FragCoord.xy);\n"
-         "  color = intBitsToFloat(canonical(post(at.x, at.y + push.origin_y)));\n"
-         "}\n";
+std::string post_main(Variant variant) {
+  return std::string(canonical_bits) + std::string(canonical_vector) + "\nvoid main() {\n" +
+         pixel_head(variant, "at") + store_color(variant, "at", "post(at.x, at.y + push.origin_y)") + "}\n";
 }
 
 std::string word_bits(const ResultWord& word) {
@@ -250,15 +264,29 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
   std::string interface, body;
   switch (stage) {
     case lower::Stage::vertex:
-      interface =
-          std::string(push_constants) + binding(0) + "writeonly buffer clip_block { uvec4 clip[]; };\n";
-      body = vertex_main();
+      interface = push_of(variant, false) + binding(0) + "writeonly buffer clip_block { uvec4 clip[]; };\n";
+      used[static_cast<size_t>(lower::FrameBuffer::inputs)] = variant == Variant::compute;
+      body = variant == Variant::compute ? vertex_compute_main() : vertex_main();
+      break;
+    case lower::Stage::setup:
+      interface = setup_interface();
+      body = setup_main(texts[entry]);
       break;
     case lower::Stage::depth:
+      if (variant == Variant::compute) {
+        interface = seen_interface(used);
+        body = seen_main(nullptr);
+        break;
+      }
       interface = visibility_interface(variant);
       body = variant == Variant::layer ? depth_layer_main() : depth_main();
       break;
     case lower::Stage::cutout:
+      if (variant == Variant::compute) {
+        interface = seen_interface(used);
+        body = seen_main(&texts[entry]);
+        break;
+      }
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
       interface = visibility_interface(variant);
       body = variant == Variant::layer ? cutout_layer_main(texts[entry]) : cutout_main(texts[entry]);
@@ -266,14 +294,16 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
     case lower::Stage::pixel:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
       used[static_cast<size_t>(lower::FrameBuffer::objects)] = true;
-      interface = std::string(push_constants) + binding(1, "") +
-                  "uniform isampler2D ids;\nlayout(location = 0) out vec4 color;\n";
-      body = pixel_main();
+      interface = push_of(variant, true) +
+                  (variant == Variant::compute ? binding(9) + "readonly buffer seen_block { int seen[]; };\n"
+                                               : binding(1, "") + "uniform isampler2D ids;\n") +
+                  color_interface(variant);
+      body = pixel_main(variant);
       break;
     case lower::Stage::blend:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
       used[static_cast<size_t>(lower::FrameBuffer::objects)] = true;
-      interface = std::string(push_constants) + binding(1, "") + "uniform isampler2D ids;\n" + binding(5, "") +
+      interface = push_constants() + binding(1, "") + "uniform isampler2D ids;\n" + binding(5, "") +
                   "uniform sampler2D former_color;\nlayout(location = 0) out vec4 color;\n";
       if (variant == Variant::layer) interface += "layout(location = 1) out float new_depth;\n";
       body = blend_main(texts[entry], variant);
@@ -284,12 +314,12 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
         body = vertex_eval_main(module.functions[entry], texts[entry]);
         break;
       }
-      interface = push_constants;
+      interface = push_constants();
       body = eval_main(module.functions[entry], texts[entry]);
       break;
     case lower::Stage::post:
-      interface = std::string(push_constants) + "layout(location = 0) out vec4 color;\n";
-      body = post_main();
+      interface = push_of(variant, true) + color_interface(variant);
+      body = post_main(variant);
       break;
   }
   support::assert_that(texts[entry].name == name(stage), "a stage calls its kernel by its name");
