@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -150,6 +151,12 @@ struct Drawing {
   Slot depth, color;  ///< of the window in pixels; no color where the target has none
 };
 
+/// What came of the triangles of a view.
+struct Made {
+  int64_t triangles = 0;  ///< left by clipping and culling
+  int64_t vertices = 0;   ///< made by clipping
+};
+
 class Backend {
  public:
   /// `threads`: of the host; 0: as many as there are cores.
@@ -187,6 +194,9 @@ class Backend {
   /// triangle_flag::keeps_depth the sample gets its depth. Then it runs the posts, and each pixel becomes the mean of its
   /// samples, see resolve(). The bits do not depend on how a view is divided into windows.
   virtual bool draw(const Drawing& drawing, support::Diagnostics& diagnostics) = 0;
+  /// Does all of transform(), raster::Clipper and draw(), if the backend can do that on its device: the images have the same
+  /// bits. `drawing` has no vertices and no triangles. Nothing is returned where the steps have to be taken one by one.
+  virtual std::optional<bool> draw_view(const Drawing&, Made&, support::Diagnostics&) { return std::nullopt; }
   /// Runs full-screen passes of one size, NaN canonical. Each pass after the first reads, of what the passes before it
   /// made, its own pixel alone, as its image 1, and nothing else reads that: all of them write to `made`.
   virtual bool post(std::span<const ScreenPass> passes, const Slot& made, support::Diagnostics& diagnostics) = 0;

@@ -23,8 +23,9 @@ void halve(float* rgba, float* depth, int width, int height) {
       const auto mean = [&](const auto& at) {
         return functions::mean_of_four(at(upper), at(upper + 1), at(lower), at(lower + 1));
       };
-      lanes::store_lanes(rgba + 4 * (y * columns + x), mean(color_at));
-      depth[y * columns + x] = mean(depth_at);
+      // NaN is one value, also where infinities cancel.
+      lanes::store_lanes(rgba + 4 * (y * columns + x), from_bits_normal(bits(mean(color_at))));
+      depth[y * columns + x] = lanes::from_bits_normal(lanes::bits(mean(depth_at)));
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -75,6 +76,19 @@ bool for_each_array(const ScreenPass& pass, const Layers& layers, const Use& use
          use(FrameBuffer::objects, pass.record) && use(FrameBuffer::layers, layers.floats) &&
          use(FrameBuffer::layer_records, layers.records) &&
          (pass.textures == nullptr || for_each_texture_array(*pass.textures, use));
+}
+
+/// What becomes triangles of a draw; nothing where the target has no color and the draw writes no depth. `clip`: the
+/// positions of its vertices.
+inline std::optional<raster::Surface> surface_of(const View& view, const Draw& draw,
+                                                 std::span<const float> clip) {
+  // Where only depth counts, a blended draw is one that writes it or nothing.
+  const bool writes_depth = !draw.blended || draw.state.depth_write == interface::DepthWrite::on;
+  if (!view.target.has_color && !writes_depth) return std::nullopt;
+  return raster::Surface{
+      clip,           draw.indices,  draw.first_vertex, draw.state,
+      draw.object,    draw.mirrored, draw.cutout,       draw.blended && view.target.has_color,
+      view.depth_bias};
 }
 
 /// The pixel program of the object whose record begins at this word: an index into frame.programs.

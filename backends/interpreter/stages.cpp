@@ -12,6 +12,7 @@ size_t stored_words(const driver::Program& program) {
     case driver::Stage::cutout: return 1;  // whether it is drawn; the rasteriser has the depth
     case driver::Stage::blend: return 4;   // the color, likewise
     case driver::Stage::vertex:
+    case driver::Stage::setup:
     case driver::Stage::depth:
     case driver::Stage::pixel:
     case driver::Stage::eval:

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstring>
 #include <exception>
+#include <map>
 
 #include "backends/shared.h"
 #include "backends/vulkan/device.h"
+#include "backends/vulkan/geometry.h"
 #include "backends/vulkan/limits.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
@@ -53,6 +55,18 @@ bool reads_textures(const Program& program) {
     });
   });
 }
+
+}  // namespace
+
+bool moves_by_textures(const ViewPass& pass) {
+  std::vector<bool> is_used(pass.frame.programs.size());
+  for (const Draw& draw : pass.view.draws) is_used[draw.vertex_program] = true;
+  for (size_t p = 0; p < is_used.size(); ++p)
+    if (is_used[p] && reads_textures(*pass.frame.programs[p])) return true;
+  return false;
+}
+
+namespace {
 
 /// The vertices [first, first + count) of a draw.
 struct VertexChunk {
@@ -105,9 +119,10 @@ double VulkanBackend::build_seconds() const { return device_->build_seconds(); }
 
 std::optional<DeviceSeconds> VulkanBackend::device_seconds() const { return device_->seconds(); }
 
-std::optional<std::string> VulkanBackend::text_of(const Program& program, Diagnostics& diagnostics) const {
+std::optional<std::string> VulkanBackend::text_of(const Program& program, Diagnostics& diagnostics,
+                                                  bool computes) const {
   if (!driver::within_limits(program, driver::Target::vulkan, division_, diagnostics)) return std::nullopt;
-  return options_.glsl(program, division_);
+  return computes ? driver::glsl_of_compute(program, division_) : options_.glsl(program, division_);
 }
 
 bool VulkanBackend::guarded(Diagnostics& diagnostics, const std::function<bool()>& work) {
@@ -144,14 +159,35 @@ bool VulkanBackend::upload_triangles(const Frame& frame, std::span<const int32_t
   return upload_array(*device_, FrameBuffer::triangles, triangles, &frame, {}, diagnostics);
 }
 
+bool VulkanBackend::vertex_pipelines(const ViewPass& pass,
+                                     std::vector<std::optional<PipelineIndex>>& pipelines,
+                                     Diagnostics& diagnostics) {
+  pipelines.resize(pass.frame.programs.size());
+  for (const Draw& draw : pass.view.draws) {
+    std::optional<PipelineIndex>& pipeline = pipelines[draw.vertex_program];
+    if (pipeline) continue;
+    const Program& program = *pass.frame.programs[draw.vertex_program];
+    pipeline = pipeline_of(program, Use::vertices, [&]() -> std::optional<PipelineIndex> {
+      const bool computes = device_->computes();
+      auto text = text_of(program, diagnostics, computes);
+      if (!text) return std::nullopt;
+      PipelineSource source{computes ? Output::row : Output::buffer, 0, std::move(*text), {}};
+      source.what = driver::description(program);
+      return device_->pipeline(source, diagnostics);
+    });
+    if (!pipeline) return false;
+  }
+  return true;
+}
+
 bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) {
   const Frame& frame = pass.frame;
   const std::vector<Draw>& draws = pass.view.draws;
   return guarded(diagnostics, [&] {
     if (!upload(pass, {}, frame.vertices, true, diagnostics)) return false;
-    const auto reads = [&](const Draw& draw) { return reads_textures(*frame.programs[draw.vertex_program]); };
-    if (std::ranges::any_of(draws, reads) && !upload_textures(frame, diagnostics)) return false;
-    std::vector<std::optional<PipelineIndex>> pipelines(frame.programs.size());
+    if (moves_by_textures(pass) && !upload_textures(frame, diagnostics)) return false;
+    std::vector<std::optional<PipelineIndex>> pipelines;
+    if (!vertex_pipelines(pass, pipelines, diagnostics)) return false;
     std::vector<size_t> places;  // of the first vertex of each draw
     size_t vertex_count = 0;
     for (const Draw& draw : draws) {
@@ -159,23 +195,9 @@ bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip,
       vertex_count += draw.vertex_count;
     }
     clip.resize(4 * vertex_count);
-    for (size_t d = 0; d < draws.size(); ++d) {
-      std::optional<PipelineIndex>& pipeline = pipelines[draws[d].vertex_program];
-      if (pipeline) continue;
-      const Program& program = *frame.programs[draws[d].vertex_program];
-      pipeline = pipeline_of(program, Use::vertices, [&]() -> std::optional<PipelineIndex> {
-        auto text = text_of(program, diagnostics);
-        if (!text) return std::nullopt;
-        PipelineSource source{Output::buffer, 0, std::move(*text), {}};
-        source.what = driver::description(program);
-        return device_->pipeline(source, diagnostics);
-      });
-      if (!pipeline) return false;
-    }
-
     const size_t capacity = std::min(max_output_words, device_->max_buffer_bytes() / sizeof(int32_t)) / 4;
     std::vector<int32_t> output;
-    for (const std::vector<VertexChunk>& run : vertex_runs(draws, capacity)) {
+    const auto drawn = [&](const std::vector<VertexChunk>& run) {
       std::vector<Call> calls;
       for (const VertexChunk& chunk : run) {
         const Draw& draw = draws[chunk.draw];
@@ -190,6 +212,27 @@ bool VulkanBackend::transform(const ViewPass& pass, support::Array<float>& clip,
                          .vertex_count = chunk.count,
                          .scissor = {0, 0, 1, 1}});
       }
+      return calls;
+    };
+    const auto computed = [&](const std::vector<VertexChunk>& run) {
+      std::map<size_t, Table> tables;  // by the vertex program
+      for (const VertexChunk& chunk : run) {
+        const Draw& draw = draws[chunk.draw];
+        tables[draw.vertex_program].add(
+            chunk.count, {draw.first_vertex + chunk.first, chunk.output, static_cast<size_t>(draw.object),
+                          static_cast<size_t>(draw.projected)});
+      }
+      std::vector<int32_t> inputs;
+      std::vector<Call> calls;
+      for (const auto& [p, table] : tables) {
+        calls.push_back(table.call(*pipelines[p], inputs.size()));
+        inputs.insert(inputs.end(), table.words().begin(), table.words().end());
+      }
+      device_->upload(FrameBuffer::inputs, inputs.data(), inputs.size() * sizeof(int32_t));
+      return calls;
+    };
+    for (const std::vector<VertexChunk>& run : vertex_runs(draws, capacity)) {
+      const std::vector<Call> calls = device_->computes() ? computed(run) : drawn(run);
       output.resize(4 * (run.back().output + run.back().count));
       device_->run_vertices(calls, output);
       for (const VertexChunk& chunk : run)
@@ -244,30 +287,36 @@ std::optional<PipelineIndex> VulkanBackend::pipeline_of(const Program& program, 
   return made;
 }
 
-std::optional<PipelineIndex> VulkanBackend::screen_pipeline(const Program& program, Diagnostics& diagnostics) {
-  return pipeline_of(program, Use::screen, [&]() -> std::optional<PipelineIndex> {
-    auto text = text_of(program, diagnostics);
-    if (!text) return std::nullopt;
-    PipelineSource source{Output::color, 1, full_screen_vertex(), std::move(*text)};
-    source.what = driver::description(program);
-    return device_->pipeline(source, diagnostics);
-  });
+std::optional<PipelineIndex> VulkanBackend::screen_pipeline(const Program& program, bool computes,
+                                                            Diagnostics& diagnostics) {
+  return pipeline_of(
+      program, computes ? Use::screen : Use::drawn_screen, [&]() -> std::optional<PipelineIndex> {
+        auto text = text_of(program, diagnostics, computes);
+        if (!text) return std::nullopt;
+        PipelineSource source =
+            computes ? PipelineSource{Output::pixels, 0, std::move(*text), {}}
+                     : PipelineSource{Output::color, 1, full_screen_vertex(), std::move(*text)};
+        source.what = driver::description(program);
+        return device_->pipeline(source, diagnostics);
+      });
 }
 
 bool VulkanBackend::post(std::span<const backends::ScreenPass> passes, const backends::Slot& made,
                          Diagnostics& diagnostics) {
   if (!on_device_) return HostBackend::post(passes, made, diagnostics);
   return guarded(diagnostics, [&] {
-    if (!check_size(made.width, made.height, diagnostics) || !device_->prepare_check(diagnostics)) return false;
+    if (!check_size(made.width, made.height, diagnostics) || !device_->prepare_own_shaders(diagnostics))
+      return false;
     for (const backends::ScreenPass& pass : passes) {
       const std::vector<int32_t> records = backends::image_records(pass.width, pass.height, pass.images);
       const auto upload = [&]<class T>(FrameBuffer buffer, std::span<const T> words) {
         return upload_array(*device_, buffer, words, nullptr, known_of(pass, buffer), diagnostics);
       };
       if (!backends::for_each_array(pass, {{}, records}, upload)) return false;
-      const auto pipeline = screen_pipeline(*pass.program, diagnostics);
+      const auto pipeline = screen_pipeline(*pass.program, device_->computes(), diagnostics);
       if (!pipeline) return false;
-      if (!device_->run_screen(*pipeline, made.width, made.height, made.first * sizeof(float))) made_finite_ = false;
+      if (!device_->run_screen(*pipeline, made.width, made.height, made.first * sizeof(float)))
+        made_finite_ = false;
     }
     return true;
   });
@@ -281,7 +330,7 @@ bool VulkanBackend::screen(const backends::ScreenPass& pass, const backends::Lay
     };
     if (!check_size(pass.width, first_row + rows, diagnostics) || !backends::for_each_array(pass, layers, upload))
       return false;
-    const auto pipeline = screen_pipeline(*pass.program, diagnostics);
+    const auto pipeline = screen_pipeline(*pass.program, false, diagnostics);
     if (!pipeline) return false;
     rgba.resize(size_t{4} * static_cast<size_t>(pass.width) * static_cast<size_t>(rows));
     device_->run_screen(*pipeline, pass.width, rows, first_row, rgba);

@@ -19,6 +19,7 @@
 namespace isoshade::vulkan {
 
 class Device;
+struct DeviceTriangles;
 
 /// A Vulkan device, as the `devices` command lists it.
 struct DeviceInfo {
@@ -41,6 +42,7 @@ support::Diagnostic& report_unusable(std::string_view why, support::Diagnostics&
 /// How long the device took for what it ran, by its own clock.
 struct DeviceSeconds {
   double vertices = 0;
+  double triangles = 0;  ///< making their records
   double visibility = 0;
   double shading = 0;
   double layers = 0;  ///< of what is blended
@@ -64,6 +66,9 @@ struct VulkanOptions {
   std::string cache;
   /// For tests: treat the device as one with memory of its own, which the host fills by copies.
   bool own_memory = false;
+  /// Compute vertices and pixels in compute shaders; without a value devices do that which are not software. Not with
+  /// `glsl`.
+  std::optional<bool> compute;
   /// Overrides the probe's choice.
   std::optional<driver::Division> division;
   /// With EvalStage::vertex, `glsl` must give a vertex shader that stores the words of row gl_VertexIndex,
@@ -90,6 +95,8 @@ class VulkanBackend : public backends::HostBackend {
   bool draw(const backends::Drawing& drawing, support::Diagnostics& diagnostics) override;
   bool post(std::span<const backends::ScreenPass> passes, const backends::Slot& made,
             support::Diagnostics& diagnostics) override;
+  std::optional<bool> draw_view(const backends::Drawing& drawing, backends::Made& made,
+                                support::Diagnostics& diagnostics) override;
   bool transform(const backends::ViewPass& pass, support::Array<float>& clip,
                  support::Diagnostics& diagnostics) override;
   bool evaluate(const driver::Program& program, std::span<const int32_t> inputs, size_t rows,
@@ -117,7 +124,8 @@ class VulkanBackend : public backends::HostBackend {
   /// Runs `work`; reports what Vulkan throws and what the validation layers say.
   bool guarded(support::Diagnostics& diagnostics, const std::function<bool()>& work);
   /// The text of a program; nothing if it is too large for drivers, which is reported.
-  std::optional<std::string> text_of(const driver::Program& program, support::Diagnostics& diagnostics) const;
+  std::optional<std::string> text_of(const driver::Program& program, support::Diagnostics& diagnostics,
+                                     bool computes = false) const;
   bool check_size(int width, int height, support::Diagnostics& diagnostics) const;
   /// Uploads what the programs of a view read, except textures and triangles. `knows_vertices`: they begin with those of
   /// the frame.
@@ -127,18 +135,44 @@ class VulkanBackend : public backends::HostBackend {
   bool upload_triangles(const backends::Frame& frame, std::span<const int32_t> triangles,
                         support::Diagnostics& diagnostics);
 
+  /// The pipelines of the vertex programs of a view, by the index of the program.
+  bool vertex_pipelines(const backends::ViewPass& pass, std::vector<std::optional<uint32_t>>& pipelines,
+                        support::Diagnostics& diagnostics);
+  /// Makes the triangles of a view on the device, see geometry.h; nothing where the host has to.
+  std::optional<DeviceTriangles> make_triangles(const backends::ViewPass& pass,
+                                                const backends::Layers& layers,
+                                                support::Diagnostics& diagnostics);
+  /// Uploads the indices of the view's draws, unless the device has them. False if they are too many.
+  bool upload_indices(const backends::ViewPass& pass);
+
   /// How a pipeline uses a program.
-  enum class Use : uint8_t { vertices, screen, blending, deep_blending, visibility, visibility_over, visibility_in_layers };
+  enum class Use : uint8_t {
+    vertices,
+    setup,
+    seen,
+    screen,
+    drawn_screen,
+    blending,
+    deep_blending,
+    visibility,
+    visibility_over,
+    visibility_in_layers
+  };
   /// The pipeline of a program, from `make` where it is not known yet.
   std::optional<uint32_t> pipeline_of(const driver::Program& program, Use use,
                                       const std::function<std::optional<uint32_t>()>& make);
-  std::optional<uint32_t> screen_pipeline(const driver::Program& program, support::Diagnostics& diagnostics);
+  /// Of a post or a pixel program. `computes`: as a compute shader.
+  std::optional<uint32_t> screen_pipeline(const driver::Program& program, bool computes,
+                                          support::Diagnostics& diagnostics);
 
   VulkanOptions options_;
   std::unique_ptr<Device> device_;
   std::map<std::pair<uint64_t, Use>, uint32_t> pipeline_of_program_;  ///< by Program::number
   bool on_device_ = false;  ///< where the images of this frame are
   bool made_finite_ = true;
+  /// The indices on the device: where the host has them, how many, and the revision of the vertices that they belong to.
+  std::vector<std::pair<const uint32_t*, size_t>> indices_;
+  uint64_t indices_revision_ = 0;
   Probe probe_;
   driver::Division division_ = driver::Division::exact;
 };

@@ -8,12 +8,12 @@
 
 #include "backends/vulkan/device_impl.h"
 #include "compiler/support/assert.h"
+#include "compiler/targets/glsl/stages.h"
+#include "runtime/lanes/lanes.h"
 
 namespace isoshade::vulkan {
 
 namespace {
-
-using Stage = vk::ShaderStageFlagBits;
 
 constexpr size_t smallest_buffer = 256;
 
@@ -35,10 +35,10 @@ vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device) {
   for (uint32_t i = 0; i < bindings.size(); ++i)
     bindings[i] = vk::DescriptorSetLayoutBinding{
         .binding = i,
-        .descriptorType =
-            is_image_binding(i) ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageBuffer,
+        .descriptorType = is_image_binding(i) ? vk::DescriptorType::eCombinedImageSampler
+                                              : vk::DescriptorType::eStorageBuffer,
         .descriptorCount = 1,
-        .stageFlags = Stage::eVertex | Stage::eFragment};
+        .stageFlags = shader_stages};
   return {device, vk::DescriptorSetLayoutCreateInfo{.bindingCount = static_cast<uint32_t>(bindings.size()),
                                                     .pBindings = bindings.data()}};
 }
@@ -46,7 +46,7 @@ vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device) {
 vk::raii::PipelineLayout make_layout(const vk::raii::Device& device,
                                      const vk::raii::DescriptorSetLayout& set_layout) {
   const vk::DescriptorSetLayout set = *set_layout;
-  const vk::PushConstantRange push{.stageFlags = Stage::eVertex | Stage::eFragment, .size = sizeof(Push)};
+  const vk::PushConstantRange push{.stageFlags = shader_stages, .size = sizeof(Push)};
   return {device, vk::PipelineLayoutCreateInfo{.setLayoutCount = 1,
                                                .pSetLayouts = &set,
                                                .pushConstantRangeCount = 1,
@@ -80,6 +80,8 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index, const VulkanOptio
   limits = physical.getProperties().limits;
   memory = physical.getMemoryProperties();
   own_memory = options.own_memory || !shares_memory(memory);
+  computes = options.compute.value_or(!info.cpu) && !options.glsl;
+  if (computes) identity += ", computing";  // the probe looks at more
   const auto family = static_cast<uint32_t>(graphics_family(physical));
   device = make_device(physical, family);
   queue = device.getQueue(family, 0);
@@ -108,7 +110,10 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index, const VulkanOptio
   constexpr std::array<char, smallest_buffer> zeros{};
   for (Array& array : arrays) upload(array, zeros.data(), zeros.size(), {});
   upload(zero, zeros.data(), zeros.size(), {});
-  reserve(output, smallest_buffer, own_memory ? BufferUse::device : BufferUse::shared);
+  upload(indices, zeros.data(), zeros.size(), {});
+  const BufferUse use = own_memory ? BufferUse::device : BufferUse::shared;
+  for (Buffer* buffer : {&positions, &cuts, &seen, &tiles}) reserve(*buffer, smallest_buffer, use);
+  reserve(output, smallest_buffer, use);
   prepare_attachments(1, 1, true);
   no_target = vk::raii::Framebuffer(
       device, {.renderPass = *render_pass(Output::buffer, 0), .width = 1, .height = 1, .layers = 1});
@@ -138,6 +143,11 @@ void Device::Impl::write_descriptors(vk::DescriptorSet set, const ImagesRead& im
   };
   for (uint32_t i = 0; i < frame_bindings; ++i) write_buffer(i, arrays[i].buffer);
   write_buffer(output_binding, output);
+  write_buffer(positions_binding, positions);
+  write_buffer(indices_binding, indices.buffer);
+  write_buffer(cuts_binding, cuts);
+  write_buffer(seen_binding, seen);
+  write_buffer(tiles_binding, tiles);
   write_buffer(zero_binding, zero.buffer);
   write_image(ids_binding, images.ids);
   write_image(former_ids_binding, images.former_ids);
@@ -179,27 +189,71 @@ const vk::raii::CommandBuffer& Device::Impl::begin(const ImagesRead& images) {
 
 void Device::Impl::copy_pending() {
   std::vector<Array*> waiting;
-  for (Array& array : arrays)
+  const auto add = [&](Array& array) {
     if (!array.pending.empty()) waiting.push_back(&array);
-  if (!zero.pending.empty()) waiting.push_back(&zero);
+  };
+  std::ranges::for_each(arrays, add);
+  add(zero);
+  add(indices);
   if (waiting.empty()) return;
   const TimedStep step(*this, &DeviceSeconds::copies);
   for (const Array* array : waiting) commands.copyBuffer(*array->staging.buffer, *array->buffer.buffer, array->pending);
   const vk::MemoryBarrier barrier{.srcAccessMask = vk::AccessFlagBits::eTransferWrite,
                                   .dstAccessMask = vk::AccessFlagBits::eShaderRead};
-  commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eAllGraphics, {}, barrier, {},
-                           {});
+  commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eAllCommands, {},
+                           barrier, {}, {});
+}
+
+void Device::Impl::bind_computing(const Call& call) {
+  constexpr auto point = vk::PipelineBindPoint::eCompute;
+  if (state.computing_pipeline != call.pipeline)
+    commands.bindPipeline(point, *pipelines[call.pipeline].pipeline);
+  if (state.computing_set != current_set) commands.bindDescriptorSets(point, *layout, 0, current_set, {});
+  state.computing_pipeline = call.pipeline;
+  state.computing_set = current_set;
+}
+
+void Device::Impl::compute_groups(const Call& call, uint32_t groups) {
+  bind_computing(call);
+  Push push = call.push;
+  push.left = static_cast<int32_t>(call.first_vertex);
+  push.columns = static_cast<int32_t>(call.vertex_count);
+  commands.pushConstants<Push>(*layout, shader_stages, 0, push);
+  commands.dispatch(groups, 1, 1);
+}
+
+void Device::Impl::compute(const Call& call) {
+  bind_computing(call);
+  const Output output = pipelines[call.pipeline].output;
+  const auto groups = [](int32_t of, int side) { return static_cast<uint32_t>((of + side - 1) / side); };
+  Push push = call.push;
+  if (output == Output::pixels) {
+    push.left = call.scissor.x - push.origin_x;
+    push.top = call.scissor.y - push.origin_y;
+    push.columns = call.scissor.width;
+    push.rows = call.scissor.height;
+    commands.pushConstants<Push>(*layout, shader_stages, 0, push);
+    commands.dispatch(groups(push.columns, glsl::compute_side), groups(push.rows, glsl::compute_side), 1);
+    return;
+  }
+  constexpr uint32_t most = 65535 * glsl::compute_length;  // every device takes so many groups
+  for (uint32_t done = 0; done < call.vertex_count; done += most) {
+    push.left = static_cast<int32_t>(call.first_vertex + done);
+    push.columns = static_cast<int32_t>(std::min(most, call.vertex_count - done));
+    commands.pushConstants<Push>(*layout, shader_stages, 0, push);
+    commands.dispatch(groups(push.columns, glsl::compute_length), 1, 1);
+  }
 }
 
 void Device::Impl::record(const Call& call) {
+  if (vulkan::computes(pipelines[call.pipeline].output)) return compute(call);
   if (state.pipeline != call.pipeline)
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline]);
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines[call.pipeline].pipeline);
   if (state.set != current_set)
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, current_set, {});
   state.pipeline = call.pipeline;
   state.set = current_set;
-  commands.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
-                               call.push);
+  commands.pushConstants<Push>(*layout, shader_stages, 0, call.push);
   const std::pair origin{call.push.origin_x, call.push.origin_y};
   if (state.viewport != origin) {
     // A viewport of the size of the image does not map clip space exactly to 1/256 pixel; a power of two does.
@@ -233,6 +287,7 @@ void Device::Impl::finish() {
   device.resetFences(*fence);
   for (Array& array : arrays) array.pending.clear();
   zero.pending.clear();
+  indices.pending.clear();
   add_times();
 }
 
@@ -273,6 +328,9 @@ Device::~Device() {
 
 std::unique_ptr<Device> Device::open(const VulkanOptions& options, support::Diagnostics& diagnostics) {
   auto instance = std::make_unique<Instance>();
+  // Threads have the float mode of the thread that starts them, and those in which lavapipe runs compute shaders keep it:
+  // they flush denormals only if this one does.
+  const lanes::FpGuard guard_floats;
   const int index = choose(*instance, options.device, diagnostics);
   if (index < 0) return nullptr;
   const vk::raii::PhysicalDevice& physical = instance->devices[static_cast<size_t>(index)];
@@ -293,6 +351,7 @@ const DiskCache& Device::disk_cache() const { return impl_->disk_cache; }
 std::optional<DeviceSeconds> Device::seconds() const {
   return *impl_->timestamps ? std::optional(impl_->seconds) : std::nullopt;
 }
+bool Device::computes() const { return impl_->computes; }
 bool Device::validates() const { return impl_->instance->validates; }
 std::vector<std::string> Device::take_messages() { return impl_->instance->messages->take(); }
 size_t Device::max_buffer_bytes() const { return impl_->limits.maxStorageBufferRange; }

@@ -33,6 +33,13 @@ struct Push {
   int32_t origin_x = 0;
   int32_t origin_y = 0;
   int32_t projected = 0;
+  // Of compute shaders. The call decides the first four.
+  int32_t left = 0;
+  int32_t top = 0;
+  int32_t columns = 0;
+  int32_t rows = 0;
+  int32_t place = 0;
+  int32_t pitch = 0;
 };
 
 /// What a pipeline writes. It decides all fixed state.
@@ -44,14 +51,17 @@ enum class Output : uint8_t {
   deep_layer,  ///< the same, and R32_SFLOAT for the depth, both over what is there
   depth_copy,  ///< R32_SFLOAT
   words,       ///< up to 8 of R32G32B32A32_SINT
+  row,         ///< words of a buffer, by a compute shader for each vertex of a call
+  pixels,      ///< words of a buffer, by a compute shader for each pixel of a call's scissor
 };
+constexpr bool computes(Output output) { return output == Output::row || output == Output::pixels; }
 
 /// What a pipeline is made from. Output::buffer has no fragment shader and no attachment; Output::words has several
-/// attachments, the others one.
+/// attachments, the others one. Compute shaders have neither.
 struct PipelineSource {
   Output output = Output::color;
   uint32_t attachments = 1;
-  std::string vertex_glsl;
+  std::string vertex_glsl;  ///< or of the compute shader
   std::string fragment_glsl;
   bool over = false;                          ///< of Output::visibility: the depth test always passes
   std::string what = "a shader of isoshade";  ///< for messages: the program that it comes from
@@ -69,7 +79,7 @@ const std::string& triangle_vertex();
 
 using PipelineIndex = uint32_t;
 
-/// One draw call of triangles (of points for Output::buffer) inside a rectangle of the view.
+/// One draw call of triangles (of points for Output::buffer) inside a rectangle of the view, or what a compute shader runs on.
 struct Call {
   PipelineIndex pipeline = 0;
   Push push{};
@@ -104,6 +114,9 @@ class Device {
   const std::string& identity() const;
   const DiskCache& disk_cache() const;
   bool validates() const;
+  /// Whether vertices and pixels are computed by compute shaders: some devices draw
+  /// with a few of their processors only (an H100 with 2 of 66 TPCs: NVIDIA H100 Tensor Core GPU Architecture, 2022).
+  bool computes() const;
   /// Messages of the validation layers since the last call; empty without them.
   std::vector<std::string> take_messages();
 
@@ -124,6 +137,35 @@ class Device {
   /// last upload to this buffer, and does not even look at what is known to be the same.
   void upload(lower::FrameBuffer buffer, const void* data, size_t bytes, const backends::Known& known = {});
 
+  /// Makes the array at least this long; what was in it may be lost.
+  void reserve(lower::FrameBuffer buffer, size_t bytes);
+  /// Writes behind what was uploaded, or made on the device; the array must be long enough.
+  void append(lower::FrameBuffer buffer, size_t first, const void* data, size_t bytes);
+
+  // Triangles that are made on the device.
+
+  /// Whether the device has memory of its own and compute shaders.
+  bool makes_triangles() const;
+  void upload_indices(std::span<const uint32_t> indices);
+  struct Geometry {
+    std::span<const Call> vertices;  ///< of Output::row: they write positions
+    size_t vertex_count = 0;
+    std::span<const Call> setup;  ///< of the setup stage
+    size_t triangle_count = 0;
+    size_t room = 0;  ///< for further records behind
+  };
+  struct Cut {
+    int32_t triangle = 0;
+    float points[3][4] = {};  ///< in clip space
+  };
+  static constexpr size_t cut_room = 4096;
+  struct Triangles {
+    int64_t kept = 0;
+    std::vector<Cut> cuts;  ///< in any order
+  };
+  /// Leaves the records in the array of triangles. False if more than cut_room triangles are cut.
+  bool make_triangles(const Geometry& geometry, Triangles& made);
+
   /// Runs vertex kernels, then copies the first words of the output buffer; at most max_buffer_bytes().
   void run_vertices(std::span<const Call> calls, std::span<int32_t> output);
 
@@ -139,8 +181,8 @@ class Device {
   void reserve_layers(size_t bytes);
   void write_layers(size_t first, const void* data, size_t bytes);
   void read_layers(size_t first, void* data, size_t bytes);
-  /// Before the first of the following calls. False if the check's shader does not compile.
-  bool prepare_check(support::Diagnostics& diagnostics);
+  /// Before the first of the following calls. False if a shader of the device's own does not compile.
+  bool prepare_own_shaders(support::Diagnostics& diagnostics);
   /// Where images go: their first bytes in `layers`.
   struct Places {
     size_t depth = 0, color = 0;
@@ -148,7 +190,18 @@ class Device {
   /// As render(), but the images go to `layers`. Returns whether the color is finite.
   bool render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
               const float (&background)[4], const Window& window, bool has_color, const Places& places);
-  /// As below over a whole image, which goes to `layers`. Returns whether it is finite.
+  /// The same by compute shaders. `visibility`: for each run of triangles one call of Stage::depth or cutout. `first_cut`:
+  /// from this triangle on they are what cutting left; how they are ordered stands in `inputs`. Nothing, if the device lists
+  /// too few tiles for these triangles.
+  std::optional<bool> compute(std::span<const Call> visibility, std::span<const Call> color,
+                              const float (&background)[4], const Window& window, bool has_color,
+                              const Places& places, size_t first_cut);
+  /// Makes the array at least this long and keeps what is in it.
+  void extend_layers(size_t bytes);
+  /// Reduces an image in `layers`, `halvings` times, see backends::halve(). `between`: room for what the first of two makes.
+  void reduce(const Places& from, const Places& between, const Places& to, int width, int height,
+              int halvings);
+  /// As below over a whole image, which goes to `layers`; may be a compute shader. Returns whether it is finite.
   bool run_screen(PipelineIndex pipeline, int width, int height, size_t place);
 
   /// Runs a full-screen pipeline of Output::color over rows of an image: `rgba` has 4 floats a pixel, rows top down. The

@@ -107,10 +107,18 @@ inline constexpr uint32_t max_layers_at_once = 8;
 /// Steps of a recording whose time is taken.
 inline constexpr uint32_t max_timed_steps = 32;
 
+inline constexpr vk::ShaderStageFlags shader_stages =
+    vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eCompute;
+
+struct Pipeline {
+  Output output;
+  vk::raii::Pipeline pipeline;
+};
+
 /// What a recording has bound and set.
 struct State {
-  std::optional<uint32_t> pipeline;
-  vk::DescriptorSet set;
+  std::optional<uint32_t> pipeline, computing_pipeline;
+  vk::DescriptorSet set, computing_set;
   std::optional<std::pair<int, int>> viewport;  ///< the pixel of the view at the attachments' first
   std::optional<vk::Rect2D> scissor;
 };
@@ -142,6 +150,7 @@ struct Device::Impl {
   const vk::raii::RenderPass& render_pass(Output output, uint32_t attachments);
   vk::raii::Pipeline make_pipeline(const PipelineSource& source, std::span<const uint32_t> vertex,
                                    std::span<const uint32_t> fragment);
+  vk::raii::Pipeline make_pipeline(std::span<const uint32_t> compute);
 
   void prepare_attachments(int width, int height, bool has_color, bool has_layers = false);
   void make_attachments(int width, int height, bool has_color, bool has_layers);
@@ -178,6 +187,9 @@ struct Device::Impl {
   void wait_for_all() const;
   void reserve_check();
   bool finish_with_check(size_t first, size_t floats);
+  /// Records the check; finish_with_check() is this, finish() and is_checked_finite().
+  void record_check(size_t first, size_t floats);
+  bool is_checked_finite() const;
   /// Begins a recording that draws a view; its images are then to be copied.
   struct DrawnView {
     const Attachment* depth = nullptr;
@@ -189,6 +201,10 @@ struct Device::Impl {
 
   /// Records what differs from the state that the recording has, and a draw. Drivers look at state that is set again.
   void record(const Call& call);
+  void bind_computing(const Call& call);
+  void compute(const Call& call);
+  /// Of Output::row: so many groups, which divide the triangles of the call as they like.
+  void compute_groups(const Call& call, uint32_t groups);
   /// With the attachments' first pixel at (x, y) of the view.
   void record_at(std::span<const Call> calls, int x, int y);
 
@@ -200,6 +216,7 @@ struct Device::Impl {
   vk::PhysicalDeviceLimits limits;
   vk::PhysicalDeviceMemoryProperties memory;
   bool own_memory = false;  ///< the host fills arrays by copies; otherwise host and device share their memory
+  bool computes = false;
 
   vk::raii::Device device{nullptr};
   vk::raii::Queue queue{nullptr};
@@ -225,6 +242,9 @@ struct Device::Impl {
 
   std::array<Array, frame_bindings> arrays;
   Buffer output;  ///< words that vertex kernels write
+  Buffer positions, cuts;  ///< of the setup stage
+  Buffer seen, tiles;      ///< of compute shaders that find what is seen
+  Array indices;
   Array zero;     ///< always 0
   Buffer readback;
   WindowAttachments attachments;
@@ -235,9 +255,9 @@ struct Device::Impl {
   vk::raii::PipelineCache pipeline_cache{nullptr};
   std::string kept_pipelines;  ///< what the cache on disk had
   std::map<std::pair<Output, uint32_t>, vk::raii::RenderPass> render_passes;
-  std::vector<vk::raii::Pipeline> pipelines;
+  std::vector<Pipeline> pipelines;
   std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
-  std::optional<PipelineIndex> finite_check;
+  std::optional<PipelineIndex> finite_check, backdrop, halving;
   double build_seconds = 0;
 };
 

@@ -41,8 +41,7 @@ std::optional<std::vector<uint32_t>> DiskCache::spirv(const std::string& glsl, g
                                                       const std::string& what) const {
   constexpr uint32_t magic = 0x07230203;
   if (!cache_) return glsl::compile_spirv(glsl, kind, diagnostics, what);
-  const std::string name =
-      entry(EntryKind::spirv, {glsl::spirv_compiler(), kind == glsl::ShaderKind::vertex ? "vertex" : "fragment", glsl});
+  const std::string name = entry(EntryKind::spirv, {glsl::spirv_compiler(), glsl::name(kind), glsl});
   if (const auto bytes = cache_->read(name); bytes && bytes->size() % sizeof(uint32_t) == 0) {
     std::vector<uint32_t> words(bytes->size() / sizeof(uint32_t));
     std::memcpy(words.data(), bytes->data(), bytes->size());

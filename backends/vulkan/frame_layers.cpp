@@ -6,6 +6,7 @@
 #include "backends/vulkan/device_impl.h"
 #include "compiler/support/assert.h"
 #include "compiler/targets/glsl/glsl.h"
+#include "compiler/targets/glsl/stages.h"
 
 namespace isoshade::vulkan {
 
@@ -13,6 +14,66 @@ namespace {
 
 /// Floats that one call of the check looks at.
 constexpr int checked_at_once = 256;
+/// What one invocation of the check in a compute shader looks at.
+constexpr int checked_by_one = 32;
+
+/// As below, as a compute shader.
+const std::string& finite_check_compute() {
+  static const std::string text =
+      glsl::head() + glsl::compute_interface(false) +
+      "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(lower::FrameBuffer::layers)) +
+      ") readonly buffer layers_block { uint layers[]; };\nlayout(std430, set = 0, binding = " +
+      std::to_string(output_binding) + ") writeonly buffer found_block { int found[]; };" + R"(
+
+void main() {
+  int index = int(gl_GlobalInvocationID.x);
+  if (index >= push.columns) return;
+  bool finite = true;
+  for (int i = index; i < push.count; i += push.columns)
+    finite = finite && (layers[push.first + i] & 0x7f800000u) != 0x7f800000u;
+  if (!finite) found[0] = 1;
+}
+)";
+  return text;
+}
+
+/// A compute shader that makes numbers of triangles of their order, see glsl::order_bits, and stores the background where no
+/// triangle is seen. Its words are those of push constants.
+const std::string& backdrop_compute() {
+  static const std::string text =
+      glsl::head() + glsl::compute_interface(true) +
+      "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(lower::FrameBuffer::layers)) +
+      ") writeonly buffer made_block { int made[]; };\nlayout(std430, set = 0, binding = " +
+      std::to_string(static_cast<int>(lower::FrameBuffer::triangles)) +
+      ") readonly buffer triangles_block { int triangles[]; };\nlayout(std430, set = 0, binding = " +
+      std::to_string(seen_binding) + ") buffer seen_block { int seen[]; };" + R"(
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (at.x >= push.columns || at.y >= push.rows) return;
+  int pixel = at.y * push.pitch + at.x, order = seen[pixel];
+  if (order != )" +
+      std::to_string(glsl::nothing_seen) +
+      R"() {
+    int triangle = order >> )" +
+      std::to_string(glsl::order_bits) + ", left = order & " + std::to_string((1 << glsl::order_bits) - 1) +
+      R"(;
+    // The record of a triangle that was cut names the first of what is left of it.
+    seen[pixel] = left == 0 ? triangle : triangles[)" +
+      std::to_string(lower::triangle_word::stride) +
+      R"( * triangle] + left - 1;
+    return;
+  }
+  seen[pixel] = -1;
+  int word = push.place + 4 * pixel;
+  made[word] = push.object;
+  made[word + 1] = push.light_count;
+  made[word + 2] = push.program;
+  made[word + 3] = push.first;
+}
+)";
+  return text;
+}
 
 /// A vertex kernel that sets the first word of the output to 1 if a float in [push.first, push.first + push.count) of
 /// `layers` is infinite or NaN.
@@ -57,6 +118,43 @@ void Device::reserve_layers(size_t bytes) {
                  impl_->own_memory ? BufferUse::device : BufferUse::shared);
 }
 
+void Device::extend_layers(size_t bytes) {
+  Array& layers = impl_->layers();
+  if (layers.buffer.bytes >= bytes) return;
+  Buffer longer = impl_->make_buffer(bytes, impl_->own_memory ? BufferUse::device : BufferUse::shared);
+  const vk::raii::CommandBuffer& commands = impl_->begin();
+  commands.copyBuffer(*layers.buffer.buffer, *longer.buffer, vk::BufferCopy{.size = layers.buffer.bytes});
+  impl_->finish();
+  layers.buffer = std::move(longer);
+  ++impl_->generation;  // the recording had the shorter one
+}
+
+void Device::reduce(const Places& from, const Places& between, const Places& to, int width, int height,
+                    int halvings) {
+  impl_->begin();
+  {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::screen);
+    const auto word = [](size_t place) { return static_cast<int32_t>(place / sizeof(float)); };
+    Places source = from;
+    for (int i = 1; i <= halvings; ++i) {
+      const Places& made = i == halvings ? to : between;
+      impl_->compute({.pipeline = *impl_->halving,
+                      .push = {.object = word(source.color),
+                               .first = word(made.depth),
+                               .count = word(source.depth),
+                               .width = width,
+                               .place = word(made.color),
+                               .pitch = width / 2},
+                      .scissor = {0, 0, width / 2, height / 2}});
+      impl_->wait_for_all();
+      source = made;
+      width /= 2;
+      height /= 2;
+    }
+  }
+  impl_->finish();
+}
+
 void Device::write_layers(size_t first, const void* data, size_t bytes) {
   Array& layers = impl_->layers();
   if (!impl_->own_memory) {
@@ -87,9 +185,17 @@ void Device::read_layers(size_t first, void* data, size_t bytes) {
   }
 }
 
-bool Device::prepare_check(support::Diagnostics& diagnostics) {
+bool Device::prepare_own_shaders(support::Diagnostics& diagnostics) {
   if (impl_->finite_check) return true;
-  impl_->finite_check = pipeline({Output::buffer, 0, finite_check_vertex(), {}}, diagnostics);
+  if (impl_->computes) {
+    impl_->backdrop = pipeline({Output::pixels, 0, backdrop_compute(), {}}, diagnostics);
+    if (!impl_->backdrop) return false;
+    impl_->halving = pipeline({Output::pixels, 0, glsl::halving_compute(), {}}, diagnostics);
+    if (!impl_->halving) return false;
+    impl_->finite_check = pipeline({Output::row, 0, finite_check_compute(), {}}, diagnostics);
+  } else {
+    impl_->finite_check = pipeline({Output::buffer, 0, finite_check_vertex(), {}}, diagnostics);
+  }
   return impl_->finite_check.has_value();
 }
 
@@ -102,24 +208,37 @@ void Device::Impl::reserve_check() {
 
 /// Finishes the recording with a look at floats that it has copied to `layers`. Returns whether all are finite.
 bool Device::Impl::finish_with_check(size_t first, size_t floats) {
+  record_check(first, floats);
+  finish();
+  return is_checked_finite();
+}
+
+void Device::Impl::record_check(size_t first, size_t floats) {
   {
     const TimedStep step(*this, &DeviceSeconds::copies);
     commands.fillBuffer(*output.buffer, 0, sizeof(int32_t), 0);
     wait_for_all();
-    const size_t calls = (floats + checked_at_once - 1) / checked_at_once;
-    const vk::Rect2D pixel{.extent = {1, 1}};
-    commands.beginRenderPass(
-        {.renderPass = *render_pass(Output::buffer, 0), .framebuffer = *no_target, .renderArea = pixel},
-        vk::SubpassContents::eInline);
-    record({.pipeline = *finite_check,
-                      .push = {.first = static_cast<int32_t>(first), .count = static_cast<int32_t>(floats)},
-                      .vertex_count = static_cast<uint32_t>(calls),
-                      .scissor = {0, 0, 1, 1}});
-    commands.endRenderPass();
+    const size_t by_one = computes ? checked_by_one : checked_at_once;
+    const Call check{.pipeline = *finite_check,
+                     .push = {.first = static_cast<int32_t>(first), .count = static_cast<int32_t>(floats)},
+                     .vertex_count = static_cast<uint32_t>((floats + by_one - 1) / by_one),
+                     .scissor = {0, 0, 1, 1}};
+    if (computes) {
+      compute(check);
+    } else {
+      const vk::Rect2D pixel{.extent = {1, 1}};
+      commands.beginRenderPass(
+          {.renderPass = *render_pass(Output::buffer, 0), .framebuffer = *no_target, .renderArea = pixel},
+          vk::SubpassContents::eInline);
+      record(check);
+      commands.endRenderPass();
+    }
     wait_for_all();
     if (own_memory) commands.copyBuffer(*output.buffer, *readback.buffer, vk::BufferCopy{.size = sizeof(int32_t)});
   }
-  finish();
+}
+
+bool Device::Impl::is_checked_finite() const {
   int32_t found = 0;
   std::memcpy(&found, own_memory ? readback.data : output.data, sizeof found);
   return found == 0;

@@ -211,9 +211,10 @@ int choose(const Instance& instance, std::string_view selector, support::Diagnos
 }
 
 int graphics_family(const vk::raii::PhysicalDevice& device) {
+  constexpr auto needed = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
   const auto families = device.getQueueFamilyProperties();
   for (size_t i = 0; i < families.size(); ++i)
-    if (families[i].queueFlags & vk::QueueFlagBits::eGraphics) return static_cast<int>(i);
+    if ((families[i].queueFlags & needed) == needed) return static_cast<int>(i);
   return -1;
 }
 
@@ -235,10 +236,10 @@ std::vector<std::string> shortcomings(const vk::raii::PhysicalDevice& device) {
     lacks.emplace_back("it lacks VK_KHR_shader_float_controls");
   }
   need(device.getFeatures().vertexPipelineStoresAndAtomics, "its vertex shaders cannot store");
-  need(graphics_family(device) >= 0, "it has no graphics queue");
+  need(graphics_family(device) >= 0, "it has no queue for graphics and compute");
 
   const vk::PhysicalDeviceLimits& limits = properties.limits;
-  need(limits.maxPerStageDescriptorStorageBuffers >= binding_count - 1,
+  need(limits.maxPerStageDescriptorStorageBuffers >= binding_count - image_bindings,
        "it has too few storage buffers a stage");
   need(limits.maxColorAttachments >= max_attachments, "it has fewer than 8 color attachments");
   const float edge = static_cast<float>(guard_band);

@@ -61,7 +61,7 @@ int choose(const Instance& instance, std::string_view selector, support::Diagnos
 /// The features that the device lacks for the shaders of this project, one sentence each; empty if it has them all.
 std::vector<std::string> shortcomings(const vk::raii::PhysicalDevice& device);
 
-/// The index of a queue family that draws, or -1.
+/// The index of a queue family that draws and computes, or -1.
 int graphics_family(const vk::raii::PhysicalDevice& device);
 
 }  // namespace isoshade::vulkan

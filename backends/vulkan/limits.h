@@ -20,7 +20,8 @@ inline constexpr int guard_band = 8192;
 inline constexpr int margin_of_windows = 64;
 
 /// Set 0: the buffers of frame_layout.h, the buffer that vertex kernels write, the ids of the visible triangles, a word
-/// that is 0, and three images that the layer before left: its ids, the depth and the color.
+/// that is 0, three images that the layer before left: its ids, the depth and the color; and the buffers of the setup
+/// stage and of compute shaders.
 inline constexpr uint32_t frame_bindings = std::size(lower::frame_buffers);
 inline constexpr uint32_t output_binding = frame_bindings;
 inline constexpr uint32_t storage_bindings = frame_bindings + 1;
@@ -29,9 +30,16 @@ inline constexpr uint32_t zero_binding = ids_binding + 1;
 inline constexpr uint32_t former_ids_binding = zero_binding + 1;
 inline constexpr uint32_t former_depth_binding = former_ids_binding + 1;
 inline constexpr uint32_t former_color_binding = former_depth_binding + 1;
-inline constexpr uint32_t binding_count = former_color_binding + 1;
-inline constexpr uint32_t image_bindings = binding_count - storage_bindings - 1;
-constexpr bool is_image_binding(uint32_t binding) { return binding >= ids_binding && binding != zero_binding; }
+inline constexpr uint32_t positions_binding = former_color_binding + 1;
+inline constexpr uint32_t indices_binding = positions_binding + 1;
+inline constexpr uint32_t cuts_binding = indices_binding + 1;
+inline constexpr uint32_t seen_binding = cuts_binding + 1;
+inline constexpr uint32_t tiles_binding = seen_binding + 1;
+inline constexpr uint32_t binding_count = tiles_binding + 1;
+inline constexpr uint32_t image_bindings = 4;
+constexpr bool is_image_binding(uint32_t binding) {
+  return binding == ids_binding || (binding >= former_ids_binding && binding <= former_color_binding);
+}
 
 /// A table program writes four words to each color attachment.
 inline constexpr uint32_t max_attachments = 8;

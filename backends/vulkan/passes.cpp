@@ -100,8 +100,14 @@ void Device::run_vertices(std::span<const Call> calls, std::span<int32_t> output
   const vk::raii::CommandBuffer& commands = impl_->begin();
   {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::vertices);
-    const PassEncoder pass(commands, impl_->render_pass(Output::buffer, 0), impl_->no_target, area(1, 1), {});
-    for (const Call& call : calls) impl_->record(call);
+    if (!calls.empty() && vulkan::computes(impl_->pipelines[calls.front().pipeline].output)) {
+      for (const Call& call : calls) impl_->record(call);
+      impl_->wait_for_all();
+    } else {
+      const PassEncoder pass(commands, impl_->render_pass(Output::buffer, 0), impl_->no_target, area(1, 1),
+                             {});
+      for (const Call& call : calls) impl_->record(call);
+    }
   }
   if (own_memory) {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
@@ -331,17 +337,23 @@ bool Device::render(std::span<const Call> visibility, std::span<const Call> colo
 }
 
 bool Device::run_screen(PipelineIndex pipeline, int width, int height, size_t place) {
-  impl_->prepare_attachments(width, height, true);
+  const bool computes = vulkan::computes(impl_->pipelines[pipeline].output);
+  if (!computes) impl_->prepare_attachments(width, height, true);
   impl_->reserve_check();
   const vk::raii::CommandBuffer& commands = impl_->begin();
-  {
+  if (computes) {
+    const Impl::TimedStep step(*impl_, &DeviceSeconds::screen);
+    impl_->compute({.pipeline = pipeline,
+                    .push = {.place = static_cast<int32_t>(place / sizeof(float)), .pitch = width},
+                    .scissor = {0, 0, width, height}});
+  } else {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::screen);
     const vk::ClearValue nothing{};
     const PassEncoder pass(commands, impl_->render_pass(Output::color, 1), impl_->attachments.shading,
                            area(width, height), {&nothing, 1});
     impl_->record({.pipeline = pipeline, .scissor = {0, 0, width, height}});
   }
-  {
+  if (!computes) {
     const Impl::TimedStep step(*impl_, &DeviceSeconds::copies);
     impl_->wait_for_all();
     copy(commands, impl_->attachments.color.image, color_format, {0, 0, width, height}, impl_->layers().buffer, place);

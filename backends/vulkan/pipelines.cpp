@@ -135,6 +135,8 @@ const vk::raii::RenderPass& Device::Impl::render_pass(Output output, uint32_t at
     case Output::deep_layer: colors = {{color_format, copied, true}, {layer_depth_format, read, true}}; break;
     case Output::depth_copy: colors = {{layer_depth_format, read}}; break;
     case Output::words: colors.assign(attachments, {words_format, copied}); break;
+    case Output::row:
+    case Output::pixels: support::bug("a compute shader has no render pass");
   }
   auto made = make_render_pass(device, colors, output == Output::visibility);
   return render_passes.emplace(which, std::move(made)).first->second;
@@ -192,6 +194,14 @@ vk::raii::Pipeline Device::Impl::make_pipeline(const PipelineSource& source, std
                                          .renderPass = *render_pass(source.output, source.attachments)}};
 }
 
+vk::raii::Pipeline Device::Impl::make_pipeline(std::span<const uint32_t> compute) {
+  const vk::raii::ShaderModule module = make_module(device, compute);
+  return {device, pipeline_cache,
+          vk::ComputePipelineCreateInfo{
+              .stage = {.stage = vk::ShaderStageFlagBits::eCompute, .module = *module, .pName = "main"},
+              .layout = *layout}};
+}
+
 void Device::Impl::open_pipeline_cache() {
   kept_pipelines = disk_cache.pipelines(identity);
   pipeline_cache = vk::raii::PipelineCache(
@@ -220,14 +230,17 @@ std::optional<PipelineIndex> Device::pipeline(const PipelineSource& source,
     return found->second;
 
   const DiskCache& disk = impl_->disk_cache;
-  const auto vertex = disk.spirv(source.vertex_glsl, glsl::ShaderKind::vertex, diagnostics, source.what);
-  if (!vertex) return std::nullopt;
+  const bool computes = vulkan::computes(source.output);
+  const auto first_kind = computes ? glsl::ShaderKind::compute : glsl::ShaderKind::vertex;
+  const auto first = disk.spirv(source.vertex_glsl, first_kind, diagnostics, source.what);
+  if (!first) return std::nullopt;
   std::optional<std::vector<uint32_t>> fragment{std::in_place};
-  if (source.output != Output::buffer)
+  if (!computes && source.output != Output::buffer)
     fragment = disk.spirv(source.fragment_glsl, glsl::ShaderKind::fragment, diagnostics, source.what);
   if (!fragment) return std::nullopt;
 
-  impl_->pipelines.push_back(impl_->make_pipeline(source, *vertex, *fragment));
+  impl_->pipelines.push_back({source.output, computes ? impl_->make_pipeline(*first)
+                                                      : impl_->make_pipeline(source, *first, *fragment)});
   const auto made = static_cast<PipelineIndex>(impl_->pipelines.size() - 1);
   impl_->pipeline_of.emplace(std::move(source_key), made);
   return made;

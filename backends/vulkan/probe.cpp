@@ -76,6 +76,12 @@ bool probe_arithmetic(Device& device, Probe& probe, support::Diagnostics& diagno
           .pipeline = *vertex, .vertex_count = static_cast<uint32_t>(rows.size()), .scissor = {0, 0, 1, 1}}},
       seen);
   compare_words("vertex", rows, expected, seen, probe);
+  if (!device.computes()) return true;
+  const auto compute = device.pipeline({Output::row, 0, probe_compute_glsl(), {}}, diagnostics);
+  if (!compute) return false;
+  device.run_vertices(
+      std::array{Call{.pipeline = *compute, .vertex_count = static_cast<uint32_t>(rows.size())}}, seen);
+  compare_words("compute", rows, expected, seen, probe);
   return true;
 }
 

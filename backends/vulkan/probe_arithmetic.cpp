@@ -3,6 +3,7 @@
 #include "backends/vulkan/probe_parts.h"
 #include "compiler/support/assert.h"
 #include "compiler/targets/glsl/glsl.h"
+#include "compiler/targets/glsl/stages.h"
 #include "runtime/lanes/scalar.h"
 
 namespace isoshade::vulkan {
@@ -61,12 +62,14 @@ std::string compute_row() {
   return text;
 }
 
-std::string head() {
+constexpr std::string_view push_interface =
+    "layout(push_constant) uniform Push {\n"
+    "  int object; int light_count; int program; int first; int count; int width;\n} push;\n";
+
+std::string head(std::string_view interface) {
   return glsl::head() +
          "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(lower::FrameBuffer::inputs)) +
-         ") readonly buffer inputs_block { int inputs[]; };\n"
-         "layout(push_constant) uniform Push {\n"
-         "  int object; int light_count; int program; int first; int count; int width;\n} push;\n" +
+         ") readonly buffer inputs_block { int inputs[]; };\n" + std::string(interface) +
          std::string(helpers);
 }
 
@@ -130,7 +133,7 @@ std::vector<int32_t> expected_words(std::span<const Operands> rows) {
 }
 
 std::string probe_fragment_glsl() {
-  std::string text = head();
+  std::string text = head(push_interface);
   std::string stores;
   for (size_t word = 0; word < std::size(statements); word += 4) {
     const std::string target = "result_" + std::to_string(word / 4);
@@ -148,16 +151,29 @@ std::string probe_fragment_glsl() {
          compute_row() + stores + "}\n";
 }
 
-std::string probe_vertex_glsl() {
+namespace {
+
+/// A shader that stores the words of a row, one record after another.
+std::string storing_glsl(std::string_view interface, std::string_view row, std::string_view end) {
   std::string stores;
   for (size_t word = 0; word < std::size(statements); ++word)
     stores += "  words[at + " + std::to_string(word) + "] = " + std::string(statements[word].word) + ";\n";
-  return head() + "layout(std430, set = 0, binding = " + std::to_string(output_binding) +
+  return head(interface) + "layout(std430, set = 0, binding = " + std::to_string(output_binding) +
          ") writeonly buffer words_block { int words[]; };\n"
-         "\nvoid main() {\n"
-         "  int row = gl_VertexIndex;\n" +
-         compute_row() + "  int at = row * " + std::to_string(std::size(statements)) + ";\n" + stores +
-         "  gl_PointSize = 1.0;\n}\n";
+         "\nvoid main() {\n" +
+         std::string(row) + compute_row() + "  int at = row * " + std::to_string(std::size(statements)) +
+         ";\n" + stores + std::string(end) + "}\n";
+}
+
+}  // namespace
+
+std::string probe_vertex_glsl() {
+  return storing_glsl(push_interface, "  int row = gl_VertexIndex;\n", "  gl_PointSize = 1.0;\n");
+}
+
+std::string probe_compute_glsl() {
+  return storing_glsl(glsl::compute_interface(false),
+                      "  int row = int(gl_GlobalInvocationID.x);\n  if (row >= push.columns) return;\n", "");
 }
 
 }  // namespace isoshade::vulkan

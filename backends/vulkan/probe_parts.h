@@ -73,6 +73,8 @@ std::vector<int32_t> expected_words(std::span<const Operands> rows);
 /// output binding.
 std::string probe_fragment_glsl();
 std::string probe_vertex_glsl();
+/// The same as a compute shader.
+std::string probe_compute_glsl();
 
 /// A cell, and the triangles that are drawn with its area as scissor.
 struct Cell {

@@ -7,8 +7,10 @@
 #include "backends/shared.h"
 #include "backends/vulkan/backend.h"
 #include "backends/vulkan/device.h"
+#include "backends/vulkan/geometry.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/target_limits.h"
+#include "compiler/targets/glsl/stages.h"
 #include "runtime/raster/triangle.h"
 
 namespace isoshade::vulkan {
@@ -37,13 +39,6 @@ std::vector<Box> bounds_of_programs(const Frame& frame, const Window& window,
   return bounds;
 }
 
-/// Consecutive triangles with the same depth test and the same cut-out.
-struct Run {
-  uint32_t first, count;
-  bool over;
-  const driver::Program* cutout;  ///< or null
-};
-
 /// Of the triangles [begin, end).
 std::vector<Run> runs_of(const Frame& frame, std::span<const int32_t> triangles, uint32_t begin, uint32_t end) {
   std::vector<Run> runs;
@@ -51,9 +46,7 @@ std::vector<Run> runs_of(const Frame& frame, std::span<const int32_t> triangles,
     const raster::Triangle triangle = raster::triangle_at(triangles.data(), static_cast<int>(i));
     const driver::Program* const cutout =
         triangle.cutout() ? frame.programs[backends::cutout_program_of(frame, triangle.object())] : nullptr;
-    if (runs.empty() || runs.back().over != triangle.over() || runs.back().cutout != cutout)
-      runs.push_back({i, 0, triangle.over(), cutout});
-    ++runs.back().count;
+    append(runs, {i, 1, triangle.over(), cutout});
   }
   return runs;
 }
@@ -131,12 +124,57 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     });
   }
 
+  /// Draws triangles whose records the device has, of which none is blended, as the following.
+  bool draw(const Window& window, const DeviceTriangles& triangles, const Device::Places& places,
+            bool& is_finite, Diagnostics& diagnostics) {
+    const bool has_color = pass_.view.target.has_color;
+    if (!backend_.check_size(window.width, window.height, diagnostics) ||
+        !backend_.device_->prepare_own_shaders(diagnostics) ||
+        !backend_.upload_textures(pass_.frame, diagnostics))
+      return false;
+    // A triangle that takes every pixel is no matter of the greatest depth.
+    bool computes =
+        std::ranges::none_of(triangles.unordered, &Run::over) && triangles.first_cut < max_ordered;
+    for (;; computes = false) {
+      Calls calls;
+      if (computes) {
+        for (const Run& run : triangles.unordered) {
+          const auto pipeline = seen_pipeline(run, diagnostics);
+          if (!pipeline) return false;
+          calls.visibility.push_back({.pipeline = *pipeline,
+                                      .push = {.object = static_cast<int32_t>(triangles.first_order)},
+                                      .first_vertex = run.first,
+                                      .vertex_count = run.count});
+        }
+      } else if (!add_visibility(triangles.runs, window, false, calls.visibility, diagnostics)) {
+        return false;
+      }
+      std::ranges::fill(shading_, std::nullopt);
+      if (has_color)
+        for (const size_t program : triangles.programs)
+          if (!add_shading(program, computes, window, calls, diagnostics)) return false;
+      Device& device = *backend_.device_;
+      const auto& background = pass_.view.background;
+      if (!computes) {
+        is_finite = device.render(calls.visibility, calls.color, {}, background, window, has_color, places);
+        return true;
+      }
+      const auto computed = device.compute(calls.visibility, calls.color, background, window, has_color,
+                                           places, triangles.first_cut);
+      if (!computed) continue;
+      is_finite = *computed;
+      return true;
+    }
+  }
+
   /// Draws to the array `layers`. `is_finite` tells whether the color is finite.
   bool draw(const Window& window, std::span<const int32_t> triangles, const Device::Places& places, bool& is_finite,
             Diagnostics& diagnostics) {
     return backend_.guarded(diagnostics, [&] {
       Calls calls;
-      if (!prepare(window, triangles, calls, diagnostics) || !backend_.device_->prepare_check(diagnostics)) return false;
+      if (!prepare(window, triangles, calls, diagnostics) ||
+          !backend_.device_->prepare_own_shaders(diagnostics))
+        return false;
       is_finite = backend_.device_->render(calls.visibility, calls.color, calls.layers, pass_.view.background, window,
                                            pass_.view.target.has_color, places);
       return true;
@@ -146,13 +184,27 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
  private:
   static constexpr size_t stride = lower::triangle_word::stride;
 
+  /// Numbers of triangles that can be ordered, see glsl::order_bits.
+  static constexpr size_t max_ordered = size_t{1} << (31 - glsl::order_bits);
+
+  /// Finds what is seen by a compute shader.
+  std::optional<PipelineIndex> seen_pipeline(const Run& run, Diagnostics& diagnostics) {
+    const driver::Program& program = run.cutout != nullptr ? *run.cutout : driver::depth_program();
+    return backend_.pipeline_of(program, VulkanBackend::Use::seen, [&]() -> std::optional<PipelineIndex> {
+      auto text = backend_.text_of(program, diagnostics, true);
+      if (!text) return std::nullopt;
+      PipelineSource source{Output::row, 0, std::move(*text), {}};
+      source.what = driver::description(program);
+      return backend_.device_->pipeline(source, diagnostics);
+    });
+  }
+
   struct Calls {
     std::vector<Call> visibility, color;
     Layers layers;
   };
   bool prepare(const Window& window, std::span<const int32_t> triangles, Calls& calls, Diagnostics& diagnostics) {
     const bool has_color = pass_.view.target.has_color;
-    const int light_count = pass_.frame.light_count;
     if (!backend_.check_size(window.width, window.height, diagnostics)) return false;
     if (!triangles.empty() && !upload(triangles, diagnostics)) return false;
     const auto count = static_cast<uint32_t>(triangles.size() / lower::triangle_word::stride);
@@ -162,13 +214,21 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles.first(opaque * stride));
     for (size_t p = 0; p < bounds.size(); ++p) {
       if (bounds[p].empty()) continue;
-      if (!shading_[p]) shading_[p] = backend_.screen_pipeline(*pass_.frame.programs[p], diagnostics);
-      if (!shading_[p]) return false;
-      calls.color.push_back({.pipeline = *shading_[p],
-                             .push = {.light_count = light_count, .program = static_cast<int32_t>(p)},
-                             .scissor = window_of(bounds[p])});
+      if (!add_shading(p, false, window_of(bounds[p]), calls, diagnostics)) return false;
     }
     return opaque == count || add_layers(window, triangles, opaque, count, calls.layers, diagnostics);
+  }
+
+  bool add_shading(size_t program, bool computes, const Window& area, Calls& calls,
+                   Diagnostics& diagnostics) {
+    std::optional<PipelineIndex>& pipeline = shading_[program];
+    if (!pipeline) pipeline = backend_.screen_pipeline(*pass_.frame.programs[program], computes, diagnostics);
+    if (!pipeline) return false;
+    calls.color.push_back(
+        {.pipeline = *pipeline,
+         .push = {.light_count = pass_.frame.light_count, .program = static_cast<int32_t>(program)},
+         .scissor = area});
+    return true;
   }
 
   struct Range {
@@ -178,14 +238,19 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   /// Adds what finds where triangles are seen.
   bool add_visibility(std::span<const int32_t> triangles, const Range& range, bool in_layers, std::vector<Call>& calls,
                       Diagnostics& diagnostics) {
-    for (const Run& run : runs_of(pass_.frame, triangles, range.begin, range.end)) {
+    return add_visibility(runs_of(pass_.frame, triangles, range.begin, range.end), range.area, in_layers,
+                          calls, diagnostics);
+  }
+  bool add_visibility(std::span<const Run> runs, const Window& area, bool in_layers, std::vector<Call>& calls,
+                      Diagnostics& diagnostics) {
+    for (const Run& run : runs) {
       const auto pipeline = visibility_pipeline(run, in_layers, diagnostics);
       if (!pipeline) return false;
       calls.push_back({.pipeline = *pipeline,
                        .push = {.light_count = pass_.frame.light_count},
                        .first_vertex = 3 * run.first,
                        .vertex_count = 3 * run.count,
-                       .scissor = range.area});
+                       .scissor = area});
     }
     return true;
   }
@@ -274,6 +339,55 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
   /// By the program, and whether its triangles write depth.
   std::map<std::pair<size_t, bool>, std::optional<PipelineIndex>> blending_;
 };
+
+std::optional<bool> VulkanBackend::draw_view(const backends::Drawing& drawing, backends::Made& made,
+                                             Diagnostics& diagnostics) {
+  const backends::View& view = drawing.pass.view;
+  const auto is_blended = [&](const backends::Draw& draw) { return draw.blended && view.target.has_color; };
+  if (!on_device_ || !device_->makes_triangles() || view.draws.empty() ||
+      std::ranges::any_of(view.draws, is_blended))
+    return std::nullopt;
+  const Device::Places pixels{drawing.depth.first * sizeof(float), drawing.color.first * sizeof(float)};
+  // Samples lie behind the images of the frame until they become pixels; of 16 a pixel, first each 4 become one.
+  Device::Places places = pixels, between{};
+  if (drawing.side > 1) {
+    const size_t samples =
+        static_cast<size_t>(view.target.width) * static_cast<size_t>(view.target.height) * sizeof(float);
+    places = {layers_.size() * sizeof(float), layers_.size() * sizeof(float) + samples};
+    between = {places.color + 4 * samples, places.color + 4 * samples + samples / 4};
+    const size_t end = between.color + samples;
+    if (end > device_->max_buffer_bytes()) return std::nullopt;
+    if (!guarded(diagnostics, [&] { return device_->extend_layers(end), true; })) return false;
+  }
+  const std::vector<int32_t> records =
+      backends::image_records(view.target.width, view.target.height, drawing.pass.images);
+  bool on_device = false, is_finite = true;
+  const bool drawn = guarded(diagnostics, [&] {
+    const auto triangles = make_triangles(drawing.pass, {{}, records}, diagnostics);
+    if (!triangles) return false;
+    on_device = true;
+    made = triangles->made;
+    VulkanViewRenderer renderer(*this, drawing.pass, {{}, records}, drawing.pass.frame.vertices, true);
+    return renderer.draw(drawing.window, *triangles, places, is_finite, diagnostics);
+  });
+  if (!on_device && !diagnostics.has_errors()) return std::nullopt;
+  made_finite_ = made_finite_ && is_finite;
+  if (!drawn || drawing.side == 1)
+    return drawn && (drawing.posts.empty() || post(drawing.posts, drawing.color, diagnostics));
+  const backends::Slot color{places.color / sizeof(float), view.target.width, view.target.height, 4};
+  for (backends::ScreenPass pass : drawing.posts) {
+    std::vector<backends::ImageRead> images(pass.images.begin(), pass.images.end());
+    images[0].slot.first = places.depth / sizeof(float);
+    images[1].slot.first = color.first;
+    pass.images = images;
+    if (!post({&pass, 1}, color, diagnostics)) return false;
+  }
+  return guarded(diagnostics, [&] {
+    device_->reduce(places, between, pixels, view.target.width, view.target.height,
+                    drawing.side == 4 ? 2 : 1);
+    return true;
+  });
+}
 
 bool VulkanBackend::draw(const backends::Drawing& drawing, Diagnostics& diagnostics) {
   if (!on_device_) return HostBackend::draw(drawing, diagnostics);

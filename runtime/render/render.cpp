@@ -67,7 +67,7 @@ class FrameRenderer {
       const std::span<const float> words(frame_.views[v].words);
       backend_.write(layout_.views[v].camera, words.first(lower::view_word::camera_words));
     }
-    memory_.vertices_.assign(frame_.vertices.begin(), frame_.vertices.end());
+    memory_.vertices_.clear();
     for (size_t v = 0; v < frame_.views.size(); ++v)
       if (!draw_view(v, search)) return false;
     if (plan_.motion && !draw_motion(*plan_.motion)) return false;
@@ -106,17 +106,17 @@ class FrameRenderer {
     if (!backend_.transform(pass, memory_.clip_, diagnostics_)) return false;
     const std::vector<backends::Draw>& draws = pass.view.draws;
     stats_.transform_seconds += lap();
-    memory_.vertices_.resize(frame_.vertices.size());
+    const size_t given = frame_.vertices.size();
+    if (memory_.vertices_.size() < given)
+      memory_.vertices_.assign(frame_.vertices.begin(), frame_.vertices.end());
+    else
+      memory_.vertices_.resize(given);
     std::vector<raster::Surface> surfaces;
     std::span<const float> rest = memory_.clip_;
     const backends::Target& target = pass.view.target;
     for (const backends::Draw& draw : draws) {
       const std::span<const float> clip = take_vertices(rest, draw);
-      // Where only depth counts, a blended draw is one that writes it or nothing.
-      const bool writes_depth = !draw.blended || draw.state.depth_write == interface::DepthWrite::on;
-      if (target.has_color || writes_depth)
-        surfaces.push_back({clip, draw.indices, draw.first_vertex, draw.state, draw.object, draw.mirrored, draw.cutout,
-                            draw.blended && target.has_color, pass.view.depth_bias});
+      if (const auto surface = backends::surface_of(pass.view, draw, clip)) surfaces.push_back(*surface);
     }
     support::assert_that(rest.empty(), "a backend transformed another number of vertices");
     memory_.clipper_.run(surfaces, target.width, target.height, backend_.workers(), memory_.vertices_, memory_.triangles_);
@@ -146,19 +146,32 @@ class FrameRenderer {
     const backends::View& view = frame_.views[v];
     const std::vector<ImageRead> images = images_of(view);
     const backends::ViewPass pass{frame_, view, images};
-    if (!make_triangles(pass)) return false;
     const bool is_picture = v + 1 == frame_.views.size();
     std::vector<ScreenPass> posts;
     if (is_picture)
       for (size_t s = 0; s < layout_.drawn_steps; ++s) posts.push_back(pass_of(s));
     Drawing drawing{.pass = pass,
-                    .vertices = memory_.vertices_,
-                    .triangles = memory_.triangles_,
+                    .vertices = {},
+                    .triangles = {},
                     .window = {0, 0, view.target.width, view.target.height},
                     .side = is_picture ? samples_each_way(plan_.samples) : 1,
                     .posts = {},
                     .depth = layout_.views[v].depth,
                     .color = layout_.views[v].color};
+    if (!search) {
+      drawing.posts = posts;
+      backends::Made made;
+      if (const std::optional<bool> drawn = backend_.draw_view(drawing, made, diagnostics_)) {
+        stats_.triangles += made.triangles;
+        stats_.made_vertices += made.vertices;
+        stats_.draw_seconds += lap();
+        return *drawn;
+      }
+      drawing.posts = {};
+    }
+    if (!make_triangles(pass)) return false;
+    drawing.vertices = memory_.vertices_;
+    drawing.triangles = memory_.triangles_;
     if (is_picture && search && !search_drawn(drawing, posts)) return false;
     drawing.posts = posts;
     if (!backend_.draw(drawing, diagnostics_)) return false;

@@ -204,7 +204,7 @@ TEST_F(Blending, IsIdenticalOnCpuAndVulkanAtEverySize) {
   const auto cpu = cpu_backend();
   const auto vulkan = vulkan_backend();
   const auto exact = vulkan_backend(driver::Division::exact);
-  const auto own_memory = vulkan_backend(std::nullopt, true);  // draws several layers before it looks for more
+  const auto gpu = vulkan_backend(std::nullopt, true);  // draws several layers before it looks for more
   for (const std::string& scene : {members, forty_layers()})
     for (const int samples : {1, 4, 16})
       for (const Size size : {Size{160, 120}, Size{321, 193}, Size{37, 29}, Size{1, 1}, Size{3, 100}}) {
@@ -212,7 +212,7 @@ TEST_F(Blending, IsIdenticalOnCpuAndVulkanAtEverySize) {
         const render::Plan made = plan(size, samples, scene);
         const backends::Image expected = draw(made, *cpu);
         expect_identical(expected, draw(made, *vulkan), text(size, samples));
-        expect_identical(expected, draw(made, *own_memory), text(size, samples) + ", memory of its own");
+        expect_identical(expected, draw(made, *gpu), text(size, samples) + ", as on a GPU");
         if (size.width == 160 && samples == 1)
           expect_identical(expected, draw(made, *exact), text(size, samples) + ", exact division");
       }

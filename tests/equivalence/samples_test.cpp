@@ -104,7 +104,7 @@ TEST(Samples, AreIdenticalOnCpuAndVulkanAtEverySize) {
     int width, height;
   };
   const auto cpu = cpu_backend();
-  const auto vulkan = vulkan_backend();
+  const auto vulkan = vulkan_backend(), gpu = vulkan_backend(std::nullopt, true);
   for (const std::string& path : shipped_scenes())
     for (const int samples : {4, 16})
       for (const Size size : {Size{640, 360}, Size{1, 1}, Size{3, 500}}) {
@@ -113,6 +113,8 @@ TEST(Samples, AreIdenticalOnCpuAndVulkanAtEverySize) {
         const render::Plan made = plan_of(path, samples, size.width, size.height);
         const backends::Image image = draw(made, *cpu);
         expect_identical(image, draw(made, *vulkan), text(path, samples, image));
+        if (size.width < 640)
+          expect_identical(image, draw(made, *gpu), text(path, samples, image) + ", as on a GPU");
       }
 }
 

@@ -94,12 +94,14 @@ inline std::unique_ptr<backends::Backend> cpu_backend(const std::string& lanes =
 }
 
 #ifdef ISOSHADE_VULKAN
+/// `as_gpu`: with memory of its own and compute shaders, as devices are used that are not software.
 inline std::unique_ptr<backends::Backend> vulkan_backend(
-    std::optional<driver::Division> division = std::nullopt, bool own_memory = false) {
+    std::optional<driver::Division> division = std::nullopt, bool as_gpu = false) {
   support::Diagnostics diagnostics;
   vulkan::VulkanOptions options;
   options.division = division;
-  options.own_memory = own_memory;
+  options.own_memory = as_gpu;
+  options.compute = as_gpu;
   auto backend = vulkan::create(options, diagnostics);
   if (backend == nullptr) ADD_FAILURE() << diagnostics.text();
   return backend;

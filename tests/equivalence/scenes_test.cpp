@@ -33,6 +33,34 @@ TEST(Scenes, AreIdenticalOnCpuAndVulkanAtEverySize) {
     }
 }
 
+TEST(Scenes, AreIdenticalAsOnAGpu) {
+  const auto cpu = cpu_backend();
+  const auto gpu = vulkan_backend(driver::Division::exact, true);
+  for (const std::string& path : shipped_scenes())
+    for (const Size size : {Size{320, 180}, Size{1, 1}, Size{67, 131}}) {
+      const render::Plan made = plan(path, size.width, size.height);
+      const backends::Image expected = draw(made, *cpu);
+      for (int frame = 0; frame < 2; ++frame)
+        expect_identical(expected, draw(made, *gpu), path + " " + text(size));
+    }
+}
+
+TEST(Scenes, GpusMakeTheTrianglesThatTheHostMakes) {
+  const auto cpu = cpu_backend();
+  const auto gpu = vulkan_backend(std::nullopt, true);
+  for (const char* name : {"cartoon_village", "inside_sphere", "shadows", "overlay", "motion_blur"}) {
+    const render::Plan made = plan(scene_path(name), 320, 180);
+    support::Diagnostics diagnostics;
+    backends::Image image;
+    render::DrawStats host, device;
+    ASSERT_TRUE(render::render(made, *cpu, image, host, diagnostics));
+    ASSERT_TRUE(render::render(made, *gpu, image, device, diagnostics));
+    EXPECT_EQ(device.triangles, host.triangles) << name;
+    EXPECT_EQ(device.made_vertices, host.made_vertices) << name;
+    EXPECT_EQ(device.clip_seconds, 0) << name << ": the host made triangles";
+  }
+}
+
 TEST(Scenes, AreIdenticalWithExactDivision) {
   const auto native = vulkan_backend(driver::Division::native);
   const auto exact = vulkan_backend(driver::Division::exact);

@@ -15,6 +15,7 @@ if(ISOSHADE_VULKAN)
       unit/vulkan_cache_test.cpp
       unit/vulkan_device_test.cpp
       unit/vulkan_probe_test.cpp
+      unit/vulkan_setup_test.cpp
     LINKS isoshade_vulkan
     TIMEOUT 120
     DEVICES)
