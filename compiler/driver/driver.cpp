@@ -227,7 +227,8 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
                                      Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
-  Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}};
+  Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}, false,
+                environment_reads(*typed)};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
@@ -263,9 +264,10 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
             {},
             false,
             false,
-            false,
+            {},
             typed->graph.enabled,
             {}};
+  if (options.lights.environment.value_or(true)) post.environment = environment_reads(*typed);
   for (const graph::InputImage& image : typed->graph.images) {
     if (image.name == graph::motion_image_name) post.motion = post.images.size();
     post.images.push_back(image.name);
@@ -276,8 +278,6 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
     post.reads.push_back(interface.find(interface::Host::image, lower::post_image(i)) != ir::none);
   post.reads_depth = interface.find(interface::Host::depth, lower::depth_image) != ir::none;
   post.is_pointwise = lower::is_pointwise(lowered);
-  for (const interface::Host host : {interface::Host::environment, interface::Host::irradiance})
-    post.reads_environment |= interface.find(host) != ir::none && options.lights.environment.value_or(true);
   const std::vector<lower::TapSum> sums = lower::tap_sums(*typed);
   for (const lower::TapSum& sum : sums) {
     post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compiler/check/library.h"
+#include "compiler/driver/environment_reads.h"
 #include "compiler/driver/parameter_block.h"
 #include "compiler/driver/program.h"
 #include "compiler/graph/graph.h"
@@ -58,6 +59,7 @@ struct Effect {
   std::vector<EffectPass> passes;
   /// Behind the parameters, the object's record has the columns that led to world space at the frame before.
   bool reads_previous = false;
+  EnvironmentReads environment;
 };
 
 /// A full-screen effect.
@@ -71,7 +73,7 @@ struct Post {
   std::vector<bool> reads;          ///< whether it reads the image that it processes, then each of `images`
   bool reads_depth = false;
   bool is_pointwise = false;      ///< of images it reads no pixel but the one that it makes, and the size does not matter
-  bool reads_environment = false;
+  EnvironmentReads environment;   ///< none if the scene has no environment
   std::optional<size_t> enabled;  ///< index of a parameter field; the post is skipped if it is 0
   Program program;
 };

@@ -24,11 +24,12 @@ constexpr std::string_view version = "isoshade environment 1";
 static_assert(std::endian::native == std::endian::little, "entries of the cache hold floats as they are in memory");
 
 /// The sides of the maps, with their borders, in order.
-std::vector<int> widths() {
+std::vector<int> widths(bool sharp_only) {
   std::vector<int> widths;
   for (int level = 0; level < functions::environment_levels; ++level)
-    widths.push_back(functions::environment_sides[level] + 2 * functions::environment_border);
-  widths.push_back(functions::irradiance_side + 2 * functions::environment_border);
+    widths.push_back(level > 0 && sharp_only ? 1 : functions::environment_sides[level]);
+  widths.push_back(sharp_only ? 1 : functions::irradiance_side);
+  for (int& width : widths) width += 2 * functions::environment_border;
   return widths;
 }
 
@@ -39,10 +40,10 @@ std::string to_bytes(const Maps& maps) {
   return bytes;
 }
 
-std::optional<Maps> from_bytes(const std::string& bytes) {
+std::optional<Maps> from_bytes(const std::string& bytes, bool sharp_only) {
   Maps maps;
   size_t next = 0;
-  for (const int width : widths()) {
+  for (const int width : widths(sharp_only)) {
     std::vector<float> texels(static_cast<size_t>(channels * width * width));
     const size_t size = texels.size() * sizeof(float);
     if (bytes.size() - next < size) return std::nullopt;
@@ -53,12 +54,23 @@ std::optional<Maps> from_bytes(const std::string& bytes) {
   return next == bytes.size() ? std::optional(std::move(maps)) : std::nullopt;
 }
 
+/// The maps of which only the first is made.
+Maps sharp_maps(Pyramid pyramid) {
+  fill_border(pyramid.level(0), functions::environment_side);
+  Maps maps;
+  for (const int width : widths(true))
+    maps.push_back({width, width, std::vector<float>(static_cast<size_t>(maps.empty() ? 0 : channels * width * width))});
+  pyramid.texels.resize(static_cast<size_t>(channels * maps[0].width * maps[0].width));  // of level 0, which comes first
+  maps[0].texels = std::move(pyramid.texels);
+  return maps;
+}
+
 /// What maps are made of.
 class Source {
  public:
   /// Reads what decides the key. False after an error, which is reported.
   bool read(const scene::Environment& environment, const Options& options, Diagnostics& diagnostics) {
-    hash_.add(version);
+    hash_.add(version).add(options.sharp_only ? " sharp" : "");
     for (const float number : {environment.rotate, environment.intensity})
       hash_.add("\n" + std::to_string(std::bit_cast<uint32_t>(number)));
     if (environment.file.empty()) {
@@ -87,6 +99,7 @@ class Source {
   }
 
   std::string key() const { return hash_.hex(); }
+  bool is_sky() const { return program_.has_value(); }
 
   std::optional<Pyramid> paint(const scene::Environment& environment, const PrefilterOptions& options,
                                Diagnostics& diagnostics) const {
@@ -99,7 +112,6 @@ class Source {
       const bool srgb = image->has_bytes();
       made = project(scene::linear_level(*std::move(image), srgb), environment.rotate, environment.intensity, options);
     }
-    fill_levels(*made);
     return made;
   }
 
@@ -118,13 +130,16 @@ std::optional<Made> make_environment(const scene::Environment& environment, cons
   const std::string entry = Cache::entry_name(source.key(), backends::EntryKind::maps);
   // A folder that is unsafe or cannot be written is reported by whoever keeps code in it.
   Diagnostics unheard;
-  const std::optional<Cache> cache = Cache::open(options.cache, unheard);
+  // The sharp map of a sky is made sooner than its checksum.
+  const bool is_quick = options.sharp_only && source.is_sky();
+  const std::optional<Cache> cache = is_quick ? std::nullopt : Cache::open(options.cache, unheard);
   if (cache)
     if (const auto bytes = cache->read(entry))
-      if (auto maps = from_bytes(*bytes)) return Made{*std::move(maps), true};
-  const auto pyramid = source.paint(environment, options.prefilter, diagnostics);
+      if (auto maps = from_bytes(*bytes, options.sharp_only)) return Made{*std::move(maps), true};
+  auto pyramid = source.paint(environment, options.prefilter, diagnostics);
   if (!pyramid) return std::nullopt;
-  Made made{prefilter(*pyramid, options.prefilter), false};
+  if (!options.sharp_only) fill_levels(*pyramid);
+  Made made{options.sharp_only ? sharp_maps(*std::move(pyramid)) : prefilter(*pyramid, options.prefilter), false};
   if (cache) cache->keep(entry, to_bytes(made.maps));
   return made;
 }

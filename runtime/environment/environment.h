@@ -20,6 +20,9 @@ struct Options {
   /// A folder for the maps; empty: the usual one. Without a folder that can be used, nothing is kept.
   std::string cache;
   PrefilterOptions prefilter;
+  /// Makes the map for a roughness of 0 alone. The others are black and have one texel: what reads them with a weight of 0
+  /// gets the same bits.
+  bool sharp_only = false;
 };
 
 struct Made {

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/environment/sky.h"
 
+#include <algorithm>
 #include <array>
-#include <bit>
+#include <cstring>
+#include <iterator>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
-#include "runtime/threads/workers.h"
+#include "backends/interpreter/stages.h"
 #include "compiler/driver/driver.h"
-#include "compiler/ir/interpreter.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/parse_number.h"
 #include "runtime/scene/host_math.h"
+#include "runtime/threads/workers.h"
 
 namespace isoshade::environment {
 namespace {
@@ -41,23 +45,24 @@ glm::vec3 radiance_of(const scene::Sun& sun) {
   return sun.color * (sun.intensity / ((pi * sine) * sine));
 }
 
-/// Evaluates a program for one direction after the other.
+/// Evaluates the program of a sky for directions side by side.
 class Sky {
  public:
-  explicit Sky(const driver::Program& program) : interpreter_(program.module), entry_(program.entry) {
-    interpreter_.bind(static_cast<uint32_t>(lower::FrameBuffer::inputs), direction_);
-  }
-  glm::vec3 operator()(const glm::vec3& direction) {
-    for (int i = 0; i < 3; ++i) direction_[static_cast<size_t>(i)] = std::bit_cast<uint32_t>(direction[i]);
-    std::array<uint32_t, 3> result{};
-    interpreter_.run(entry_, std::array{uint32_t{0}}, result);
-    return {std::bit_cast<float>(result[0]), std::bit_cast<float>(result[1]), std::bit_cast<float>(result[2])};
+  explicit Sky(const driver::Program& program) : stages_(program) {}
+  /// The radiance that is seen in each direction. The caller holds an FpGuard.
+  void see(std::span<const glm::vec3> directions, std::span<glm::vec3> radiances) const {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    interpreter::BufferView buffers[std::size(lower::frame_buffers)];
+    constexpr int32_t nothing = 0;
+    std::fill(std::begin(buffers), std::end(buffers), interpreter::BufferView{&nothing, 1});
+    buffers[static_cast<size_t>(lower::FrameBuffer::inputs)] = {directions.data(), static_cast<int>(3 * directions.size())};
+    std::vector<int> words(3 * directions.size());
+    stages_.eval(buffers, 0, static_cast<int>(directions.size()), words.data());
+    std::memcpy(radiances.data(), words.data(), words.size() * sizeof(int));
   }
 
  private:
-  std::array<uint32_t, 3> direction_{};
-  ir::Interpreter interpreter_;
-  uint32_t entry_;
+  interpreter::Stages stages_;
 };
 
 }  // namespace
@@ -115,30 +120,32 @@ Pyramid paint_sky(const scene::Sky& sky, const driver::Program& program, float r
     }
     return color;
   };
-  constexpr size_t rows_of_task = 16;
-  threads::Workers(options.threads).for_each(side / rows_of_task, [&](size_t task) {
-    Sky seen(program);
-    for (size_t y = task * rows_of_task; y < (task + 1) * rows_of_task; ++y) {
-      float* texel = pyramid.level(0) + channels * ((y + 1) * (side + 2) + 1);
-      for (int x = 0; x < side; ++x, texel += channels) {
-        const float row = static_cast<float>(y), column = static_cast<float>(x), size = static_cast<float>(side);
-        const glm::vec3 middle = direction(column + 0.5f, row + 0.5f, size);
-        glm::vec3 color(0);
-        if (!sky.sun || !is_at_edge(middle)) {
-          color = limited(seen(middle));
-        } else {
-          constexpr int n = edge_directions_each_way;
-          constexpr float step = 1.0f / n;
-          for (int i = 0; i < n * n; ++i) {
-            const float right = (static_cast<float>(i % n) + 0.5f) * step;
-            const float down = (static_cast<float>(i / n) + 0.5f) * step;
-            color = color + seen(direction(column + right, row + down, size));
-          }
-          color = limited(color * (step * step));
+  const Sky sky_at(program);
+  threads::Workers(options.threads).for_each(side, [&](size_t y) {
+    const float row = static_cast<float>(y), size = static_cast<float>(side);
+    std::vector<glm::vec3> middles(side), colors(side);
+    for (size_t x = 0; x < side; ++x) middles[x] = direction(static_cast<float>(x) + 0.5f, row + 0.5f, size);
+    sky_at.see(middles, colors);
+    float* texel = pyramid.level(0) + channels * ((y + 1) * (side + 2) + 1);
+    for (size_t x = 0; x < side; ++x, texel += channels) {
+      glm::vec3 color = colors[x];
+      if (sky.sun && is_at_edge(middles[x])) {
+        constexpr int n = edge_directions_each_way;
+        constexpr float step = 1.0f / n;
+        std::array<glm::vec3, n * n> parts, seen;
+        for (int i = 0; i < n * n; ++i) {
+          const float right = (static_cast<float>(i % n) + 0.5f) * step;
+          const float down = (static_cast<float>(i / n) + 0.5f) * step;
+          parts[static_cast<size_t>(i)] = direction(static_cast<float>(x) + right, row + down, size);
         }
-        for (int i = 0; i < 3; ++i) texel[i] = color[i];
-        texel[3] = 1.0f;
+        sky_at.see(parts, seen);
+        color = glm::vec3(0);
+        for (const glm::vec3& part : seen) color = color + part;
+        color = color * (step * step);
       }
+      color = limited(color);
+      for (int i = 0; i < 3; ++i) texel[i] = color[i];
+      texel[3] = 1.0f;
     }
   });
   return pyramid;

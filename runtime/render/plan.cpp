@@ -295,6 +295,29 @@ bool Planner::update_objects(const PlanKeys& keys) {
   return true;
 }
 
+bool Planner::reads_blurred_maps() const {
+  if (!options_.skip) return true;
+  const auto is_above_0 = [](const driver::EnvironmentReads& reads, const driver::ParameterBlock& block, const ParameterValues& values) {
+    return std::ranges::any_of(reads.roughnesses, [&](size_t field) { return values.most(block.word_of(field)) > 0; });
+  };
+  for (size_t o = 0; o < parameters_.size(); ++o) {
+    const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
+    if (effect.environment.blurred) return true;
+    for (const ParameterValues& values : parameters_[o])
+      if (is_above_0(effect.environment, effect.parameters, values)) return true;
+  }
+  for (size_t p = 0; p < posts_.size(); ++p) {
+    const driver::Post& document = *posts_[p];
+    if (document.environment.blurred) return true;
+    if (document.environment.roughnesses.empty()) continue;
+    const scene::Post& post = scene_->posts[p];
+    Diagnostics unheard;  // plan_posts() reports them
+    const auto values = ParameterValues::resolve(document.parameters, {post.name, post.parameters}, {}, unheard);
+    if (values && is_above_0(document.environment, document.parameters, *values)) return true;
+  }
+  return false;
+}
+
 bool Planner::add_environment() {
   backends::Frame& frame = plan_.frame;
   frame.texels.resize(texels_of_textures_);
@@ -305,8 +328,10 @@ bool Planner::add_environment() {
     const scene::Environment& environment = *scene_->environment;
     if (!environment.file.empty() && !may_read(environment.file, environment.file_where)) return false;
     Clock clock;
+    has_blurred_maps_ = reads_blurred_maps();
     const auto made = environment::make_environment(
-        environment, {options_.compiler.library, options_.cache, {.threads = workers_.count()}}, *diagnostics_);
+        environment,
+        {options_.compiler.library, options_.cache, {.threads = workers_.count()}, !has_blurred_maps_}, *diagnostics_);
     if (!made) return false;
     plan_.stats.environment_cached = made->cached;
     environment_ = append_levels(made->maps, frame);
@@ -357,7 +382,7 @@ bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
   if (!check_samples(scene, width, height, diagnostics)) return false;
   const bool is_placed = keys.objects == keys_.objects && keys.meshes == keys_.meshes;
   if (!is_placed && !update_objects(keys)) return false;
-  const bool is_lit = keys.environment == keys_.environment;
+  const bool is_lit = keys.environment == keys_.environment && (has_blurred_maps_ || !reads_blurred_maps());
   if (!is_lit && !add_environment()) return false;
   plan_.stats.environment = scene.environment.has_value();
   plan_.stats.environment_kept = is_lit && plan_.stats.environment;

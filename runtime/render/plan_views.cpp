@@ -280,6 +280,8 @@ bool Planner::make_views(int width, int height) {
   shadow_texels_ = most_shadow_texels_ = 0;
   plan_.samples = scene_->samples;
   plan_.stats.skips = unread_images(plan_.effects);
+  if (scene_->environment && !has_blurred_maps_)
+    plan_.stats.skips.push_back({"blurred maps of the environment", "nothing reads them"});
 
   const lanes::FpGuard guard;
   frame.frame = frame_words(*scene_, environment_);

@@ -42,6 +42,8 @@ class Planner {
   bool compile_posts();
   /// What the programs are compiled for.
   driver::CompileOptions compile_options() const;
+  /// Whether any program may read other maps of the environment than the sharp one (driver::EnvironmentReads).
+  bool reads_blurred_maps() const;
   /// Adds the maps of the environment behind the textures. False after an error.
   bool add_environment();
   support::Source read_document(const std::string& path, const support::Span& where);
@@ -186,6 +188,7 @@ class Planner {
   MeshStore meshes_;
   size_t texels_of_textures_ = 0, words_of_textures_ = 0;  ///< in Frame::texels and Frame::textures; maps of the environment follow
   int environment_ = -1;                                   ///< the first record of its maps
+  bool has_blurred_maps_ = false;                          ///< all of them are made
   uint32_t most_vertices_ = 0;                             ///< of a mesh
   std::vector<size_t> mesh_of_object_;
   std::vector<PartValues> parameters_;         ///< of each object

@@ -215,7 +215,7 @@ class FrameRenderer {
             .view = std::span(frame_.picture().words).first(lower::view_word::camera_words),
             .record = step.record,
             .images = images_of_step_[s],
-            .textures = step.post->reads_environment ? &frame_ : nullptr};
+            .textures = step.post->environment.any ? &frame_ : nullptr};
   }
 
   bool run_posts(const StepGroup& group) {
