@@ -101,8 +101,8 @@ Code::Code(const ir::Module& module, uint32_t function, size_t results, int lane
     Step step{nullptr, place(made.to), place(made.a), place(made.b), place(made.c), 0};
     bool in_lanes = made.to.pool != Pool::scalars;
     switch (made.shape.kind) {
-      case Kind::primitive: step.more = static_cast<uint32_t>(made.shape.op); break;
       case Kind::load: step.more = made.buffer; break;
+      case Kind::primitive:
       case Kind::fused:
       case Kind::copy: break;
       case Kind::jump:
@@ -139,10 +139,18 @@ void Code::run(const BufferView* buffers, std::span<const Argument> arguments, i
       if (parameters_[k].pool != Pool::words) continue;
       const Argument& argument = arguments[k];
       std::byte* const to = context.words + parameters_[k].index * word_bytes_;
-      // A tail is filled up with the last call.
-      for (int i = 0; i < filled; ++i) {
-        const uint32_t word = argument.of(begin + std::min(i, wanted - 1));
-        std::memcpy(to + sizeof word * static_cast<size_t>(i), &word, sizeof word);
+      const auto fill = [&](int first, int end) {
+        for (int i = first; i < end; ++i) {
+          // A tail is filled up with the last call.
+          const uint32_t word = argument.of(begin + std::min(i, wanted - 1));
+          std::memcpy(to + sizeof word * static_cast<size_t>(i), &word, sizeof word);
+        }
+      };
+      if (argument.words != nullptr && argument.stride == 1) {
+        std::memcpy(to, static_cast<const uint32_t*>(argument.words) + begin, sizeof(uint32_t) * static_cast<size_t>(wanted));
+        fill(wanted, filled);
+      } else {
+        fill(0, filled);
       }
     }
     context.begin = 0;

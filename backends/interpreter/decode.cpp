@@ -94,6 +94,8 @@ class Decoder {
     step.c = c;
   }
   Place operation(Opcode op, Scalar type, Place a, Place b = {}, Place c = {}) {
+    // In lanes these change nothing.
+    if (a.pool == Pool::words && (op == Opcode::fbits_nonnan || op == Opcode::bitsf_normal)) return a;
     const auto varies = [](Place place) { return place.pool == Pool::words || place.pool == Pool::masks; };
     const Place to = varies(a) || varies(b) || varies(c) ? lanes(type) : scalar();
     operate(op, type, to, a, b, c);

@@ -106,7 +106,7 @@ class Simplifier {
   }
 
   static bool is_plain(const DraftStep& step) {
-    return step.shape.kind == Kind::primitive && step.to.pool == Pool::words && may_fuse(step.shape.op);
+    return step.shape.kind == Kind::primitive && step.to.pool == Pool::words;
   }
 
   void fuse(uint32_t outer) {
@@ -115,13 +115,13 @@ class Simplifier {
       const Place operand = first ? step.a : step.b, other = first ? step.b : step.a;
       if (operand.pool != Pool::words) continue;
       DraftStep* const inner = definition_for(operand, outer, farthest_fusion);
-      if (inner == nullptr || !is_plain(*inner)) continue;
+      if (inner == nullptr || !is_plain(*inner) || !may_fuse(inner->shape.op, step.shape.op, first)) continue;
       bool unchanged = true;  // between the two steps
       for_each_operand(*inner, [&](Place place) { unchanged &= definitions_[place] <= 1; });
       if (!unchanged) continue;
       step.shape.kind = Kind::fused;
       step.shape.inner = inner->shape.op;
-      step.shape.inner_first = first;
+      step.shape.inner_first = first || commutes(step.shape.op);
       step.shape.uniform = (inner->shape.uniform & 3) | (other.pool == Pool::scalars ? 4u : 0u);
       step.a = inner->a;
       step.b = inner->b;

@@ -9,10 +9,22 @@
 namespace isoshade::interpreter {
 namespace {
 
+template <ir::Opcode op>
 const Step* primitive(const Step& s, Context& context) {
   uint32_t* const scalars = context.scalars;
-  scalars[s.to] = ir::evaluate(static_cast<ir::Opcode>(s.more), scalars[s.a], scalars[s.b], scalars[s.c]);
+  scalars[s.to] = ir::evaluate(op, scalars[s.a], scalars[s.b], scalars[s.c]);
   return &s + 1;
+}
+
+Run* find_primitive(ir::Opcode op) {
+  switch (op) {
+#define OP(name, ...) \
+  case ir::Opcode::name: return primitive<ir::Opcode::name>;
+#define FORM(name, ...) case ir::Opcode::name:
+#include "compiler/ir/ops.def"
+    break;
+  }
+  return nullptr;
 }
 
 template <class T>
@@ -44,7 +56,7 @@ const Step* jump_unless_less(const Step& s, Context& context) {
 
 Run* find_scalar(const Shape& shape) {
   switch (shape.kind) {
-    case Kind::primitive: return primitive;
+    case Kind::primitive: return find_primitive(shape.op);
     case Kind::load: return shape.type == ir::Scalar::floating ? load<float> : load<int32_t>;
     case Kind::copy: return copy;
     case Kind::jump: return jump;

@@ -46,7 +46,7 @@ using Run = const Step*(const Step& step, Context& context);
 struct Step {
   Run* run;
   uint32_t to, a, b, c;
-  uint32_t more;  ///< load: the buffer; scalar operations: the opcode
+  uint32_t more;  ///< load: the buffer
 };
 
 enum class Kind : uint8_t {
@@ -72,9 +72,27 @@ struct Shape {
   unsigned uniform = 0;      ///< bits 0 to 2: operands a, b and c are scalars
 };
 
-/// Whether steps may be fused: the first one to be an operand of the second one.
-constexpr bool may_fuse(ir::Opcode op) {
-  return op == ir::Opcode::fadd || op == ir::Opcode::fsub || op == ir::Opcode::fmul;
+/// Integer operations that may be fused: those of which rotations, hashes and the signs of gradients consist. The inner one
+/// is the first operand of the outer one, or any if that commutes.
+struct IntegerPair {
+  ir::Opcode inner, outer;
+};
+inline constexpr IntegerPair integer_pairs[] = {{ir::Opcode::ishl, ir::Opcode::ior},
+                                                {ir::Opcode::ishr, ir::Opcode::ior},
+                                                {ir::Opcode::ixor, ir::Opcode::isub},
+                                                {ir::Opcode::ishl, ir::Opcode::iand}};
+
+constexpr bool commutes(ir::Opcode op) { return op == ir::Opcode::ior || op == ir::Opcode::iand; }
+
+/// Whether steps may be fused: the inner one to be the first or the second operand of the outer one.
+constexpr bool may_fuse(ir::Opcode inner, ir::Opcode outer, bool inner_first) {
+  const auto is_float = [](ir::Opcode op) {
+    return op == ir::Opcode::fadd || op == ir::Opcode::fsub || op == ir::Opcode::fmul;
+  };
+  if (is_float(inner)) return is_float(outer);
+  for (const IntegerPair& pair : integer_pairs)
+    if (inner == pair.inner && outer == pair.outer) return inner_first || commutes(outer);
+  return false;
 }
 
 struct LaneCode {

@@ -3,6 +3,9 @@
 // because the linker must not share code between instruction sets.
 #pragma once
 
+#include <iterator>
+#include <utility>
+
 #include "backends/interpreter/steps.h"
 #include "runtime/lanes/lanes.h"
 
@@ -176,8 +179,20 @@ struct Steps {
     if (shape.op == fadd) return find_fused_pair<inner, fadd>(shape);
     return shape.op == fsub ? find_fused_pair<inner, fsub>(shape) : find_fused_pair<inner, fmul>(shape);
   }
+  template <size_t... i>
+  static Run* find_integer_pair(const Shape& shape, std::index_sequence<i...>) {
+    Run* found = nullptr;
+    const auto look_at = [&]<size_t n>(std::integral_constant<size_t, n>) {
+      constexpr IntegerPair pair = integer_pairs[n];
+      if (shape.inner == pair.inner && shape.op == pair.outer)
+        found = find_ternary<Fused<pair.inner, pair.outer, true>, I, I, I>(shape.uniform);
+    };
+    (look_at(std::integral_constant<size_t, i>()), ...);
+    return found;
+  }
   static Run* find_fused(const Shape& shape) {
     using enum ir::Opcode;
+    if (Run* const run = find_integer_pair(shape, std::make_index_sequence<std::size(integer_pairs)>())) return run;
     if (shape.inner == fadd) return find_fused_after<fadd>(shape);
     return shape.inner == fsub ? find_fused_after<fsub>(shape) : find_fused_after<fmul>(shape);
   }
