@@ -54,6 +54,7 @@ class CpuBackend final : public backends::Backend {
 
   bool reserve(size_t floats, Diagnostics& diagnostics) override;
   void write(size_t first, std::span<const float> floats) override {
+    forget_blank(first, floats.size());
     std::ranges::copy(floats, layers_.begin() + static_cast<ptrdiff_t>(first));
   }
   std::span<const float> read(const Slot& slot) override { return std::span(layers_).subspan(slot.first, slot.size()); }
@@ -79,8 +80,24 @@ class CpuBackend final : public backends::Backend {
   };
   bool bind(std::span<const ScreenPass> passes, Screens& screens, Diagnostics& diagnostics);
 
+  /// The tiles of an image of depth alone that hold nothing. Where the next frame draws nothing either, as around what a
+  /// shadow map shows, they are not written again: 64 MiB for a map of 4096 x 4096.
+  struct BlankTiles {
+    Slot slot;
+    std::vector<uint8_t> tiles;
+  };
+  /// What is known of the image that is about to be drawn; null if it is none of depth alone, drawn as a whole.
+  uint8_t* find_blank(const Drawing& drawing, const raster::TileGrid& grid);
+  /// Something else is about to be written there.
+  void forget_blank(size_t first, size_t floats) {
+    std::erase_if(blank_, [&](const BlankTiles& known) {
+      return known.slot.first < first + floats && first < known.slot.first + known.slot.size();
+    });
+  }
+
   KernelStore kernels_;
   raster::Bins bins_;  ///< of the window that is drawn
+  std::vector<BlankTiles> blank_;
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
   support::Array<float> layers_;
   std::atomic<bool> is_finite_ = true;  ///< what has been made since reserve()
@@ -93,6 +110,7 @@ bool CpuBackend::reserve(size_t floats, Diagnostics& diagnostics) {
     backends::report_too_large(FrameBuffer::layers, floats * sizeof(float), limit, nullptr, diagnostics);
     return false;
   }
+  if (floats != layers_.size()) blank_.clear();
   if (floats > layers_.capacity()) {
     support::release(layers_);  // or growing would copy what is lost
     layers_.resize(floats);
@@ -182,6 +200,20 @@ bool CpuBackend::bind(std::span<const ScreenPass> passes, Screens& screens, Diag
   return kernels.has_value();
 }
 
+uint8_t* CpuBackend::find_blank(const Drawing& drawing, const raster::TileGrid& grid) {
+  const Slot& depth = drawing.depth;
+  const backends::Window& window = drawing.window;
+  const bool is_whole = window.x == 0 && window.y == 0 && window.width == depth.width && window.height == depth.height;
+  const auto known = std::ranges::find_if(blank_, [&](const BlankTiles& blank) {
+    return blank.slot.first == depth.first && blank.slot.width == depth.width && blank.slot.height == depth.height;
+  });
+  if (!drawing.color.exists() && is_whole && known != blank_.end()) return known->tiles.data();
+  forget_blank(depth.first, depth.size());
+  if (drawing.color.exists()) forget_blank(drawing.color.first, drawing.color.size());
+  if (drawing.color.exists() || !is_whole) return nullptr;
+  return blank_.emplace_back(BlankTiles{depth, std::vector<uint8_t>(static_cast<size_t>(grid.count()))}).tiles.data();
+}
+
 bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
   const auto& [frame, view, images] = drawing.pass;
   const std::span<const int32_t> triangles = drawing.triangles;
@@ -212,6 +244,7 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
               .color = drawing.color.exists() ? layers_.data() + drawing.color.first : nullptr,
               .depth = layers_.data() + drawing.depth.first,
               .width = drawing.depth.width,
+              .blank = find_blank(drawing, grid),
               .bins = bins_};
   backends::resolve_color(view.background, drawing.side, job.background);
   bins_.sort(triangles, grid, workers());
@@ -237,6 +270,7 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
 bool CpuBackend::post(std::span<const ScreenPass> passes, const Slot& made, Diagnostics& diagnostics) {
   Screens screens;
   if (!bind(passes, screens, diagnostics)) return false;
+  forget_blank(made.first, made.size());
   const auto width = static_cast<size_t>(made.width), height = static_cast<size_t>(made.height);
   // A task takes consecutive rows, because these read almost the same pixels.
   const size_t rows = std::max<size_t>(1, row_chunk / width);

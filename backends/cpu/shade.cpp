@@ -60,15 +60,20 @@ bool TilePainter::paint(const DrawJob& job, int tile) {
     return true;
   }
   if (runs_.empty())
-    fill_background(job);
+    leave_blank(job, tile);
   else
     paint_opaque(job);
+  if (job.blank != nullptr) job.blank[tile] = runs_.empty() && is_opaque;
   if (!is_opaque) blend(job, tile);
   if (!job.view.target.has_color) return true;
   bool finite = is_finite();
   for (const TilePost& post : job.posts) finite = process(post, job) && finite;
   if (job.side > 1) resolve(job);
   return finite;
+}
+
+void TilePainter::leave_blank(const DrawJob& job, int tile) const {
+  if (job.blank == nullptr || job.blank[tile] == 0) fill_background(job);
 }
 
 void TilePainter::fill_background(const DrawJob& job) const {

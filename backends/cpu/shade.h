@@ -2,6 +2,7 @@
 // One tile of a view: which triangle each pixel shows, then its color.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,6 +38,8 @@ struct DrawJob {
   float* color;
   float* depth;
   int width;
+  /// Of each tile: whether the image holds nothing there already. Null if that is not known.
+  uint8_t* blank;
   const raster::Bins& bins;
 };
 
@@ -76,6 +79,8 @@ class TilePainter {
   void collect(const DrawJob& job, int tile);
   Canvas canvas_of(const DrawJob& job, int tile);
   void paint_opaque(const DrawJob& job);
+  /// Writes the image of an empty tile, unless it is there already.
+  void leave_blank(const DrawJob& job, int tile) const;
   void fill_background(const DrawJob& job) const;
   /// Writes the image of an empty tile whose samples nothing processes.
   void fill_pixels(const DrawJob& job) const;

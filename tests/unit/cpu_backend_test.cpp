@@ -81,6 +81,24 @@ TEST_P(CpuLanes, TransformsEveryVertex) {
   }
 }
 
+TEST(CpuBackend, EmptyTilesOfADepthImageAreRightWhateverWasThereBefore) {
+  const auto cpu = backend("4", 2);
+  const auto expect_right = [&](const Scene& test, const char* what) {
+    EXPECT_TRUE(same_bits(render(*cpu, test).depth, render(*backend("4", 2), test).depth)) << what;
+  };
+  Scene few(640, 448, 2), many(640, 448, 12), colored(256, 224, 12);
+  few.view().target.has_color = many.view().target.has_color = false;
+  expect_right(few, "at first");
+  expect_right(few, "again");
+  expect_right(many, "more");
+  expect_right(few, "less");
+  cpu->write(0, std::vector<float>(size_t{640} * 448, 0.5f));
+  expect_right(few, "after a write");
+  // Its depth and its color take as many floats.
+  expect_right(colored, "with color");
+  expect_right(few, "after one with color");
+}
+
 TEST_P(CpuLanes, ReportsProgramBuildTime) {
   const Scene test(64, 64, 5);
   const auto cpu = backend(GetParam(), 2);
