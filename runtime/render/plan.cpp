@@ -382,7 +382,8 @@ bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
   if (!check_samples(scene, width, height, diagnostics)) return false;
   const bool is_placed = keys.objects == keys_.objects && keys.meshes == keys_.meshes;
   if (!is_placed && !update_objects(keys)) return false;
-  const bool is_lit = keys.environment == keys_.environment && (has_blurred_maps_ || !reads_blurred_maps());
+  const bool is_lit = keys.environment == keys_.environment &&
+                      (!scene.environment || has_blurred_maps_ == reads_blurred_maps());
   if (!is_lit && !add_environment()) return false;
   plan_.stats.environment = scene.environment.has_value();
   plan_.stats.environment_kept = is_lit && plan_.stats.environment;

@@ -101,6 +101,38 @@ TEST_F(EnvironmentScenes, WhiteMetalsAndDielectricsAreWhiteUnderAWhiteSky) {
   EXPECT_GT(seen, 1000);
 }
 
+TEST_F(EnvironmentScenes, BlurredMapsAreMadeOnlyWhereSomethingReadsThem) {
+  folder_.write("plain.json", R"({"isoshade": 1, "effect": "plain",
+    "parameters": {"tint": {"type": "color3", "value": [0.2, 0.4, 0.6]}}, "nodes": {},
+    "passes": [{"name": "base", "color": "tint"}]})");
+  folder_.write("polished.json", R"({"isoshade": 1, "effect": "polished", "parameters": {
+      "roughness": {"type": "float", "value": 0, "min": 0, "max": 1}},
+    "nodes": {"n": {"type": "normal"}, "color": {"type": "environment", "direction": "n", "roughness": "roughness"}},
+    "passes": [{"name": "base", "color": "color"}]})");
+  folder_.write("backdrop.json", R"({"isoshade": 1, "post": "backdrop", "parameters": {
+      "roughness": {"type": "float", "value": 0, "min": 0, "max": 1}},
+    "nodes": {"c": {"type": "scenecolor"}, "ray": {"type": "viewray"},
+      "e": {"type": "environment", "direction": "ray", "roughness": "roughness"},
+      "color": {"type": "add", "in1": "e", "in2": "c.rgb"}}, "outputs": {"color": "color"}})");
+  struct Case {
+    const char *effect, *object, *post;
+    bool reads_blurred;
+  };
+  const char* const varied = R"("repeat": [{"count": 2, "step": [1, 0, 0], "parameters": {"roughness": {"values": [0, 0.3]}}}])";
+  for (const Case& c : {Case{"plain", "", "", false}, Case{"plain", "", R"(, "parameters": {"roughness": 0.25})", true},
+                        Case{"polished", "", "", false}, Case{"polished", varied, "", true},
+                        Case{"polished", R"("parameters": {"roughness": 0.25})", "", true}, Case{"shown", "", "", true}}) {
+    const std::string object = *c.object != 0 ? std::string(", ") + c.object : "";
+    const std::string file = folder_.write("scene.json", R"({"isoshade": 1, "scene": "s",
+      "camera": {"position": [0, 1, 4], "target": [0, 0, 0]},)" + std::string(from_file) + R"(
+      "objects": {"ball": {"mesh": "sphere", "effect": ")" + c.effect + R"(.json")" + object + R"(}},
+      "posts": [{"name": "backdrop", "effect": "backdrop.json")" + c.post + "}]}");
+    const render::Plan skipped = plan(file, 45, 31), whole = plan(file, 45, 31, false);
+    EXPECT_EQ(skipped.frame.texels.size() == whole.frame.texels.size(), c.reads_blurred) << c.effect << object << c.post;
+    expect_identical(draw(whole, *cpu_backend()), draw(skipped, *cpu_backend()), c.effect + object + c.post);
+  }
+}
+
 TEST_F(EnvironmentScenes, ASkyIsIdenticalOnEveryBackend) {
   draw_everywhere(plan_of(R"("environment": {"sky": {"sun": {"direction": [0, -1, -1], "intensity": 3}}},)", 1), "sky");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <span>
 
 #include "backends/cache.h"
 #include "compiler/functions/environment.h"
@@ -219,6 +220,28 @@ TEST_F(EnvironmentCache, DistinguishesFilesByContentRotationAndIntensity) {
   EXPECT_FALSE(make()->cached);
   environment_.file = write_image("b.exr", image_of(16, 8, [](int, int, int) { return 0.5f; }));
   EXPECT_TRUE(make()->cached);
+}
+
+TEST_F(EnvironmentCache, KeepsTheSharpMapAloneWhereNothingReadsTheOthers) {
+  const auto make_sharp = [&] { return make_environment(environment_, {&library_, folder_.path(), {}, true}, diagnostics_); };
+  environment_.sky.sun = scene::Sun{};
+  environment_.sky.haze = 0.02f;
+  for (const bool from_file : {false, true}) {
+    if (from_file) environment_.file = write_image("a.exr", varied_image());
+    const auto all = make();
+    const auto sharp = make_sharp(), again = make_sharp();
+    ASSERT_TRUE(all && sharp && again) << diagnostics_.text();
+    EXPECT_FALSE(sharp->cached);
+    EXPECT_EQ(again->cached, from_file);
+    EXPECT_TRUE(same_bits(sharp->maps, again->maps));
+    ASSERT_EQ(sharp->maps.size(), all->maps.size());
+    EXPECT_TRUE(same_bits({sharp->maps[0]}, {all->maps[0]}));
+    for (const scene::TextureLevel& map : std::span(sharp->maps).subspan(1)) {
+      EXPECT_EQ(map.width, 1 + 2 * functions::environment_border);
+      EXPECT_EQ(map.height, map.width);
+      EXPECT_EQ(map.texels, std::vector<float>(static_cast<size_t>(4 * map.width * map.height)));
+    }
+  }
 }
 
 TEST_F(EnvironmentCache, IsNotNeeded) {
