@@ -158,6 +158,14 @@ void name_words(ir::Module& module, const ParameterBlock& block, size_t first) {
 
 Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                        const CompileOptions& options) {
+  if (typed.position_of(pass) == nullptr && !options.dump) {
+    Program program = plain_vertex_program();
+    program.name = typed.graph.name;
+    program.document = typed.document;
+    program.source = typed.graph.source;
+    set_number(program);
+    return program;
+  }
   Program program{lower::Stage::vertex, typed.graph.name, typed.document, lower::frame_module(), 0, {}, {}};
   if (typed.position_of(pass) == nullptr) {
     finish(program, lower::add_vertex_kernel(program.module), options, typed.graph.source);

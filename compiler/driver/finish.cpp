@@ -12,10 +12,14 @@
 
 namespace isoshade::driver {
 
-void finish(Program& program, uint32_t kernel, const CompileOptions& options,
-            support::Source source) {
+void set_number(Program& program) {
   static std::atomic<uint64_t> last_number = 0;
   program.number = ++last_number;
+}
+
+void finish(Program& program, uint32_t kernel, const CompileOptions& options,
+            support::Source source) {
+  set_number(program);
   program.entry = kernel;
   program.source = std::move(source);
   if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);
@@ -39,6 +43,15 @@ Program visibility_program(Stage stage, const Add& add) {
 }
 
 }  // namespace
+
+const Program& plain_vertex_program() {
+  static const Program program = [] {
+    Program made{lower::Stage::vertex, "", "", lower::frame_module(), 0, {}, {}};
+    finish(made, lower::add_vertex_kernel(made.module), {});
+    return made;
+  }();
+  return program;
+}
 
 const Program& depth_program() {
   static const Program program = visibility_program(Stage::depth, lower::add_depth_kernel);

@@ -10,4 +10,10 @@ namespace isoshade::driver {
 /// must be the same on every backend.
 void finish(Program& program, uint32_t kernel, const CompileOptions& options, support::Source source = nullptr);
 
+/// Gives a copy of a program a number of its own.
+void set_number(Program& program);
+
+/// The vertex program of passes that leave vertices where the mesh has them; without a name.
+const Program& plain_vertex_program();
+
 }  // namespace isoshade::driver

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/program.h"
 
+#include <optional>
+
 #include "compiler/driver/shader.h"
 #include "compiler/ir/expansion.h"
 #include "compiler/passes/passes.h"
@@ -14,32 +16,38 @@ namespace isoshade::driver {
 
 namespace {
 
-/// The program without ops that the language lacks, and with functions that its compilers can take.
-struct Prepared {
-  ir::Module module;
-  uint32_t entry;
-};
+/// A program without ops that the language lacks, and with functions that its compilers can take. Refers to the program,
+/// whose module it copies only where it must change it.
+class Prepared {
+ public:
+  Prepared(const Program& program, const emit::Target& target, Division division)
+      : program_(program), entries_{program.entry} {
+    if (division == Division::exact && !target.rounds_division)
+      passes::run(passes::division_lowering(), changed(), entries_, program.tier);
+    if (!emit::has_op(target.id, ir::Opcode::imulhi))
+      passes::run(passes::multiplication_lowering(), changed(), entries_, program.tier);
+    if (target.keeps_calls && ir::expanded_operations(module(), entry())[entry()] > cpp::large_program)
+      passes::cut_long(changed(), cpp::longest_in_large);
+  }
 
-Prepared prepared(const Program& program, const emit::Target& target, Division division) {
-  Prepared made{program.module, program.entry};
-  passes::Entries entries{program.entry};
-  if (division == Division::exact && !target.rounds_division)
-    passes::run(passes::division_lowering(), made.module, entries, program.tier);
-  if (!emit::has_op(target.id, ir::Opcode::imulhi))
-    passes::run(passes::multiplication_lowering(), made.module, entries, program.tier);
-  made.entry = entries[0];
-  if (target.keeps_calls && ir::expanded_operations(made.module, made.entry)[made.entry] > cpp::large_program)
-    passes::cut_long(made.module, cpp::longest_in_large);
-  return made;
-}
+  const ir::Module& module() const { return changed_ ? *changed_ : program_.module; }
+  uint32_t entry() const { return entries_[0]; }
+
+ private:
+  ir::Module& changed() { return changed_ ? *changed_ : changed_.emplace(program_.module); }
+
+  const Program& program_;
+  passes::Entries entries_;
+  std::optional<ir::Module> changed_;
+};
 
 emit::Heading heading_of(const Program& program) { return {program.document, program.name}; }
 
 }  // namespace
 
 std::string text(const Program& program, const emit::Target& target, Division division) {
-  const Prepared made = prepared(program, target, division);
-  return target.kernel(made.module, made.entry, program.stage, heading_of(program));
+  const Prepared made(program, target, division);
+  return target.kernel(made.module(), made.entry(), program.stage, heading_of(program));
 }
 
 std::string description(const Program& program) {
@@ -52,8 +60,8 @@ std::string glsl(const Program& program, Division division) { return text(progra
 namespace {
 
 std::string glsl_of(const Program& program, Division division, glsl::Variant variant) {
-  const Prepared made = prepared(program, glsl::target(), division);
-  return glsl::stage(made.module, made.entry, program.stage, heading_of(program), variant);
+  const Prepared made(program, glsl::target(), division);
+  return glsl::stage(made.module(), made.entry(), program.stage, heading_of(program), variant);
 }
 
 }  // namespace

@@ -17,8 +17,7 @@ void collect_callees(const Function& function, BlockId block, std::vector<uint32
 // One function on the path from an entry; the path is a vector because call chains may be long.
 struct Visit {
   uint32_t function;
-  std::vector<uint32_t> callees;
-  size_t next = 0;
+  size_t first, next;  ///< of its callees: all that the path has, and the next to be visited
 };
 
 }  // namespace
@@ -27,24 +26,26 @@ std::optional<std::vector<uint32_t>> callees_first(const Module& module, std::sp
   enum class State : uint8_t { unseen, open, done };
   std::vector<State> states(module.functions.size(), State::unseen);
   std::vector<uint32_t> order;
+  order.reserve(module.functions.size());
   std::vector<Visit> path;
+  std::vector<uint32_t> callees;  // of all functions on the path, one after another
   const auto open = [&](uint32_t function) {
     states[function] = State::open;
-    path.push_back({function, {}});
-    if (!module.functions[function].is_declaration())
-      collect_callees(module.functions[function], 0, path.back().callees);
+    path.push_back({function, callees.size(), callees.size()});
+    if (!module.functions[function].is_declaration()) collect_callees(module.functions[function], 0, callees);
   };
   for (uint32_t entry : entries) {
     if (states[entry] == State::unseen) open(entry);
     while (!path.empty()) {
       Visit& visit = path.back();
-      if (visit.next == visit.callees.size()) {
+      if (visit.next == callees.size()) {
         states[visit.function] = State::done;
+        callees.resize(visit.first);
         order.push_back(visit.function);
         path.pop_back();
         continue;
       }
-      const uint32_t callee = visit.callees[visit.next++];
+      const uint32_t callee = callees[visit.next++];
       if (states[callee] == State::open) return std::nullopt;
       if (states[callee] == State::unseen) open(callee);
     }

@@ -16,9 +16,11 @@ constexpr uint64_t beyond_all_limits = uint64_t{1} << 48;
 uint64_t of_block(const Function& function, BlockId block, const std::vector<uint64_t>& of_functions,
                   uint64_t of_division) {
   uint64_t sum = 0;
-  for (const InstructionId id : function.blocks[block].instructions)
-    sum = std::min(beyond_all_limits,
-                   sum + expanded_operations(function, function.instructions[id], of_functions, of_division));
+  for (const InstructionId id : function.blocks[block].instructions) {
+    const Instruction& made = function.instructions[id];
+    if (made.op == Opcode::constant || made.op == Opcode::extract) continue;
+    sum = std::min(beyond_all_limits, sum + expanded_operations(function, made, of_functions, of_division));
+  }
   return sum;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <string>
-#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -19,11 +18,35 @@ using namespace ir;
 /// Whether an instruction costs nothing in emitted text, so that each part may have its own copy.
 bool is_constant(Opcode op) { return op == Opcode::constant || op == Opcode::hidden_zero; }
 
+/// By a number of one function: what it became in another, or none.
+class Copies {
+ public:
+  uint32_t operator[](uint32_t of) const { return of < copies_.size() ? copies_[of] : none; }
+  void set(uint32_t of, uint32_t copy) {
+    if (of >= copies_.size()) copies_.resize(2 * size_t{of} + 1, none);
+    copies_[of] = copy;
+    set_.push_back(of);
+  }
+  /// As if none had been set. Takes as long as was set.
+  void clear() {
+    for (const uint32_t of : set_) copies_[of] = none;
+    set_.clear();
+  }
+
+ private:
+  std::vector<uint32_t> copies_;
+  std::vector<uint32_t> set_;
+};
+
 /// Copies instructions of one function into another, which gets the values that it lacks as parameters.
 class Part {
  public:
-  Part(const Function& from, const std::vector<InstructionId>& made_by, const std::vector<bool>& uniform)
-      : from_(from), made_by_(made_by), uniform_(uniform) {
+  /// `values` and `origins` are used again for each part: they are as large as the function.
+  Part(const Function& from, const std::vector<InstructionId>& made_by, const std::vector<bool>& uniform, Copies& values,
+       Copies& origins)
+      : from_(from), made_by_(made_by), uniform_(uniform), values_(values), origins_(origins) {
+    values_.clear();
+    origins_.clear();
     part_.document = from.document;
     part_.blocks.emplace_back();
   }
@@ -49,15 +72,16 @@ class Part {
   ValueId new_value(ValueId of) {
     part_.values.push_back({from_.type(of), origin(from_.values[of].names)});
     const auto made = static_cast<ValueId>(part_.values.size() - 1);
-    values_[of] = made;
+    values_.set(of, made);
     return made;
   }
 
   uint32_t origin(uint32_t of) {
     if (of == 0) return 0;
-    const auto [entry, is_new] = origins_.try_emplace(of, static_cast<uint32_t>(part_.origins.size()));
-    if (is_new) part_.origins.push_back(from_.origins[of]);
-    return entry->second;
+    if (origins_[of] != none) return origins_[of];
+    origins_.set(of, static_cast<uint32_t>(part_.origins.size()));
+    part_.origins.push_back(from_.origins[of]);
+    return origins_[of];
   }
 
   std::string name_of(ValueId value) {
@@ -69,7 +93,7 @@ class Part {
   }
 
   ValueId read(ValueId value) {
-    if (const auto found = values_.find(value); found != values_.end()) return found->second;
+    if (values_[value] != none) return values_[value];
     if (made_by_[value] != none && is_constant(from_.instructions[made_by_[value]].op)) {
       constants_.push_back(copy(made_by_[value]));
       return values_[value];
@@ -96,12 +120,12 @@ class Part {
 
   InstructionId copy(InstructionId id) {
     Instruction made = from_.instructions[id];
-    std::vector<ValueId> operands;
-    for (ValueId operand : from_.operands_of(made)) operands.push_back(read(operand));
+    // Reading an operand may copy a constant, which has none.
+    const size_t first_operand = part_.operands.size();
+    for (ValueId operand : from_.operands_of(made)) part_.operands.push_back(read(operand));
+    made.first_operand = static_cast<uint32_t>(first_operand);
     for (BlockId& block : made.blocks)
       if (block != none) block = copy_block(block);
-    made.first_operand = static_cast<uint32_t>(part_.operands.size());
-    part_.operands.insert(part_.operands.end(), operands.begin(), operands.end());
     const ValueId first = made.first_result;
     made.first_result = static_cast<ValueId>(part_.values.size());
     for (uint32_t i = 0; i < made.result_count; ++i) new_value(first + i);
@@ -114,8 +138,8 @@ class Part {
   const std::vector<InstructionId>& made_by_;
   const std::vector<bool>& uniform_;
   Function part_;
-  std::unordered_map<ValueId, ValueId> values_;
-  std::unordered_map<uint32_t, uint32_t> origins_;
+  Copies& values_;
+  Copies& origins_;
   std::unordered_set<std::string> names_;
   std::vector<InstructionId> constants_;  ///< come first: blocks that are copied first may be read by all
   std::vector<ValueId> arguments_;
@@ -281,7 +305,7 @@ class Cutter {
 
   /// Makes a part of a run and appends a call of it to the list.
   void move(const Run& run, const std::vector<bool>& leaves, std::vector<InstructionId>& list) {
-    Part part(f(), made_by_, uniform_);
+    Part part(f(), made_by_, uniform_, copied_values_, copied_origins_);
     std::vector<ValueId> results;
     for (const InstructionId id : run.instructions) {
       part.add(id);
@@ -323,6 +347,7 @@ class Cutter {
   std::vector<bool> uniform_;               ///< by value
   std::vector<InstructionId> made_by_;      ///< by value; none: a parameter
   std::vector<ValueId> renamed_;            ///< by value that was there before
+  Copies copied_values_, copied_origins_;   ///< of the part that is made
   int parts_ = 0;
 };
 

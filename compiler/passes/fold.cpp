@@ -287,6 +287,10 @@ class Folder {
   CallEvaluator& calls_;
 };
 
+bool has_calls(const Function& function) {
+  return std::ranges::any_of(function.instructions, [](const Instruction& made) { return made.op == Opcode::call; });
+}
+
 }  // namespace
 
 void fold(ir::Module& module, std::optional<functions::Tier> tier, size_t first) {
@@ -298,7 +302,7 @@ void fold(ir::Module& module, std::optional<functions::Tier> tier, size_t first)
   for (size_t i = first; i < module.functions.size(); ++i) {
     Function& function = module.functions[i];
     if (function.is_declaration()) continue;
-    if (!tier) {
+    if (!tier || !has_calls(function)) {
       Folder(function, calls).run();
       continue;
     }

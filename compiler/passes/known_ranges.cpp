@@ -113,10 +113,11 @@ std::vector<KnownRanges> RangeWalker::walk(uint32_t function, const std::vector<
 
 void RangeWalker::block(RangeFrame& frame, ir::BlockId id, uint32_t function) {
   const bool counts = !frame.function->document.empty();
+  const std::function<void(ir::BlockId)> walk_inner = [&](ir::BlockId inner) { block(frame, inner, function); };
   for (const ir::InstructionId i : frame.function->blocks[id].instructions) {
     if (--budget_ <= 0) return;
     const ir::Instruction& made = frame.function->instructions[i];
-    instruction(frame, made, [&](ir::BlockId inner) { block(frame, inner, function); });
+    instruction(frame, made, walk_inner);
     if (counts && decides(frame, made)) met_decisions_[function] = true;
   }
 }

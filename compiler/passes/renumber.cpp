@@ -97,13 +97,17 @@ class Renumberer {
     reached_.assign(f.instructions.size(), false);
     new_origins_.assign(f.origins.size(), none);
     origin_heads_.assign(std::bit_ceil(f.origins.size()), none);
-    next_origins_.assign(1, none);
+    chain_.assign(1, {});
     if (order_.size() < f.blocks.size()) order_.resize(f.blocks.size());
     for (std::vector<InstructionId>& block : order_) block.clear();
     seen_in_.assign(f.values.size(), none);
     values_.assign(f.values.size(), none);
     arrange(0, none);
-    out_ = {};
+    out_.values.clear();
+    out_.instructions.clear();
+    out_.operands.clear();
+    out_.origins.resize(1);
+    out_.blocks.clear();
     out_.values.reserve(f.values.size());
     out_.instructions.reserve(f.instructions.size());
     out_.operands.reserve(f.operands.size());
@@ -113,11 +117,11 @@ class Renumberer {
     for (ValueId parameter : f.blocks[0].parameters)
       out_.blocks[0].parameters.push_back(add_value(parameter));
     emit(0, 0, none);
-    f.values = std::move(out_.values);
-    f.instructions = std::move(out_.instructions);
-    f.operands = std::move(out_.operands);
-    f.origins = std::move(out_.origins);
-    f.blocks = std::move(out_.blocks);
+    f.values.swap(out_.values);
+    f.instructions.swap(out_.instructions);
+    f.operands.swap(out_.operands);
+    f.origins.swap(out_.origins);
+    f.blocks.swap(out_.blocks);
   }
 
  private:
@@ -201,12 +205,12 @@ class Renumberer {
     if (old == 0) return 0;
     if (new_origins_[old] != none) return new_origins_[old];
     Origin& from = f_->origins[old];
-    const size_t hash = std::hash<std::string_view>{}(from.node) + from.line;
+    const auto hash = static_cast<uint32_t>(std::hash<std::string_view>{}(from.node) + from.line);
     uint32_t& head = origin_heads_[hash & (origin_heads_.size() - 1)];
-    for (uint32_t known = head; known != none; known = next_origins_[known])
-      if (out_.origins[known] == from) return new_origins_[old] = known;
+    for (uint32_t known = head; known != none; known = chain_[known].next)
+      if (chain_[known].hash == hash && out_.origins[known] == from) return new_origins_[old] = known;
     new_origins_[old] = static_cast<uint32_t>(out_.origins.size());
-    next_origins_.push_back(std::exchange(head, new_origins_[old]));
+    chain_.push_back({std::exchange(head, new_origins_[old]), hash});
     out_.origins.push_back(std::move(from));
     return new_origins_[old];
   }
@@ -221,17 +225,27 @@ class Renumberer {
       Instruction& copy = out_.instructions.emplace_back(made);
       copy.origin = origin(made.origin);
       copy.first_operand = static_cast<uint32_t>(out_.operands.size());
-      for_live(made.op == Opcode::loop ? id : none, f_->operands_of(made), 1,
-               [&](ValueId v) { out_.operands.push_back(values_[v]); });
-      copy.operand_count = static_cast<uint32_t>(out_.operands.size()) - copy.first_operand;
       copy.first_result = static_cast<ValueId>(out_.values.size());
-      for (uint32_t k = 0; k < made.result_count; ++k)
-        if (made.blocks[0] == none || live_.keeps(made, k)) rename(add_value(made.first_result + k));
-      copy.result_count = static_cast<uint32_t>(out_.values.size()) - copy.first_result;
-      if (made.blocks[0] != none) emit_blocks(id, copied);
+      if (made.blocks[0] == none) {
+        for (const ValueId operand : f_->operands_of(made)) out_.operands.push_back(values_[operand]);
+        for (uint32_t k = 0; k < made.result_count; ++k) rename(add_value(made.first_result + k));
+      } else {
+        emit_parts(copy, made, id, copied);
+      }
     }
     for_live(owner, f_->blocks[from].yields, 0,
              [&](ValueId v) { out_.blocks[to].yields.push_back(values_[v]); });
+  }
+
+  /// What remains of a branch or loop.
+  void emit_parts(Instruction& copy, const Instruction& made, InstructionId id, InstructionId copied) {
+    for_live(made.op == Opcode::loop ? id : none, f_->operands_of(made), 1,
+             [&](ValueId v) { out_.operands.push_back(values_[v]); });
+    copy.operand_count = static_cast<uint32_t>(out_.operands.size()) - copy.first_operand;
+    for (uint32_t k = 0; k < made.result_count; ++k)
+      if (live_.keeps(made, k)) rename(add_value(made.first_result + k));
+    copy.result_count = static_cast<uint32_t>(out_.values.size()) - copy.first_result;
+    emit_blocks(id, copied);
   }
 
   void emit_blocks(InstructionId id, InstructionId copied) {
@@ -257,8 +271,12 @@ class Renumberer {
   std::vector<std::vector<InstructionId>> order_;  ///< by block
   std::vector<BlockId> seen_in_;                   ///< by value: the last block found to use it from outside
   std::vector<ValueId> values_;                    ///< by old value: the new one
-  std::vector<uint32_t> origin_heads_;  ///< by hash: the newest new origin, then along next_origins_
-  std::vector<uint32_t> next_origins_;  ///< by new origin
+  /// The new origin before this one that has the same place in origin_heads_.
+  struct Link {
+    uint32_t next = none, hash = 0;
+  };
+  std::vector<uint32_t> origin_heads_;  ///< by hash: the newest new origin, then along chain_
+  std::vector<Link> chain_;             ///< by new origin
   Function out_;
 };
 
