@@ -259,8 +259,7 @@ void NodeInference::check_settled() {
 /// Whether `name` is a parameter or an input of type filename.
 bool is_file_parameter(const graph::Graph& graph, const std::string& name) {
   const auto found = graph.names.find(name);
-  return found != graph.names.end() && found->second.is_input &&
-         graph.inputs[found->second.index].type == Type::filename;
+  return found && found->is_input && graph.inputs[found->index].type == Type::filename;
 }
 
 void NodeInference::place_path(size_t i) {

@@ -26,10 +26,9 @@ bool resolve_link(Work& work, const Link& link, Operand& operand) {
     operand.index = link.node;
     return true;
   }
-  const auto found = graph.names.find(link.name);
-  if (found != graph.names.end()) {
-    operand.from = found->second.is_input ? Operand::From::input : Operand::From::node;
-    operand.index = found->second.index;
+  if (const auto found = graph.names.find(link.name)) {
+    operand.from = found->is_input ? Operand::From::input : Operand::From::node;
+    operand.index = found->index;
     return true;
   }
   support::Diagnostic& report = work.report(
@@ -40,7 +39,7 @@ bool resolve_link(Work& work, const Link& link, Operand& operand) {
   for (const graph::Node& node : graph.nodes) names.push_back(node.id);
   const std::string_view near = support::nearest(link.name, names);
   if (near.empty()) return false;
-  const graph::Graph::Name name = graph.names.at(std::string(near));
+  const graph::Graph::Name name = graph.names.at(near);
   const graph::TextRange place =
       name.is_input ? graph.inputs[name.index].name_place : graph.nodes[name.index].id_place;
   report.suggest("did you mean " + quote(near) + " (" +
@@ -149,8 +148,7 @@ class NodeResolver {
     }
     if (node_.row == nullptr) {
       const auto found = node_.callee->graph.names.find(name);
-      if (found == node_.callee->graph.names.end() || !found->second.is_input) return std::nullopt;
-      return found->second.index;
+      return found && found->is_input ? std::optional(found->index) : std::nullopt;
     }
     for (uint32_t i = 0; i < node_.operand_count; ++i) {
       if (node_.row->ports[i].name == name) return i;

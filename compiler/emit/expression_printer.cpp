@@ -50,7 +50,8 @@ std::string ExpressionPrinter::name_value(ValueId value, const ir::Instruction& 
   if (names != 0) return names_.take(function_.origins[names].node);
   const std::string_view noun = noun_of(made);
   if (made.origin == 0) return names_.take(noun);
-  return names_.take(function_.origins[made.origin].node + "_" + std::string(noun));
+  std::string wanted = function_.origins[made.origin].node;
+  return names_.take(wanted.append("_").append(noun));
 }
 
 void ExpressionPrinter::print_doc(uint32_t origin) {
@@ -118,8 +119,7 @@ void ExpressionPrinter::put(std::string& out, const Operand& operand, const Room
 void ExpressionPrinter::need_name(ValueId value) {
   const ValueId number = behind(value);
   if (!written_[number].pending) return;
-  Written written = std::move(written_[number]);
-  state(number, written);
+  state(number, std::move(written_[number]));
 }
 
 bool ExpressionPrinter::is_exact(std::span<const ValueId> values) const {
@@ -151,7 +151,7 @@ int ExpressionPrinter::make_room(std::span<const ValueId> operands, int columns)
   return columns;
 }
 
-void ExpressionPrinter::state(ValueId value, const Written& made) {
+void ExpressionPrinter::state(ValueId value, Written&& made) {
   const ir::Instruction& instruction = *definition(value);
   const ir::Origin& node = function_.origins[function_.values[value].names];
   const Declared declared{function_.type(value), uniform_[value], made.exact};
@@ -172,6 +172,7 @@ void ExpressionPrinter::state(ValueId value, const Written& made) {
     declared_columns_ = declared.type.is_float() || declared.exact ? 13 : 4;
   }
   body_.append(" ").append(name).append(" = ").append(made.text).append(";");
+  spare_.swap(made.text);
   set_name(value, std::move(name));
   end_line(value);
   declared_ = declared;
@@ -179,8 +180,20 @@ void ExpressionPrinter::state(ValueId value, const Written& made) {
   declared_end_ = is_short ? body_.size() : 0;
 }
 
+Written ExpressionPrinter::begin() {
+  Written made;
+  made.text.swap(spare_);
+  made.text.clear();
+  made.text.reserve(64);
+  return made;
+}
+
+void ExpressionPrinter::give_back(ValueId value) {
+  if (Written& written = written_[value]; written.pending && spare_.empty()) spare_.swap(written.text);
+}
+
 void ExpressionPrinter::finish(ValueId value, Written&& made) {
-  if (nesting_[value].has_statement) return state(value, made);
+  if (nesting_[value].has_statement) return state(value, std::move(made));
   made.pending = true;
   written_[value] = std::move(made);
 }
@@ -205,7 +218,7 @@ void ExpressionPrinter::print_construct(const ir::Instruction& instruction) {
   auto operands = function_.operands_of(instruction);
   if (is_splat(result)) return;
   if (nesting_[result].shape == Shape::words) return print_words(instruction);
-  Written made;
+  Written made = begin();
   made.columns = make_room(operands, 6 + 2 * static_cast<int>(operands.size()));
   made.exact = is_exact(operands);
   made.text.append(language_.type(function_.type(result), uniform_[result])).append("(");
@@ -239,7 +252,7 @@ std::optional<ValueId> ExpressionPrinter::leading_vector(std::span<const ValueId
 void ExpressionPrinter::print_load(const ir::Instruction& instruction) {
   const ValueId value = function_.operands_of(instruction)[0];
   const std::string& buffer = context_.module.buffers[instruction.imm].name;
-  Written made;
+  Written made = begin();
   const Index index =
       nesting_[value].shape == Shape::offset ? split_index(function_, nesting_, value) : Index{value, 0};
   const std::string text =
@@ -253,7 +266,7 @@ void ExpressionPrinter::print_words(const ir::Instruction& instruction) {
   const ir::Instruction& load = *definition(operands[0]);
   const Index index = split_index(function_, nesting_, function_.operands_of(load)[0]);
   const std::string& reader = context_.readers[load.imm].take(operands.size());
-  Written made;
+  Written made = begin();
   const std::string text = print_index(load.imm, index, static_cast<int>(reader.size()) + 2, made.columns);
   made.text.append(reader).append("(").append(language_.outside());
   separate(made.text);
@@ -297,13 +310,14 @@ void ExpressionPrinter::print_primitive(const ir::Instruction& instruction) {
   if (nesting_[result].shape == Shape::offset) need_name(operands[0]);
   if (shape.repeats)
     for (const ValueId value : operands) need_name(value);
-  Written made;
+  Written made = begin();
   made.columns = make_room(operands, shape.columns);
   made.exact = is_float_arithmetic(instruction.op) || is_exact(operands);
   if (shape.is_statement) return print_statement(instruction);
   const OpText& text = language_.op_text(instruction.op);
   made.precedence = text.precedence;
   fill(made.text, instruction, text);
+  for (const ValueId value : operands) give_back(value);
   if (nesting_[result].shape == Shape::offset)
     written_[result] = std::move(made);
   else

@@ -61,6 +61,8 @@ class ExpressionPrinter {
   int make_room(std::span<const ValueId> operands, int columns);
   /// Whether some value of the list has arithmetic in it that no statement holds yet.
   bool is_exact(std::span<const ValueId> values) const;
+  /// An expression without text, to be finished.
+  Written begin();
   /// `made` is the value's expression: a statement now, or a part of another later.
   void finish(ValueId value, Written&& made);
 
@@ -92,7 +94,9 @@ class ExpressionPrinter {
   ValueId behind(ValueId value) const;
   void write_splat(ValueId value, bool uniform);
   void put(std::string& out, const Operand& operand, const Room& room);
-  void state(ValueId value, const Written& made);
+  /// The memory of the text of an operand, which is a part of another text now. Nothing else reads it.
+  void give_back(ValueId value);
+  void state(ValueId value, Written&& made);
   /// The vector all of whose components come first, in order: `vec4(color, 1.0)`.
   std::optional<ValueId> leading_vector(std::span<const ValueId> operands) const;
   /// `objects3(object + 4)`.
@@ -111,6 +115,7 @@ class ExpressionPrinter {
     friend bool operator==(const Declared&, const Declared&) = default;
   };
   Declared declared_;
+  std::string spare_;  ///< the memory of a text that is in a statement, for the next one
   size_t declared_end_ = 0;
   int declared_columns_ = 0;
   std::vector<std::pair<std::string_view, std::string>>

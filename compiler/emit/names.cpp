@@ -2,16 +2,25 @@
 #include "compiler/emit/names.h"
 
 #include <algorithm>
+#include <array>
 
 namespace isoshade::emit {
 
 namespace {
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// By character: whether names may have it anywhere but at their beginning, '_' aside.
+constexpr std::array<bool, 256> is_plain = [] {
+  std::array<bool, 256> plain{};
+  for (size_t c = 0; c < plain.size(); ++c) plain[c] = is_letter(static_cast<char>(c)) || is_digit(static_cast<char>(c));
+  return plain;
+}();
 
 /// What GLSL keeps for itself in every scope. A word with an underscore behind it would still begin so.
 bool has_taken_prefix(std::string_view name) {
+  if (name.find('_') == std::string_view::npos) return false;
   for (const std::string_view prefix : {"gl_", "GL_", "ISOSHADE_", "spirv_", "webgl_"})
     if (name.starts_with(prefix)) return true;
   return false;
@@ -20,7 +29,7 @@ bool has_taken_prefix(std::string_view name) {
 bool is_clean(std::string_view name) {
   if (name.empty() || name.size() > 100 || !is_letter(name.front()) || name.back() == '_') return false;
   for (size_t i = 0; i < name.size(); ++i)
-    if (!is_letter(name[i]) && !is_digit(name[i]) && (name[i] != '_' || name[i - 1] == '_')) return false;
+    if (!is_plain[static_cast<unsigned char>(name[i])] && (name[i] != '_' || name[i - 1] == '_')) return false;
   return !has_taken_prefix(name);
 }
 
@@ -42,31 +51,41 @@ std::string clean(std::string_view wanted) {
 
 }  // namespace
 
-bool Names::taken(const std::string& name) const {
+bool Names::taken(std::string_view name, uint32_t hash) const {
   for (const Names* scope = this; scope != nullptr; scope = scope->outer_)
-    if (scope->used_.contains(name)) return true;
+    if (scope->used_.find(name, hash) != support::NameTable::npos) return true;
   return false;
+}
+
+bool Names::outer_has(std::string_view name, uint32_t hash) {
+  const bool has = outer_ != nullptr && outer_->taken(name, hash);
+  if (has) avoided_.emplace_back(name);
+  return has;
 }
 
 // What is returned has just been added to the names of this scope and is in none around it, so no two are alike.
 std::string Names::take(std::string_view wanted, Avoid avoid) {
   std::string name = clean(wanted);
-  const auto [index, is_new] = used_.add(name);
+  const uint32_t hash = support::NameTable::hash(name);
+  const auto [index, is_new] = used_.add(name, hash);
   if (is_new) {
-    const bool forbidden = is_word(name, scope_, avoid);
-    if (!forbidden && (outer_ == nullptr || !outer_->taken(name))) return name;
-    if (forbidden && !taken(name + "_")) {
-      used_.add(name + "_");
-      return name + "_";
+    const bool forbidden = is_word(name, hash, scope_, avoid);
+    if (!forbidden && !outer_has(name, hash)) return name;
+    if (forbidden) {
+      const std::string other = name + "_";
+      const uint32_t hash_of_other = support::NameTable::hash(other);
+      if (!outer_has(other, hash_of_other) && used_.add(other, hash_of_other).is_new) return other;
     }
   }
   const std::string stem =
       has_taken_prefix(name + "_") ? "n_" + name : name;  // "gl" is no such name, "gl_1" is
   std::string numbered;
+  uint32_t hash_of_numbered;
   do {
     numbered = stem + "_" + std::to_string(++used_.number(index));
     if (is_word(numbered, scope_, avoid)) numbered += "_";
-  } while ((outer_ != nullptr && outer_->taken(numbered)) || !used_.add(numbered).is_new);
+    hash_of_numbered = support::NameTable::hash(numbered);
+  } while (outer_has(numbered, hash_of_numbered) || !used_.add(numbered, hash_of_numbered).is_new);
   return numbered;
 }
 

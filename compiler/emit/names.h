@@ -5,9 +5,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "compiler/emit/name_table.h"
 #include "compiler/emit/words.h"
+#include "compiler/support/name_table.h"
 
 namespace isoshade::emit {
 
@@ -26,13 +27,24 @@ class Names {
   /// Keeps a name of our own from being taken.
   void hold(std::string_view name) { used_.add(name); }
 
+  /// Whether a name was taken or held in this scope itself.
+  bool holds(std::string_view name, uint32_t hash) const {
+    return used_.find(name, hash) != support::NameTable::npos;
+  }
+  /// The names that it would have taken, had not a scope around it had them.
+  std::vector<std::string> take_avoided() { return std::move(avoided_); }
+  /// All that it took, and all that it tried to take.
+  support::NameTable take_table() { return std::move(used_); }
+
  private:
   std::string take(std::string_view wanted, Avoid avoid);
-  bool taken(const std::string& name) const;
+  bool taken(std::string_view name, uint32_t hash) const;
+  bool outer_has(std::string_view name, uint32_t hash);
 
   Scope scope_;
   const Names* outer_;
-  NameTable used_;  ///< with the last number tried behind each
+  std::vector<std::string> avoided_;
+  support::NameTable used_;  ///< with the last number tried behind each
 };
 
 /// What all names of a text that others link begin with, before an underscore: the nearest to `wanted` with which they are

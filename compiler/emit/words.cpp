@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <unordered_map>
+
+#include "compiler/support/name_table.h"
 
 namespace isoshade::emit {
 
@@ -53,13 +54,14 @@ void for_each_word(std::span<const Row> rows, const Take& take) {
 }
 
 /// By word, the scopes that languages forbid, and above them those that our own texts do.
-const std::unordered_map<std::string_view, uint8_t>& listed() {
-  static const auto all = [] {
-    std::unordered_map<std::string_view, uint8_t> map;
-    for_each_word(language_rows, [&](std::string_view word, Where where) { map[word] |= where; });
+const support::NameTable& listed() {
+  static const support::NameTable all = [] {
+    support::NameTable table;
+    for_each_word(language_rows,
+                  [&](std::string_view word, Where where) { table.number(table.add(word).index) |= where; });
     for_each_word(own_rows,
-                  [&](std::string_view word, Where where) { map[word] |= static_cast<uint8_t>(where << 3); });
-    return map;
+                  [&](std::string_view word, Where where) { table.number(table.add(word).index) |= where << 3; });
+    return table;
   }();
   return all;
 }
@@ -103,12 +105,17 @@ class Families {
 }  // namespace
 
 bool is_word(std::string_view name, Scope scope, Avoid avoid) {
+  return is_word(name, support::NameTable::hash(name), scope, avoid);
+}
+
+bool is_word(std::string_view name, uint32_t hash, Scope scope, Avoid avoid) {
   if (name.ends_with('_')) return false;
   const auto bit = static_cast<uint8_t>(scope);
   const bool avoids_own = avoid == Avoid::all;
-  if (const auto found = listed().find(name); found != listed().end()) {
-    if ((found->second & bit) != 0) return true;
-    if (avoids_own && (found->second >> 3 & bit) != 0) return true;
+  const support::NameTable& words = listed();
+  if (const size_t found = words.find(name, hash); found != support::NameTable::npos) {
+    if ((words.number(found) & bit) != 0) return true;
+    if (avoids_own && (words.number(found) >> 3 & bit) != 0) return true;
   }
   static const Families of_languages(language_rows), our_own(own_rows);
   return of_languages.contain(name, bit) || (avoids_own && our_own.contain(name, bit));
@@ -116,10 +123,11 @@ bool is_word(std::string_view name, Scope scope, Avoid avoid) {
 
 std::vector<std::string_view> all_words() {
   std::vector<std::string_view> words;
-  for (const auto& [word, where] : listed()) words.push_back(word);
-  for (const std::span<const Row> rows : {std::span<const Row>(language_rows), std::span<const Row>(own_rows)})
+  for (const std::span<const Row> rows : {std::span<const Row>(language_rows), std::span<const Row>(own_rows)}) {
+    for_each_word(rows, [&](std::string_view word, Where) { words.push_back(word); });
     for (const Row& row : rows)
       if (row.kind != Row::Kind::words) words.push_back(row.example);
+  }
   std::ranges::sort(words);
   words.erase(std::unique(words.begin(), words.end()), words.end());
   return words;

@@ -18,6 +18,8 @@ enum class Avoid : uint8_t { languages, all };
 
 /// Whether a name, as Names cleans it, may not stand in `scope`. No word ends in '_'.
 bool is_word(std::string_view name, Scope scope, Avoid avoid = Avoid::all);
+/// The same where the name's hash of support::NameTable is known.
+bool is_word(std::string_view name, uint32_t hash, Scope scope, Avoid avoid);
 
 /// Every word that the tables list, and a few of each family: what tests try.
 std::vector<std::string_view> all_words();

@@ -2,7 +2,6 @@
 #include "compiler/functions/library.h"
 
 #include <algorithm>
-#include <map>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "compiler/functions/calls.h"
 #include "compiler/functions/signatures.h"
 #include "compiler/support/assert.h"
+#include "compiler/support/name_table.h"
 
 namespace isoshade::functions {
 
@@ -142,14 +142,18 @@ const std::vector<Variant>& variants() {
 }
 
 const Variant* find(std::string_view row, std::span<const ir::Type> arguments) {
-  static const auto by_row = [] {
-    std::multimap<std::string_view, const Variant*> map;
-    for (const Variant& variant : variants()) map.emplace(variant.row, &variant);
-    return map;
+  const std::vector<Variant>& all = variants();
+  // By row, its first variant; the others stand behind it.
+  static const support::NameTable rows = [] {
+    support::NameTable table;
+    for (size_t i = 0; i < variants().size(); ++i)
+      if (const auto [index, is_new] = table.add(variants()[i].row); is_new) table.number(index) = static_cast<int>(i);
+    return table;
   }();
-  const auto [first, last] = by_row.equal_range(row);
-  for (auto it = first; it != last; ++it)
-    if (std::ranges::equal(it->second->parameters, arguments)) return it->second;
+  const size_t found = rows.find(row);
+  if (found == support::NameTable::npos) return nullptr;
+  for (auto i = static_cast<size_t>(rows.number(found)); i < all.size() && all[i].row == row; ++i)
+    if (std::ranges::equal(all[i].parameters, arguments)) return &all[i];
   return nullptr;
 }
 

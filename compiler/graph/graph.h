@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <variant>
 #include <vector>
 
 #include "compiler/graph/document.h"
 #include "compiler/interface/pass_state.h"
+#include "compiler/support/name_table.h"
 
 namespace isoshade::graph {
 
@@ -177,6 +177,36 @@ struct InputImage {
   TextRange place;
 };
 
+/// What names stand for.
+class NameMap {
+ public:
+  /// An input or a node.
+  struct Name {
+    bool is_input;
+    uint32_t index;
+  };
+
+  /// False if the name stands for something already; then it still does.
+  bool add(std::string_view name, Name meaning) {
+    const auto [index, is_new] = table_.add(name);
+    if (is_new) table_.number(index) = static_cast<int>(2 * meaning.index + (meaning.is_input ? 1 : 0));
+    return is_new;
+  }
+  std::optional<Name> find(std::string_view name) const {
+    const size_t index = table_.find(name);
+    if (index == support::NameTable::npos) return std::nullopt;
+    const auto number = static_cast<uint32_t>(table_.number(index));
+    return Name{number % 2 != 0, number / 2};
+  }
+  /// Of a name that is there.
+  Name at(std::string_view name) const { return find(name).value(); }
+  bool contains(std::string_view name) const { return table_.contains(name); }
+  void reserve(size_t count) { table_.reserve(count); }
+
+ private:
+  support::NameTable table_;
+};
+
 struct Graph {
   support::Source source;
   std::vector<support::Source> bases = {};  ///< the documents that it extends: sources 1, 2, ... of places
@@ -192,12 +222,8 @@ struct Graph {
   std::vector<Expression> expressions = {};
   uint32_t expression_nodes = 0;  ///< the number of nodes that expressions were expanded to
 
-  /// Inputs and nodes share one namespace.
-  struct Name {
-    bool is_input;
-    uint32_t index;
-  };
-  std::unordered_map<std::string, Name> names;
+  using Name = NameMap::Name;
+  NameMap names;  ///< inputs and nodes share one namespace
 
   support::Span span(TextRange place) const {
     return {place.source == 0 ? source : bases[place.source - 1], place.begin, place.end};

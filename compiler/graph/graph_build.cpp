@@ -24,13 +24,12 @@ void GraphBuilder::check_id(std::string_view id, TextRange place, std::string_vi
 
 void GraphBuilder::enter(const Member& member, std::string_view what, Graph::Name name) {
   check_id(member.key, key_place(member), what);
-  const auto [found, is_new] = graph_.names.emplace(member.key, name);
-  if (is_new) return;
+  if (graph_.names.add(member.key, name)) return;
   // Keys of one object are unique, so a node repeats the name of an input.
   diagnostics_
       .report(Id::duplicate_name, document_.key_span(member),
               std::string(what) + " has the name " + quote(member.key) + " of an input or parameter")
-      .note(graph_.span(graph_.inputs[found->second.index].name_place), "declared here");
+      .note(graph_.span(graph_.inputs[graph_.names.at(member.key).index].name_place), "declared here");
 }
 
 std::optional<Link> GraphBuilder::link(const Json& json, std::string_view key) {
@@ -78,10 +77,6 @@ Link GraphBuilder::constant(Literal value, std::string_view key, Type type, Text
 }
 
 void GraphBuilder::read_node(const Member& member) {
-  Node node;
-  node.id = member.key;
-  node.id_place = key_place(member);
-  node.place = place_of(member.value);
   const Json& json = member.value;
   if (json.kind != Json::Kind::object) {
     diagnostics_.report(
@@ -89,6 +84,10 @@ void GraphBuilder::read_node(const Member& member) {
         "node " + quote(member.key) + " must be an object, not " + std::string(kind_name(json.kind)));
     return;
   }
+  Node& node = graph_.nodes.emplace_back();
+  node.id = member.key;
+  node.id_place = key_place(member);
+  node.place = place_of(member.value);
   // Without ObjectReader: all other keys are ports, and the node's type determines which ports exist.
   const Json* type = nullptr;
   const Json* code = nullptr;
@@ -114,13 +113,15 @@ void GraphBuilder::read_node(const Member& member) {
       continue;
     }
     check_id(entry.key, key_place(entry), "a port");
-    Port port{entry.key, Literal{}, key_place(entry), place_of(value)};
+    Port& port = node.ports.emplace_back();
+    port.name = entry.key;
+    port.name_place = key_place(entry);
+    port.place = place_of(value);
     if (value.kind == Json::Kind::object) {
       if (std::optional<Link> found = link(value, entry.key)) port.value = std::move(*found);
     } else if (std::optional<Literal> found = parse_literal(document_, value, entry.key, diagnostics_)) {
       port.value = std::move(*found);
     }
-    node.ports.push_back(std::move(port));
   }
   if (type == nullptr) {
     diagnostics_.report(Id::missing_key, {document_.source_of(json), json.begin, json.begin + 1},
@@ -128,7 +129,6 @@ void GraphBuilder::read_node(const Member& member) {
   } else {
     node.type_place = place_of(*type);
   }
-  graph_.nodes.push_back(std::move(node));
   if (is_expression) read_code(member, code);
 }
 

@@ -6,13 +6,13 @@
 #include <charconv>
 #include <map>
 #include <optional>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "compiler/functions/library.h"
 #include "compiler/ir/laws.h"
 #include "compiler/support/assert.h"
+#include "compiler/support/name_table.h"
 
 namespace isoshade::passes {
 
@@ -28,7 +28,7 @@ using Words = std::optional<std::vector<uint32_t>>;
 class Specializer {
  public:
   explicit Specializer(ir::Module& module) : module_(module) {
-    for (const ir::Function& function : module.functions) names_.insert(function.name);
+    for (const ir::Function& function : module.functions) names_.add(function.name);
   }
 
   /// One level of calls, in the functions from index `first` on; whether there was any to specialize.
@@ -185,7 +185,7 @@ class Specializer {
 
   std::string free_name(const std::string& name) {
     std::string free = name;
-    while (!names_.insert(free).second) free = name + "_" + std::to_string(++numbers_[name]);
+    while (!names_.add(free).is_new) free = name + "_" + std::to_string(++numbers_[name]);
     return free;
   }
 
@@ -241,7 +241,7 @@ class Specializer {
   ir::Module& module_;
   std::vector<std::optional<bool>> arithmetic_;
   std::map<std::pair<uint32_t, std::vector<Words>>, uint32_t> clones_;
-  std::unordered_set<std::string> names_;  ///< of all functions
+  support::NameTable names_;  ///< of all functions
   std::map<std::string, int> numbers_;
   size_t cloned_instructions_ = 0;
 };
