@@ -48,6 +48,8 @@ class FunctionPrinter : private ExpressionPrinter {
     return is_line;
   }
 
+  Names take_names() { return std::move(names_); }
+
  private:
   void find_used() {
     used_.assign(written_.size(), false);
@@ -191,13 +193,14 @@ class FunctionPrinter : private ExpressionPrinter {
     const FunctionText& called = context_.texts[instruction.imm];
     const ValueId first = instruction.first_result;
     const auto operands = function_.operands_of(instruction);
-    Written made;
+    Written made = begin();
     made.exact = is_exact(operands);
     const std::vector<std::string> groups =
         std::ranges::any_of(called.groups, [](const std::string& group) { return !group.empty(); })
             ? print_groups(instruction)
             : std::vector<std::string>();
     std::vector<ValueId> plain;
+    plain.reserve(operands.size());
     for (size_t i = 0; i < operands.size(); ++i)
       if (callee.parameters[i].group.empty()) plain.push_back(operands[i]);
     made.columns = make_room(plain, static_cast<int>(called.name.size() + 2 + 2 * plain.size()));
@@ -329,8 +332,11 @@ class FunctionPrinter : private ExpressionPrinter {
 }  // namespace
 
 bool print_function(std::string& out, const ir::Function& function, const FunctionText& text,
-                    const TextContext& context) {
-  return FunctionPrinter(out, function, text, context).print();
+                    const TextContext& context, Names* locals) {
+  FunctionPrinter printer(out, function, text, context);
+  const bool is_line = printer.print();
+  if (locals != nullptr) *locals = printer.take_names();
+  return is_line;
 }
 
 }  // namespace isoshade::emit

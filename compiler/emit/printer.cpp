@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "compiler/emit/function_printer.h"
+#include "compiler/emit/known_text.h"
 #include "compiler/emit/literal.h"
 #include "compiler/ir/call_graph.h"
 #include "compiler/lower/lower.h"
@@ -182,6 +183,10 @@ const std::string* RecordWords::take(uint32_t word, uint32_t& rest) {
   return &names_[field];
 }
 
+void RecordWords::take_again(const std::vector<bool>& fields) {
+  for (size_t i = 0; i < taken_.size(); ++i) taken_[i] = taken_[i] || fields[i];
+}
+
 std::vector<std::string> RecordWords::taken() const {
   std::vector<std::string> constants;
   for (size_t i = 0; i < names_.size(); ++i)
@@ -197,6 +202,10 @@ WordReaders::WordReaders(const ir::Buffer& buffer, Names& globals) : buffer_(buf
 const std::string& WordReaders::take(size_t width) {
   taken_[width - 2] = true;
   return names_[width - 2];
+}
+
+void WordReaders::take_again(const std::array<bool, 3>& widths) {
+  for (size_t i = 0; i < taken_.size(); ++i) taken_[i] = taken_[i] || widths[i];
 }
 
 void WordReaders::define(std::string& out, const Language& language) const {
@@ -231,9 +240,20 @@ namespace {
 /// Prints functions in an order, and what they share.
 class FunctionsPrinter {
  public:
-  FunctionsPrinter(const ir::Module& module, const std::vector<uint32_t>& order, const Language& language,
-                   std::vector<FunctionText>& texts)
-      : module_(module), order_(order), language_(language), texts_(texts), groups_(language, globals_) {}
+  FunctionsPrinter(const ir::Module& module, std::span<const uint32_t> entries, const std::vector<uint32_t>& order,
+                   const Language& language, std::vector<FunctionText>& texts)
+      : module_(module), order_(order), language_(language), texts_(texts), groups_(language, globals_) {
+    for (const uint32_t entry : entries) {
+      const ir::Function& function = module.functions[entry];
+      own_documents_.push_back(function.document);
+      for (const ir::Instruction& instruction : function.instructions)
+        if (instruction.op == ir::Opcode::call)
+          own_documents_.push_back(module.functions[instruction.imm].document);
+    }
+    std::erase(own_documents_, std::string_view());
+    is_entry_.assign(module.functions.size(), false);
+    for (const uint32_t entry : entries) is_entry_[entry] = true;
+  }
 
   Names& globals() { return globals_; }
 
@@ -270,8 +290,9 @@ class FunctionsPrinter {
     print_result_record(out, function, texts_[index], language_);
     if (!texts_[index].has_signature) groups_.print(out, function, texts_[index]);
     const size_t begin = out.size();
-    const bool is_line = print_function(out, function, texts_[index],
-                                        {module_, language_, texts_, globals_, records_, readers_});
+    const TextContext context{module_, language_, texts_, globals_, records_, readers_};
+    const bool is_line = is_own(index) ? print_function(out, function, texts_[index], context)
+                                       : print_known_function(out, function, texts_[index], context);
     // Functions of a line stand together.
     if (is_line && follows_line_ && begin == before + 1) out.erase(before, 1);
     follows_line_ = is_line;
@@ -289,6 +310,12 @@ class FunctionsPrinter {
   }
 
  private:
+  /// Whether a function was made for this program: an entry, or one of the document whose functions the entries call. The
+  /// others are of the library, of documents that it calls, or of ours.
+  bool is_own(uint32_t index) const {
+    return is_entry_[index] || std::ranges::find(own_documents_, module_.functions[index].document) != own_documents_.end();
+  }
+
   const ir::Module& module_;
   const std::vector<uint32_t>& order_;
   const Language& language_;
@@ -297,6 +324,8 @@ class FunctionsPrinter {
   std::vector<RecordWords> records_;
   std::vector<WordReaders> readers_;
   GroupRecords groups_;
+  std::vector<std::string_view> own_documents_;
+  std::vector<bool> is_entry_;  ///< by function
   bool follows_line_ = false;
 };
 
@@ -342,9 +371,10 @@ uint32_t hash_of(std::string_view text) {
 
 std::string print_functions(const ir::Module& module, uint32_t entry, const Language& language,
                             std::vector<FunctionText>& texts) {
-  const std::vector<uint32_t> order = order_of(module, std::array{entry});
+  const std::array entries{entry};
+  const std::vector<uint32_t> order = order_of(module, entries);
   texts.assign(module.functions.size(), {});
-  FunctionsPrinter printer(module, order, language, texts);
+  FunctionsPrinter printer(module, entries, order, language, texts);
   Names& globals = printer.globals();
   for (const ir::Buffer& buffer : module.buffers) globals.hold(buffer.name);
   // Library functions and stages are named by us, and first.
@@ -366,7 +396,7 @@ LinkedText print_linked(const ir::Module& module, std::span<const uint32_t> entr
                         const LinkedNames& names, std::vector<FunctionText>& texts) {
   const std::vector<uint32_t> order = order_of(module, entries);
   const std::vector<bool> shared = shared_functions(module, order);
-  FunctionsPrinter printer(module, order, language, texts);
+  FunctionsPrinter printer(module, entries, order, language, texts);
   Names& globals = printer.globals();
   for (const FunctionText& text : texts)
     if (!text.name.empty()) globals.hold(text.name);

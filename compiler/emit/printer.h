@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/emit/names.h"
@@ -75,6 +76,8 @@ class Language {
   /// A float or a bool; ints are written alike everywhere (literal.h).
   virtual std::string literal(ir::Type type, uint32_t bits) const = 0;
   virtual const OpText& op_text(ir::Opcode op) const = 0;
+  /// What tells texts apart that are made of equal functions: the language, and what it knows of this one besides.
+  virtual void identify(std::string& out, const ir::Function& function) const = 0;
   /// An operand where its type must be exactly this: an arm of a select, a value that is assigned.
   virtual void exactly(std::string& out, const Operand& operand, bool uniform) const = 0;
   virtual void load(std::string& out, std::string_view buffer, std::string_view index) const = 0;
@@ -133,6 +136,11 @@ class RecordWords {
   /// "roughness = 54" for each name that was taken.
   std::vector<std::string> taken() const;
   bool empty() const { return names_.empty(); }
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// As if none had been taken yet; returns which were. take_again() adds them.
+  std::vector<bool> forget() { return std::exchange(taken_, std::vector<bool>(taken_.size())); }
+  void take_again(const std::vector<bool>& fields);
 
  private:
   const ir::Buffer& buffer_;
@@ -148,12 +156,24 @@ class WordReaders {
 
   /// The name of the one for vectors of `width`, which the text then defines.
   const std::string& take(size_t width);
+  const std::array<std::string, 3>& names() const { return names_; }
+
+  /// As those of RecordWords.
+  std::array<bool, 3> forget() { return std::exchange(taken_, {}); }
+  void take_again(const std::array<bool, 3>& widths);
+
   void define(std::string& out, const Language& language) const;
 
  private:
   const ir::Buffer& buffer_;
   std::array<std::string, 3> names_;  ///< by width - 2
   std::array<bool, 3> taken_{};
+};
+
+/// What was taken of a buffer's RecordWords and WordReaders.
+struct TakenWords {
+  std::vector<bool> fields;
+  std::array<bool, 3> widths;
 };
 
 /// What the functions of one text share.

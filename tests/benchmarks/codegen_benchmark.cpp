@@ -16,7 +16,8 @@ std::string read(const std::string& path) {
   return text.str();
 }
 
-/// The material with a library that has been used before, as in an editor, or with a new one, as in the command.
+/// The material with a library that has been used before, as in an editor, or with a new one. Texts of functions that are
+/// not the document's own are known after the first turn, with either.
 void material(benchmark::State& state, bool new_library) {
   const std::string path = ISOSHADE_GRAPHS "/materials/cook_torrance.json";
   const std::string text = read(path);

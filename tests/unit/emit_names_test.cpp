@@ -151,5 +151,57 @@ func @eval(%row: int) -> (length: float, out: float) {
   EXPECT_EQ(glsl.find(".length)"), std::string::npos) << glsl;
 }
 
+TEST(Names, LocalOfAKnownFunctionGivesWayToAGlobalOfAnotherProgram) {
+  const std::string helper = R"(
+func @helper(%x: float) -> (out: float) {
+  %total = fadd %x, %x
+  %out = fmul %total, %total
+  return %out
+})";
+  const std::string one = helper + R"(
+func @eval(%row: int) -> (out: float) {
+  %x = itof %row
+  %out = call @helper(%x)
+  return %out
+})";
+  const std::string other = helper + R"(
+func @total(%x: float) -> (out: float) {
+  %out = fmul %x, %x
+  return %out
+}
+func @eval(%row: int) -> (out: float) {
+  %x = itof %row
+  %y = call @helper(%x)
+  %out = call @total(%y)
+  return %out
+})";
+  const auto first = texts(one.c_str()), second = texts(other.c_str());
+  EXPECT_NE(first.second.find(" total = "), std::string::npos) << first.second;
+  EXPECT_EQ(second.second.find(" total = "), std::string::npos) << second.second;
+  EXPECT_NE(second.second.find(" total_1 = "), std::string::npos) << second.second;
+  EXPECT_EQ(texts(one.c_str()), first);
+  EXPECT_EQ(texts(other.c_str()), second);
+}
+
+TEST(Names, KnownFunctionCallsWhatItsCalleeIsCalledInEachProgram) {
+  const auto program = [](const std::string& callee) {
+    return "func @" + callee + R"((%x: float) -> (out: float) {
+  %out = fadd %x, %x
+  return %out
+}
+func @helper(%x: float) -> (out: float) {
+  %out = call @)" + callee + R"((%x)
+  return %out
+}
+func @eval(%row: int) -> (out: float) {
+  %x = itof %row
+  %out = call @helper(%x)
+  return %out
+})";
+  };
+  EXPECT_NE(texts(program("first").c_str()).first.find("return first(x)"), std::string::npos);
+  EXPECT_NE(texts(program("second").c_str()).first.find("return second(x)"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace isoshade::emit

@@ -71,6 +71,10 @@ class Cpp final : public Language {
     return is_finite(bits) ? decimal(bits) + "f" : "from_bits_normal(int(" + hexadecimal(bits) + "u))";
   }
   const OpText& op_text(ir::Opcode op) const override { return emit::op_text(TargetId::cpp, op); }
+  void identify(std::string& out, const ir::Function& function) const override {
+    out += is_linked_ ? "linked C++" : "C++";
+    out += called_[static_cast<size_t>(&function - functions_)] ? " called;" : ";";
+  }
   void exactly(std::string& out, const Operand& operand, bool uniform) const override {
     if (uniform || (!operand.uniform && !operand.literal))
       out += operand.text;

@@ -29,6 +29,9 @@ class Glsl final : public Language {
     return decimal(bits);
   }
   const OpText& op_text(ir::Opcode op) const override { return emit::op_text(target_, op); }
+  void identify(std::string& out, const ir::Function&) const override {
+    out.append({static_cast<char>(target_), precise_.empty() ? '-' : 'p', ';'});
+  }
   void exactly(std::string& out, const Operand& operand, bool) const override { out += operand.text; }
   void load(std::string& out, std::string_view buffer, std::string_view index) const override {
     out.append(buffer).append("[").append(index).append("]");
