@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/graph/document.h"
-#include "compiler/graph/plain_json.h"
 #include "compiler/support/visible.h"
 
 namespace isoshade::graph {
@@ -333,16 +332,6 @@ bool Builder::parse_error(size_t, const std::string&, const nlohmann::json::exce
   return false;
 }
 
-/// Most documents in a fraction of the time; nothing where nlohmann must tell what is wrong, or read what is rare.
-std::optional<Document> parse_plain(const Source& source) {
-  Document document{source, {}};
-  Diagnostics unheard;
-  const char* reached = source->text().data();
-  Builder builder(document, &reached, unheard);
-  if (!PlainReader(source->text(), &reached, builder).read() || unheard.error_count() != 0) return std::nullopt;
-  return document;
-}
-
 }  // namespace
 
 std::optional<Document> parse_document(Source source, Diagnostics& diagnostics) {
@@ -364,7 +353,6 @@ std::optional<Document> parse_document(Source source, Diagnostics& diagnostics) 
                        "the document has more than " + std::to_string(most_blanks) + " blanks in a row");
     return std::nullopt;
   }
-  if (std::optional<Document> plain = parse_plain(document.source)) return plain;
   const size_t errors_before = diagnostics.error_count();
   const char* reached = text.data();
   Builder builder(document, &reached, diagnostics);
