@@ -149,7 +149,7 @@ class VulkanBackend : public backends::HostBackend {
   enum class Use : uint8_t {
     vertices,
     setup,
-    seen,
+    computed,
     screen,
     drawn_screen,
     blending,

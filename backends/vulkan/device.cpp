@@ -112,7 +112,7 @@ Device::Impl::Impl(std::unique_ptr<Instance> owner, int index, const VulkanOptio
   upload(zero, zeros.data(), zeros.size(), {});
   upload(indices, zeros.data(), zeros.size(), {});
   const BufferUse use = own_memory ? BufferUse::device : BufferUse::shared;
-  for (Buffer* buffer : {&positions, &cuts, &seen, &tiles}) reserve(*buffer, smallest_buffer, use);
+  for (Buffer* buffer : {&positions, &cuts, &seen, &tiles, &orders}) reserve(*buffer, smallest_buffer, use);
   reserve(output, smallest_buffer, use);
   prepare_attachments(1, 1, true);
   no_target = vk::raii::Framebuffer(
@@ -148,6 +148,7 @@ void Device::Impl::write_descriptors(vk::DescriptorSet set, const ImagesRead& im
   write_buffer(cuts_binding, cuts);
   write_buffer(seen_binding, seen);
   write_buffer(tiles_binding, tiles);
+  write_buffer(orders_binding, orders);
   write_buffer(zero_binding, zero.buffer);
   write_image(ids_binding, images.ids);
   write_image(former_ids_binding, images.former_ids);

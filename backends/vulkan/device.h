@@ -190,12 +190,18 @@ class Device {
   /// As render(), but the images go to `layers`. Returns whether the color is finite.
   bool render(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
               const float (&background)[4], const Window& window, bool has_color, const Places& places);
-  /// The same by compute shaders. `visibility`: for each run of triangles one call of Stage::depth or cutout. `first_cut`:
-  /// from this triangle on they are what cutting left; how they are ordered stands in `inputs`. Nothing, if the device lists
-  /// too few tiles for these triangles.
-  std::optional<bool> compute(std::span<const Call> visibility, std::span<const Call> color,
-                              const float (&background)[4], const Window& window, bool has_color,
-                              const Places& places, size_t first_cut);
+  /// What compute shaders draw of a view.
+  struct Computed {
+    std::vector<Call> visibility;  ///< of Stage::depth or cutout, for each run of opaque triangles
+    std::vector<Call> color;       ///< of Stage::pixel, for each program
+    std::vector<Call> layers;      ///< as `visibility`, of triangles that are blended
+    std::vector<Call> blending;    ///< of Stage::blend
+    size_t blended = 0;            ///< how many triangles are blended: at most so many layers are drawn
+    size_t first_cut = 0;  ///< from this triangle on they are what cutting left; their order stands in `inputs`
+  };
+  /// As render(), by compute shaders. Nothing, if these triangles take more tiles than the device lists.
+  std::optional<bool> compute(const Computed& calls, const float (&background)[4], const Window& window,
+                              bool has_color, const Places& places);
   /// Makes the array at least this long and keeps what is in it.
   void extend_layers(size_t bytes);
   /// Reduces an image in `layers`, `halvings` times, see backends::halve(). `between`: room for what the first of two makes.

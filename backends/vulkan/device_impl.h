@@ -10,6 +10,7 @@
 #include "backends/vulkan/device.h"
 #include "backends/vulkan/instance.h"
 #include "backends/vulkan/limits.h"
+#include "compiler/targets/glsl/stages.h"
 
 namespace isoshade::vulkan {
 
@@ -199,6 +200,14 @@ struct Device::Impl {
   DrawnView record_view(std::span<const Call> visibility, std::span<const Call> color, const Layers& layers,
                         const float (&background)[4], const Window& window, bool has_color);
 
+  /// A turn of finding what is seen, see glsl::Turn.
+  void find_seen(std::span<const Call> calls, glsl::Turn turn, const Window& window, const Places& places,
+                 size_t first_cut);
+  /// Runs a compute shader of pixels of a window in `layers`.
+  void compute_pixels(Call call, const Window& window, const Places& places);
+  /// Draws layer after layer. False if they take more tiles than the device lists.
+  bool compute_layers(const Computed& calls, const Window& window, const Places& places);
+
   /// Records what differs from the state that the recording has, and a draw. Drivers look at state that is set again.
   void record(const Call& call);
   void bind_computing(const Call& call);
@@ -243,7 +252,7 @@ struct Device::Impl {
   std::array<Array, frame_bindings> arrays;
   Buffer output;  ///< words that vertex kernels write
   Buffer positions, cuts;  ///< of the setup stage
-  Buffer seen, tiles;      ///< of compute shaders that find what is seen
+  Buffer seen, tiles, orders;  ///< of compute shaders that find what is seen
   Array indices;
   Array zero;     ///< always 0
   Buffer readback;
@@ -257,7 +266,7 @@ struct Device::Impl {
   std::map<std::pair<Output, uint32_t>, vk::raii::RenderPass> render_passes;
   std::vector<Pipeline> pipelines;
   std::unordered_map<std::string, PipelineIndex> pipeline_of;  ///< by source, see key()
-  std::optional<PipelineIndex> finite_check, backdrop, halving;
+  std::optional<PipelineIndex> finite_check, backdrop, next_layer, halving;
   double build_seconds = 0;
 };
 

@@ -37,44 +37,6 @@ void main() {
   return text;
 }
 
-/// A compute shader that makes numbers of triangles of their order, see glsl::order_bits, and stores the background where no
-/// triangle is seen. Its words are those of push constants.
-const std::string& backdrop_compute() {
-  static const std::string text =
-      glsl::head() + glsl::compute_interface(true) +
-      "layout(std430, set = 0, binding = " + std::to_string(static_cast<int>(lower::FrameBuffer::layers)) +
-      ") writeonly buffer made_block { int made[]; };\nlayout(std430, set = 0, binding = " +
-      std::to_string(static_cast<int>(lower::FrameBuffer::triangles)) +
-      ") readonly buffer triangles_block { int triangles[]; };\nlayout(std430, set = 0, binding = " +
-      std::to_string(seen_binding) + ") buffer seen_block { int seen[]; };" + R"(
-
-void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  if (at.x >= push.columns || at.y >= push.rows) return;
-  int pixel = at.y * push.pitch + at.x, order = seen[pixel];
-  if (order != )" +
-      std::to_string(glsl::nothing_seen) +
-      R"() {
-    int triangle = order >> )" +
-      std::to_string(glsl::order_bits) + ", left = order & " + std::to_string((1 << glsl::order_bits) - 1) +
-      R"(;
-    // The record of a triangle that was cut names the first of what is left of it.
-    seen[pixel] = left == 0 ? triangle : triangles[)" +
-      std::to_string(lower::triangle_word::stride) +
-      R"( * triangle] + left - 1;
-    return;
-  }
-  seen[pixel] = -1;
-  int word = push.place + 4 * pixel;
-  made[word] = push.object;
-  made[word + 1] = push.light_count;
-  made[word + 2] = push.program;
-  made[word + 3] = push.first;
-}
-)";
-  return text;
-}
-
 /// A vertex kernel that sets the first word of the output to 1 if a float in [push.first, push.first + push.count) of
 /// `layers` is infinite or NaN.
 const std::string& finite_check_vertex() {
@@ -188,8 +150,10 @@ void Device::read_layers(size_t first, void* data, size_t bytes) {
 bool Device::prepare_own_shaders(support::Diagnostics& diagnostics) {
   if (impl_->finite_check) return true;
   if (impl_->computes) {
-    impl_->backdrop = pipeline({Output::pixels, 0, backdrop_compute(), {}}, diagnostics);
+    impl_->backdrop = pipeline({Output::pixels, 0, glsl::backdrop_compute(), {}}, diagnostics);
     if (!impl_->backdrop) return false;
+    impl_->next_layer = pipeline({Output::pixels, 0, glsl::layer_compute(), {}}, diagnostics);
+    if (!impl_->next_layer) return false;
     impl_->halving = pipeline({Output::pixels, 0, glsl::halving_compute(), {}}, diagnostics);
     if (!impl_->halving) return false;
     impl_->finite_check = pipeline({Output::row, 0, finite_check_compute(), {}}, diagnostics);

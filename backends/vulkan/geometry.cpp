@@ -144,6 +144,7 @@ std::optional<DeviceTriangles> VulkanBackend::make_triangles(const ViewPass& pas
   size_t positions = 0, triangles = 0;
   for (const Draw& draw : pass.view.draws) positions += draw.vertex_count;
   for (const Part& part : parts) triangles += part.triangles();
+  if (triangles >= size_t{1} << (31 - glsl::order_bits)) return std::nullopt;  // too many to be ordered
   const size_t room = Device::cut_room * most_left,
                made_bytes = Device::cut_room * most_made * lower::vertex_word::stride * sizeof(float);
   const size_t vertex_bytes = frame.vertices.size() * sizeof(float);
@@ -204,21 +205,20 @@ std::optional<DeviceTriangles> VulkanBackend::make_triangles(const ViewPass& pas
   std::ranges::sort(made.cuts, {}, &Device::Cut::triangle);
   std::vector<float> made_vertices;
   std::vector<int32_t> made_triangles;
-  std::set<size_t> programs;
+  std::set<size_t> programs, blending;
   std::vector<int32_t> orders;  // of what cutting left
-  std::vector<Run> cut_runs;
+  std::vector<std::pair<bool, Run>> left;
   auto cut = made.cuts.begin();
   for (const Part& part : parts) {
     const int object = part.draw->object;
-    programs.insert(backends::pixel_program_of(frame, object));
+    const bool is_blended = part.surface.blended;
+    (is_blended ? blending : programs).insert(backends::pixel_program_of(frame, object));
     const auto run = [&](size_t first, size_t count) {
-      return Run{static_cast<uint32_t>(first), static_cast<uint32_t>(count),
-                 part.surface.state.depth == interface::DepthTest::always,
+      return Run{static_cast<uint32_t>(first), static_cast<uint32_t>(count), false,
                  part.surface.cutout ? frame.programs[backends::cutout_program_of(frame, object)] : nullptr};
     };
-    size_t begin = part.first_triangle;
-    const size_t end = begin + part.triangles();
-    append(result.unordered, run(begin, part.triangles()));
+    append(is_blended ? result.blended : result.opaque, run(part.first_triangle, part.triangles()));
+    const size_t end = size_t{part.first_triangle} + part.triangles();
     for (; cut != made.cuts.end() && static_cast<size_t>(cut->triangle) < end; ++cut) {
       const auto number = static_cast<size_t>(cut->triangle);
       const size_t former = made_triangles.size();
@@ -230,23 +230,20 @@ std::optional<DeviceTriangles> VulkanBackend::make_triangles(const ViewPass& pas
       raster::cut_triangle(viewport, part.surface, triangle, frame.vertices,
                            static_cast<int32_t>(frame.vertices.size() / lower::vertex_word::stride),
                            made_vertices, made_triangles);
-      if (made_triangles.size() == former) continue;
-      const size_t first = triangles + former / lower::triangle_word::stride;
       const size_t count = (made_triangles.size() - former) / lower::triangle_word::stride;
-      append(result.runs, run(begin, number - begin));
-      append(result.runs, run(first, count));
-      append(cut_runs, run(first, count));
-      begin = number + 1;
+      if (count == 0) continue;
+      const size_t first = triangles + former / lower::triangle_word::stride;
+      left.emplace_back(is_blended, run(first, count));
       for (size_t i = 1; i <= count; ++i)
         orders.push_back(static_cast<int32_t>((number << glsl::order_bits) + i));
       const auto named = static_cast<int32_t>(first);
       device_->append(FrameBuffer::triangles, number * record_bytes, &named, sizeof named);
     }
-    append(result.runs, run(begin, end - begin));
   }
-  for (const Run& left : cut_runs) append(result.unordered, left);
-  result.first_cut = triangles;
+  for (const auto& [is_blended, run] : left) append(is_blended ? result.blended : result.opaque, run);
+  for (const Run& run : result.blended) result.blended_count += run.count;
   support::assert_that(cut == made.cuts.end(), "a triangle is cut that no draw has");
+  result.first_cut = triangles;
   result.made.triangles += static_cast<int64_t>(made_triangles.size()) / lower::triangle_word::stride;
   result.made.vertices = static_cast<int64_t>(made_vertices.size()) / lower::vertex_word::stride;
   device_->append(FrameBuffer::vertices, vertex_bytes, made_vertices.data(),
@@ -256,6 +253,7 @@ std::optional<DeviceTriangles> VulkanBackend::make_triangles(const ViewPass& pas
   device_->append(FrameBuffer::inputs, input_bytes, orders.data(), orders.size() * sizeof(int32_t));
   result.first_order = inputs.size();
   result.programs.assign(programs.begin(), programs.end());
+  result.blending.assign(blending.begin(), blending.end());
   return result;
 }
 

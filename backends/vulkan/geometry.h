@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles that the device makes itself. Vertex programs leave their positions on the device, and the setup stage makes a
 // record of each triangle where the host would list only those that are seen: a record without an area takes the place of
-// the others, so that the order is kept. The few triangles that a plane cuts come to the host, which clips them as it clips
+// the others. The few triangles that a plane cuts come to the host, which clips them as it clips
 // all for other backends, and puts what is left of them behind the records.
 #pragma once
 
@@ -25,14 +25,13 @@ struct Run {
 /// Appends triangles, to the last run if they belong to it.
 void append(std::vector<Run>& runs, const Run& run);
 
-/// The triangles of a view, whose records the device has.
+/// The triangles of a view, whose records the device has. Their numbers tell the order, see glsl::order_bits.
 struct DeviceTriangles {
-  std::vector<Run> runs;  ///< in the order in which they are drawn
-  std::vector<Run>
-      unordered;  ///< the same triangles in fewer runs, for compute shaders, which know the order by numbers
-  size_t first_cut = 0;          ///< from this number on they are what cutting left
-  size_t first_order = 0;        ///< where the order of these stands in `inputs`
-  std::vector<size_t> programs;  ///< the pixel programs that they need: indices into Frame::programs
+  std::vector<Run> opaque, blended;
+  size_t blended_count = 0;
+  std::vector<size_t> programs, blending;  ///< the programs that show them: indices into Frame::programs
+  size_t first_cut = 0;    ///< from this number on they are what cutting left
+  size_t first_order = 0;  ///< where the order of these stands in `inputs`
   backends::Made made;
 };
 

@@ -35,7 +35,8 @@ inline constexpr uint32_t indices_binding = positions_binding + 1;
 inline constexpr uint32_t cuts_binding = indices_binding + 1;
 inline constexpr uint32_t seen_binding = cuts_binding + 1;
 inline constexpr uint32_t tiles_binding = seen_binding + 1;
-inline constexpr uint32_t binding_count = tiles_binding + 1;
+inline constexpr uint32_t orders_binding = tiles_binding + 1;
+inline constexpr uint32_t binding_count = orders_binding + 1;
 inline constexpr uint32_t image_bindings = 4;
 constexpr bool is_image_binding(uint32_t binding) {
   return binding == ids_binding || (binding >= former_ids_binding && binding <= former_color_binding);

@@ -124,47 +124,45 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     });
   }
 
-  /// Draws triangles whose records the device has, of which none is blended, as the following.
-  bool draw(const Window& window, const DeviceTriangles& triangles, const Device::Places& places,
-            bool& is_finite, Diagnostics& diagnostics) {
+  /// Draws triangles whose records the device has, to the array `layers`, by compute shaders. Returns whether the color is
+  /// finite; nothing if there are too many large triangles, or after an error.
+  std::optional<bool> draw(const Window& window, const DeviceTriangles& triangles, const Device::Places& places,
+                           Diagnostics& diagnostics) {
     const bool has_color = pass_.view.target.has_color;
     if (!backend_.check_size(window.width, window.height, diagnostics) ||
         !backend_.device_->prepare_own_shaders(diagnostics) ||
         !backend_.upload_textures(pass_.frame, diagnostics))
-      return false;
-    // A triangle that takes every pixel is no matter of the greatest depth.
-    bool computes =
-        std::ranges::none_of(triangles.unordered, &Run::over) && triangles.first_cut < max_ordered;
-    for (;; computes = false) {
-      Calls calls;
-      if (computes) {
-        for (const Run& run : triangles.unordered) {
-          const auto pipeline = seen_pipeline(run, diagnostics);
-          if (!pipeline) return false;
-          calls.visibility.push_back({.pipeline = *pipeline,
-                                      .push = {.object = static_cast<int32_t>(triangles.first_order)},
-                                      .first_vertex = run.first,
-                                      .vertex_count = run.count});
-        }
-      } else if (!add_visibility(triangles.runs, window, false, calls.visibility, diagnostics)) {
-        return false;
+      return std::nullopt;
+    Device::Computed calls;
+    const auto add_runs = [&](std::span<const Run> runs, std::vector<Call>& added) {
+      for (const Run& run : runs) {
+        const driver::Program& program = run.cutout != nullptr ? *run.cutout : driver::depth_program();
+        const auto pipeline = computed(program, Output::row, diagnostics);
+        if (!pipeline) return false;
+        added.push_back({.pipeline = *pipeline,
+                         .push = {.object = static_cast<int32_t>(triangles.first_order)},
+                         .first_vertex = run.first,
+                         .vertex_count = run.count});
       }
-      std::ranges::fill(shading_, std::nullopt);
-      if (has_color)
-        for (const size_t program : triangles.programs)
-          if (!add_shading(program, computes, window, calls, diagnostics)) return false;
-      Device& device = *backend_.device_;
-      const auto& background = pass_.view.background;
-      if (!computes) {
-        is_finite = device.render(calls.visibility, calls.color, {}, background, window, has_color, places);
-        return true;
-      }
-      const auto computed = device.compute(calls.visibility, calls.color, background, window, has_color,
-                                           places, triangles.first_cut);
-      if (!computed) continue;
-      is_finite = *computed;
       return true;
-    }
+    };
+    const auto add_programs = [&](std::span<const size_t> programs, std::vector<Call>& added) {
+      for (const size_t p : programs) {
+        const auto pipeline = computed(*pass_.frame.programs[p], Output::pixels, diagnostics);
+        if (!pipeline) return false;
+        added.push_back({.pipeline = *pipeline,
+                         .push = {.light_count = pass_.frame.light_count, .program = static_cast<int32_t>(p)},
+                         .scissor = window});
+      }
+      return true;
+    };
+    if (!add_runs(triangles.opaque, calls.visibility) || !add_runs(triangles.blended, calls.layers))
+      return std::nullopt;
+    if (has_color && (!add_programs(triangles.programs, calls.color) || !add_programs(triangles.blending, calls.blending)))
+      return std::nullopt;
+    calls.blended = triangles.blended_count;
+    calls.first_cut = triangles.first_cut;
+    return backend_.device_->compute(calls, pass_.view.background, window, has_color, places);
   }
 
   /// Draws to the array `layers`. `is_finite` tells whether the color is finite.
@@ -184,16 +182,11 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
  private:
   static constexpr size_t stride = lower::triangle_word::stride;
 
-  /// Numbers of triangles that can be ordered, see glsl::order_bits.
-  static constexpr size_t max_ordered = size_t{1} << (31 - glsl::order_bits);
-
-  /// Finds what is seen by a compute shader.
-  std::optional<PipelineIndex> seen_pipeline(const Run& run, Diagnostics& diagnostics) {
-    const driver::Program& program = run.cutout != nullptr ? *run.cutout : driver::depth_program();
-    return backend_.pipeline_of(program, VulkanBackend::Use::seen, [&]() -> std::optional<PipelineIndex> {
+  std::optional<PipelineIndex> computed(const driver::Program& program, Output output, Diagnostics& diagnostics) {
+    return backend_.pipeline_of(program, VulkanBackend::Use::computed, [&]() -> std::optional<PipelineIndex> {
       auto text = backend_.text_of(program, diagnostics, true);
       if (!text) return std::nullopt;
-      PipelineSource source{Output::row, 0, std::move(*text), {}};
+      PipelineSource source{output, 0, std::move(*text), {}};
       source.what = driver::description(program);
       return backend_.device_->pipeline(source, diagnostics);
     });
@@ -214,15 +207,15 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     if (has_color) bounds = bounds_of_programs(pass_.frame, window, triangles.first(opaque * stride));
     for (size_t p = 0; p < bounds.size(); ++p) {
       if (bounds[p].empty()) continue;
-      if (!add_shading(p, false, window_of(bounds[p]), calls, diagnostics)) return false;
+      if (!add_shading(p, window_of(bounds[p]), calls, diagnostics)) return false;
     }
     return opaque == count || add_layers(window, triangles, opaque, count, calls.layers, diagnostics);
   }
 
-  bool add_shading(size_t program, bool computes, const Window& area, Calls& calls,
+  bool add_shading(size_t program, const Window& area, Calls& calls,
                    Diagnostics& diagnostics) {
     std::optional<PipelineIndex>& pipeline = shading_[program];
-    if (!pipeline) pipeline = backend_.screen_pipeline(*pass_.frame.programs[program], computes, diagnostics);
+    if (!pipeline) pipeline = backend_.screen_pipeline(*pass_.frame.programs[program], false, diagnostics);
     if (!pipeline) return false;
     calls.color.push_back(
         {.pipeline = *pipeline,
@@ -343,9 +336,11 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
 std::optional<bool> VulkanBackend::draw_view(const backends::Drawing& drawing, backends::Made& made,
                                              Diagnostics& diagnostics) {
   const backends::View& view = drawing.pass.view;
-  const auto is_blended = [&](const backends::Draw& draw) { return draw.blended && view.target.has_color; };
-  if (!on_device_ || !device_->makes_triangles() || view.draws.empty() ||
-      std::ranges::any_of(view.draws, is_blended))
+  // An opaque triangle that takes every pixel is no matter of the greatest depth.
+  const auto takes_all = [&](const backends::Draw& draw) {
+    return draw.state.depth == interface::DepthTest::always && !(draw.blended && view.target.has_color);
+  };
+  if (!on_device_ || !device_->makes_triangles() || view.draws.empty() || std::ranges::any_of(view.draws, takes_all))
     return std::nullopt;
   const Device::Places pixels{drawing.depth.first * sizeof(float), drawing.color.first * sizeof(float)};
   // Samples lie behind the images of the frame until they become pixels; of 16 a pixel, first each 4 become one.
@@ -361,19 +356,19 @@ std::optional<bool> VulkanBackend::draw_view(const backends::Drawing& drawing, b
   }
   const std::vector<int32_t> records =
       backends::image_records(view.target.width, view.target.height, drawing.pass.images);
-  bool on_device = false, is_finite = true;
-  const bool drawn = guarded(diagnostics, [&] {
+  std::optional<bool> is_finite;
+  const bool succeeded = guarded(diagnostics, [&] {
     const auto triangles = make_triangles(drawing.pass, {{}, records}, diagnostics);
-    if (!triangles) return false;
-    on_device = true;
+    if (!triangles) return !diagnostics.has_errors();
     made = triangles->made;
     VulkanViewRenderer renderer(*this, drawing.pass, {{}, records}, drawing.pass.frame.vertices, true);
-    return renderer.draw(drawing.window, *triangles, places, is_finite, diagnostics);
+    is_finite = renderer.draw(drawing.window, *triangles, places, diagnostics);
+    return is_finite || !diagnostics.has_errors();
   });
-  if (!on_device && !diagnostics.has_errors()) return std::nullopt;
-  made_finite_ = made_finite_ && is_finite;
-  if (!drawn || drawing.side == 1)
-    return drawn && (drawing.posts.empty() || post(drawing.posts, drawing.color, diagnostics));
+  if (!succeeded) return false;
+  if (!is_finite) return std::nullopt;
+  made_finite_ = made_finite_ && *is_finite;
+  if (drawing.side == 1) return drawing.posts.empty() || post(drawing.posts, drawing.color, diagnostics);
   const backends::Slot color{places.color / sizeof(float), view.target.width, view.target.height, 4};
   for (backends::ScreenPass pass : drawing.posts) {
     std::vector<backends::ImageRead> images(pass.images.begin(), pass.images.end());

@@ -59,7 +59,7 @@ std::string description(const Program& program);
 std::string glsl(const Program& program, Division division);
 /// The same, but an eval program becomes a vertex shader.
 std::string glsl_with_vertex_eval(const Program& program, Division division);
-/// A program of Stage::vertex, setup, depth, cutout, pixel or post as a compute shader.
+/// A program as a compute shader; not of Stage::eval.
 std::string glsl_of_compute(const Program& program, Division division);
 /// The shader for a layer of triangles that are blended: of a program that decides visibility in pixels, and of Stage::blend
 /// where the triangles write depth.

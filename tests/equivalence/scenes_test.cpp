@@ -48,7 +48,7 @@ TEST(Scenes, AreIdenticalAsOnAGpu) {
 TEST(Scenes, GpusMakeTheTrianglesThatTheHostMakes) {
   const auto cpu = cpu_backend();
   const auto gpu = vulkan_backend(std::nullopt, true);
-  for (const char* name : {"cartoon_village", "inside_sphere", "shadows", "overlay", "motion_blur"}) {
+  for (const char* name : {"cartoon_village", "inside_sphere", "shadows", "transparent", "motion_blur"}) {
     const render::Plan made = plan(scene_path(name), 320, 180);
     support::Diagnostics diagnostics;
     backends::Image image;

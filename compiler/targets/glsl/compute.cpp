@@ -71,6 +71,61 @@ void main() {
 )";
 }
 
+std::string numbered() {
+  return filled(R"(
+// The number of the triangle that has this order.
+int number_of(int order) {
+  int triangle = order >> $bits, left = order & ((1 << $bits) - 1);
+  // The record of a triangle that was cut names the first of what is left of it.
+  return left == 0 ? triangle : triangles[$stride * triangle] + left - 1;
+}
+)",
+                {{"$bits", order_bits}, {"$stride", triangle_word::stride}});
+}
+
+std::string backdrop_compute() {
+  return head() + compute_interface(true) + binding(FrameBuffer::layers) +
+         "writeonly buffer made_block { int made[]; };\n" + binding(FrameBuffer::triangles) +
+         "readonly buffer triangles_block { int triangles[]; };\n" + binding(9) +
+         "buffer seen_block { int seen[]; };\n" + numbered() +
+         filled(R"(
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (at.x >= push.columns || at.y >= push.rows) return;
+  int pixel = at.y * push.pitch + at.x, order = seen[pixel];
+  seen[pixel] = order == $nothing ? -1 : number_of(order);
+  if (order != $nothing) return;
+  int word = push.place + 4 * pixel;
+  made[word] = push.object;
+  made[word + 1] = push.light_count;
+  made[word + 2] = push.program;
+  made[word + 3] = push.first;
+}
+)",
+                {{"$nothing", nothing_seen}});
+}
+
+std::string layer_compute() {
+  return head() + compute_interface(true) + binding(FrameBuffer::triangles) +
+         "readonly buffer triangles_block { int triangles[]; };\n" + binding(9) +
+         "buffer seen_block { int seen[]; };\n" + binding(10) +
+         "buffer tiles_block { int tile_count; int last_layer; };\n" + binding(11) +
+         "buffer orders_block { int orders[]; };\n" + numbered() +
+         filled(R"(
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (at.x >= push.columns || at.y >= push.rows) return;
+  int pixel = at.y * push.pitch + at.x, next = push.count + pixel, order = orders[next];
+  seen[pixel] = order == $nothing ? -1 : number_of(order);
+  if (order == $nothing) return;
+  orders[pixel] = order;
+  orders[next] = $nothing;
+  if (last_layer != push.first) last_layer = push.first;
+}
+)",
+                {{"$nothing", nothing_seen}});
+}
+
 std::string row_of() {
   return filled(R"(
 // Where the row of a vertex or a triangle begins in `inputs`.
@@ -147,7 +202,8 @@ std::string seen_interface(std::vector<bool>& used) {
   used[static_cast<size_t>(FrameBuffer::triangles)] = true;
   return compute_interface(false) + binding(FrameBuffer::layers) +
          "buffer depths_block { int depths[]; };\n" + binding(9) + "buffer seen_block { int seen[]; };\n" +
-         binding(10) + "buffer tiles_block { int tile_count; int unused; ivec2 tiles[]; };\n";
+         binding(10) + "buffer tiles_block { int tile_count; int last_layer; ivec2 tiles[]; };\n" +
+         binding(11) + "buffer orders_block { int orders[]; };\n";
 }
 
 std::string seen_main(const emit::FunctionText* called) {
@@ -168,13 +224,17 @@ void visit(ivec2 at, int triangle, ivec2 a, ivec2 b, ivec2 c) {
   ivec2 centre = 256 * at + 128;
   if (!is_within(a, b, centre) || !is_within(b, c, centre) || !is_within(c, a, centre)) return;
   int pixel = (at.y - push.origin_y) * push.width + at.x - push.origin_x;
+  int order = triangle < push.projected ? triangle << $order_bits : inputs[push.object + triangle - push.projected];
+  if (push.first >= $layer_of_triangles && order <= orders[pixel]) return;
 )";
   static constexpr char after[] = R"(  int z_bits = floatBitsToInt(z);
   if (push.first < $seen_of_triangles) {
     if (z_bits > depths[push.place + pixel]) atomicMax(depths[push.place + pixel], z_bits);
-  } else if (z_bits > 0 && z_bits == depths[push.place + pixel]) {
-    int order = triangle < push.projected ? triangle << $order_bits : inputs[push.object + triangle - push.projected];
-    atomicMin(seen[pixel], order);
+  } else if (push.first < $layer_of_triangles) {
+    if (z_bits > 0 && z_bits == depths[push.place + pixel]) atomicMin(seen[pixel], order);
+  } else {
+    bool is_over = (triangles[triangle * $stride + $object] & $over) != 0;
+    if (is_over || z_bits > depths[push.place + pixel]) atomicMin(orders[push.width * push.count + pixel], order);
   }
 }
 
@@ -200,7 +260,7 @@ void visit_triangle(int triangle) {
       for (int x = box.x; x <= box.z; ++x) visit(ivec2(x, y), triangle, a, b, c);
     return;
   }
-  if (push.first != $depth_of_triangles) return;
+  if (push.first != $depth_of_triangles && push.first != $first_layer) return;
   ivec2 origin = ivec2(push.origin_x, push.origin_y);
   ivec2 first = (box.xy - origin) / $side, last = (box.zw - origin) / $side, across = last - first + 1;
   int place = atomicAdd(tile_count, across.x * across.y), pitch = (push.width + $side - 1) / $side;
@@ -221,7 +281,7 @@ void visit_tile(int triangle, int tile) {
 }
 
 void main() {
-  if (push.first == $depth_of_triangles || push.first == $seen_of_triangles) {
+  if (push.first != $depth_of_tiles && push.first != $seen_of_tiles && push.first != $layer_of_tiles) {
     if (int(gl_GlobalInvocationID.x) < push.columns) visit_triangle(push.left + int(gl_GlobalInvocationID.x));
     return;
   }
@@ -239,6 +299,12 @@ void main() {
             "(at.x, at.y, triangle, object);\n  if (!covered." + called->result_fields[0] +
             ") return;\n  precise float z = covered." + called->result_fields[1] + ";\n";
   return filled(before + depth + after, {{"$depth_of_triangles", static_cast<int>(Turn::depth_of_triangles)},
+                                         {"$depth_of_tiles", static_cast<int>(Turn::depth_of_tiles)},
+                                         {"$seen_of_tiles", static_cast<int>(Turn::seen_of_tiles)},
+                                         {"$layer_of_triangles", static_cast<int>(Turn::layer_of_triangles)},
+                                         {"$layer_of_tiles", static_cast<int>(Turn::layer_of_tiles)},
+                                         {"$first_layer", static_cast<int>(Turn::first_layer_of_triangles)},
+                                         {"$over", triangle_flag::over},
                                          {"$seen_of_triangles", static_cast<int>(Turn::seen_of_triangles)},
                                          {"$order_bits", order_bits},
                                          {"$stride", triangle_word::stride},

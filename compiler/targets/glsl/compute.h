@@ -30,6 +30,9 @@ inline constexpr std::string_view canonical_vector =
     "ivec4 canonical(vec4 v) { return ivec4(canonical(v.x), canonical(v.y), canonical(v.z), canonical(v.w)); "
     "}\n";
 
+/// `int number_of(int order)` of shaders that declare `triangles`.
+std::string numbered();
+
 std::string vertex_compute_main();
 
 std::string setup_interface();

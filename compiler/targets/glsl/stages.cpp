@@ -134,6 +134,36 @@ std::string pixel_main(Variant variant) {
          store_color(variant, "target", "pixel(at.x, at.y, triangle, object, push.light_count)") + "}\n";
 }
 
+/// As below, in a compute shader: the color behind is that which is replaced, and depths lie from the word `first` on.
+std::string blend_compute_main(const FunctionText& called) {
+  using namespace lower;
+  const auto word = [](int at) { return std::to_string(at); };
+  return std::string(canonical_bits) + std::string(canonical_vector) + "\nvoid main() {\n" +
+         pixel_head(Variant::compute, "target") +
+         "  ivec2 at = target + ivec2(push.origin_x, push.origin_y);\n"
+         "  int pixel = target.y * push.pitch + target.x, triangle = seen[pixel];\n"
+         "  if (triangle < 0) return;\n"
+         "  int last = triangles[triangle * " +
+         word(triangle_word::stride) + " + " + word(triangle_word::object) + "], object = last >> " +
+         word(triangle_flag::bits) +
+         ";\n"
+         "  if (int(objects[object + " +
+         word(object_word::program) +
+         "]) != push.program) return;\n"
+         "  int place = push.place + 4 * pixel;\n"
+         "  ivec4 former = ivec4(made[place], made[place + 1], made[place + 2], made[place + 3]);\n"
+         "  precise vec4 behind = intBitsToFloat(former);\n  " +
+         called.result_type + " blended = " + called.name +
+         "(at.x, at.y, triangle, object, push.light_count, behind);\n"
+         "  ivec4 color = canonical(blended." +
+         called.result_fields[0] +
+         ");\n"
+         "  for (int i = 0; i < 4; ++i) made[place + i] = color[i];\n"
+         "  if ((last & " +
+         word(triangle_flag::keeps_depth) + ") == 0) made[push.first + pixel] = floatBitsToInt(blended." +
+         called.result_fields[1] + ");\n}\n";
+}
+
 /// `BlendResult blended = blend(...)` over what is behind the pixel.
 std::string blend_main(const FunctionText& called, Variant variant) {
   using namespace lower;
@@ -303,6 +333,12 @@ std::string stage(const ir::Module& module, uint32_t entry, lower::Stage stage, 
     case lower::Stage::blend:
       used[static_cast<size_t>(lower::FrameBuffer::triangles)] = true;
       used[static_cast<size_t>(lower::FrameBuffer::objects)] = true;
+      if (variant == Variant::compute) {
+        interface = compute_interface(true) + binding(9) + "readonly buffer seen_block { int seen[]; };\n" +
+                    color_interface(variant);
+        body = blend_compute_main(texts[entry]);
+        break;
+      }
       interface = push_constants() + binding(1, "") + "uniform isampler2D ids;\n" + binding(5, "") +
                   "uniform sampler2D former_color;\nlayout(location = 0) out vec4 color;\n";
       if (variant == Variant::layer) interface += "layout(location = 1) out float new_depth;\n";

@@ -3,8 +3,8 @@
 //
 // Set 0: bindings 0 to n - 1 are the buffers of lower/frame_layout.h (only those used are declared), n `clip`
 // (uvec4, written by vertex), n + 1 `ids` (isampler2D, read by pixel and blend), n + 2 a word that is 0.0 (see ir::Opcode),
-// n + 6 to 8 are buffers of setup: `positions` (vec4), `indices` (int) and `cuts`, n + 9 and 10 of compute shaders: `seen`
-// (int) and `tiles`,
+// n + 6 to 8 are buffers of setup: `positions` (vec4), `indices` (int) and `cuts`, n + 9 to 11 of compute shaders: `seen`
+// (int), `tiles` and `orders` (int);
 // n + 3 `former_ids` (isampler2D), n + 4 `former_depth` and n + 5 `former_color` (sampler2D): of the layer before. Push
 // constants, nine ints:
 //   object, light_count, program, first, count, width, origin_x, origin_y, projected
@@ -50,7 +50,7 @@ enum class Variant : uint8_t {
   /// gl_FragDepth is 1, so that under the test `>` the first triangle is kept that comes through. Of blend: writes the
   /// depth of the triangle, too, as out float at 1.
   layer,
-  compute  ///< of vertex, setup, depth, cutout, pixel and post
+  compute  ///< of all but eval
 };
 
 /// In `cuts`: how many triangles were kept, how many are to be clipped, two words unused; then records of 16 words: the
@@ -68,12 +68,22 @@ inline constexpr int vertex = 3, surface = 4;
 inline constexpr int stride = 5;
 }  // namespace table_row
 
-/// What depth and cutout do as compute shaders, in this order; for depth alone the first two.
-enum class Turn : int { depth_of_triangles, depth_of_tiles, seen_of_triangles, seen_of_tiles };
+/// What depth and cutout do as compute shaders: the first four in this order, for depth alone the first two. Then, if there
+/// are triangles that are blended, for each layer of them the next two; the very first time in place of layer_of_triangles
+/// first_layer_of_triangles, which lists tiles.
+enum class Turn : int {
+  depth_of_triangles,
+  depth_of_tiles,
+  seen_of_triangles,
+  seen_of_tiles,
+  layer_of_triangles,
+  layer_of_tiles,
+  first_layer_of_triangles
+};
 /// Triangles whose bounds have more pixels are drawn by tiles of so many pixels a side.
 inline constexpr int most_pixels = 64, seen_tile = 16;
-/// `tiles` begins with their number; from the third word on follow pairs: the triangle, and the tile, row by row. If there are
-/// more than tile_room, some are missing.
+/// `tiles` begins with their number, and that of the last layer that shows anything, from 1 on; then follow pairs: the
+/// triangle, and the tile, row by row. If there are more than tile_room, some are missing.
 inline constexpr int tile_head_words = 2, tile_words = 2, tile_room = 1 << 22;
 /// Groups that take tiles, one after the other.
 inline constexpr int tile_groups = 4096;
@@ -84,11 +94,22 @@ inline constexpr int tile_groups = 4096;
 inline constexpr int order_bits = 3;
 inline constexpr int nothing_seen = 0x7fffffff;
 
+/// `orders` has for each pixel the order of the triangle that was blended last, -1 for none, and then for each pixel that of
+/// the next one.
+
 inline constexpr int compute_side = 8;
 inline constexpr int compute_length = 64;
 
 /// The push constants of compute shaders, and their groups: of pixels, or of vertices.
 std::string compute_interface(bool of_pixels);
+
+/// A compute shader that makes numbers of triangles of their order in `seen`, and stores the background where there is none:
+/// the words `object`, `light_count`, `program` and `first`.
+std::string backdrop_compute();
+
+/// A compute shader of the layer `first` of triangles that are blended: each pixel moves on to its next one, whose number it
+/// finds in `seen`. `count`: the pixels in `orders`.
+std::string layer_compute();
 
 /// A compute shader that makes each pixel [left, left + columns) x [top, top + rows) the mean of 2 x 2 others, of `width` a
 /// row: their colors begin at the word `object` of `layers`, their depths at `count`. The color goes to `place`, the depth to
