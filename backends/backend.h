@@ -151,6 +151,12 @@ struct Drawing {
   Slot depth, color;  ///< of the window in pixels; no color where the target has none
 };
 
+/// A step on a device.
+struct DeviceStep {
+  std::string_view name;
+  double seconds = 0;  ///< that it took so far, by the device's clock
+};
+
 /// What came of the triangles of a view.
 struct Made {
   int64_t triangles = 0;  ///< left by clipping and culling
@@ -174,6 +180,9 @@ class Backend {
   virtual std::string description() const = 0;
   /// The seconds spent so far on machine code: compiling it, or finding and loading it, when a program first runs.
   virtual double build_seconds() const { return 0; }
+
+  /// What ran on a device with a clock of its own; empty without one.
+  virtual std::vector<DeviceStep> device_steps() const { return {}; }
 
   // The images of a frame lie in one array, `layers`, where programs read them. It lives on from frame to frame.
 

@@ -117,6 +117,14 @@ std::string VulkanBackend::description() const {
 
 double VulkanBackend::build_seconds() const { return device_->build_seconds(); }
 
+std::vector<backends::DeviceStep> VulkanBackend::device_steps() const {
+  const std::optional<DeviceSeconds> seconds = device_seconds();
+  if (!seconds) return {};
+  return {{"vertices", seconds->vertices}, {"triangles", seconds->triangles}, {"visibility", seconds->visibility},
+          {"shading", seconds->shading},   {"blending", seconds->layers},     {"posts", seconds->screen},
+          {"copies", seconds->copies}};
+}
+
 std::optional<DeviceSeconds> VulkanBackend::device_seconds() const { return device_->seconds(); }
 
 std::optional<std::string> VulkanBackend::text_of(const Program& program, Diagnostics& diagnostics,

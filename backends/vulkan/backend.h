@@ -86,6 +86,7 @@ class VulkanBackend : public backends::HostBackend {
   std::string_view name() const override { return "vulkan"; }
   std::string description() const override;
   double build_seconds() const override;
+  std::vector<backends::DeviceStep> device_steps() const override;
 
   // The images stay on the device, unless they take more than shaders can read.
   bool reserve(size_t floats, support::Diagnostics& diagnostics) override;

@@ -24,8 +24,8 @@ void Device::append(lower::FrameBuffer buffer, size_t first, const void* data, s
   Array& array = impl_->arrays[static_cast<size_t>(buffer)];
   support::assert_that(impl_->own_memory && first + bytes <= array.buffer.bytes, "no room behind an array");
   array.held = std::min(array.held, first);
-  if (array.staging.bytes <
-      array.buffer.bytes) {  // all of it, or growing later would lose what waits to be copied
+  // As long as the array, or growing later would lose what waits to be copied.
+  if (array.staging.bytes < array.buffer.bytes) {
     support::assert_that(array.pending.empty(), "an array was uploaded without staging memory");
     array.held = 0;
     impl_->reserve(array.staging, array.buffer.bytes, BufferUse::staging);

@@ -40,15 +40,17 @@ struct Part {
 /// Positions are kept for draws that make no triangles, too.
 std::vector<Part> parts_of(const ViewPass& pass,
                            const std::vector<std::pair<const uint32_t*, size_t>>& indices) {
+  std::map<std::pair<const uint32_t*, size_t>, uint32_t> places;
+  uint32_t index = 0;
+  for (const auto& span : indices) {
+    places.emplace(span, index);
+    index += static_cast<uint32_t>(span.second);
+  }
   std::vector<Part> parts;
   uint32_t position = 0, triangle = 0;
   for (const Draw& draw : pass.view.draws) {
     if (const auto surface = backends::surface_of(pass.view, draw, {})) {
-      uint32_t first_index = 0;
-      for (const auto& [data, count] : indices) {
-        if (data == draw.indices.data() && count == draw.indices.size()) break;
-        first_index += static_cast<uint32_t>(count);
-      }
+      const uint32_t first_index = places.at({draw.indices.data(), draw.indices.size()});
       parts.push_back({&draw, *surface, position, first_index, triangle});
       triangle += parts.back().triangles();
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles that the device makes itself. Vertex programs leave their positions on the device, and the setup stage makes a
 // record of each triangle where the host would list only those that are seen: a record without an area takes the place of
-// the others. The few triangles that a plane cuts come to the host, which clips them as it clips
-// all for other backends, and puts what is left of them behind the records.
+// the others. The few triangles that a plane cuts come to the host, which clips them as it clips all for other backends, and
+// puts what is left of them behind the records.
 #pragma once
 
 #include <cstdint>

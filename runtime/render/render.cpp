@@ -333,9 +333,12 @@ bool Renderer::draw(const Plan& plan, DrawStats& stats, support::Diagnostics& di
   stats.samples = plan.samples;
   stats.fused_posts = static_cast<int64_t>(layout.fused());
   stats.kept_images = plan.posts.steps.empty() ? 0 : static_cast<int64_t>(layout.most_images);
+  const std::vector<backends::DeviceStep> device_before = backend_.device_steps();
   const FrameLayout* used = &layout;
   std::optional<FrameLayout> apart;
   if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false)) return false;
+  stats.device = backend_.device_steps();
+  for (size_t i = 0; i < stats.device.size(); ++i) stats.device[i].seconds -= device_before[i].seconds;
   if (!backend_.is_finite()) {
     used = &apart.emplace(plan, true);
     DrawStats searched;

@@ -48,6 +48,10 @@ std::string text(const DrawStats& stats) {
   if (stats.kept_images > 0)
     text += fmt::format("posts:    {:.1f} ms; {} run with what is before them; at most {} images at a time\n",
                         1e3 * stats.post_seconds, stats.fused_posts, stats.kept_images);
+  std::string steps;
+  for (const backends::DeviceStep& step : stats.device)
+    if (step.seconds > 0) steps += fmt::format("{}{} {:.2f}", steps.empty() ? "" : ", ", step.name, 1e3 * step.seconds);
+  if (!steps.empty()) text += "device:   " + steps + " ms by its clock\n";
   return text;
 }
 

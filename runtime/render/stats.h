@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/backend.h"
 #include "runtime/render/finite.h"
 
 namespace isoshade::render {
@@ -45,6 +46,7 @@ struct DrawStats {
   int64_t fused_posts = 0;    ///< posts that were run right after what is before them, pixel by pixel
   NonFiniteReport non_finite;
   double build_seconds = 0;  ///< the backend's, for machine code; not part of the following
+  std::vector<backends::DeviceStep> device;  ///< the steps of this frame on a device
   double transform_seconds = 0, clip_seconds = 0, draw_seconds = 0, post_seconds = 0;
 };
 

@@ -219,13 +219,13 @@ bool is_within(ivec2 from, ivec2 to, ivec2 centre) {
   return edge.y < 0 || (edge.y == 0 && edge.x > 0);
 }
 
-// What a turn does at a pixel.
-void visit(ivec2 at, int triangle, ivec2 a, ivec2 b, ivec2 c) {
+// What a turn does at a pixel. `nearest`: the bits of a depth that the triangle has nowhere.
+void visit(ivec2 at, int triangle, ivec2 a, ivec2 b, ivec2 c, int nearest) {
   ivec2 centre = 256 * at + 128;
   if (!is_within(a, b, centre) || !is_within(b, c, centre) || !is_within(c, a, centre)) return;
   int pixel = (at.y - push.origin_y) * push.width + at.x - push.origin_x;
   int order = triangle < push.projected ? triangle << $order_bits : inputs[push.object + triangle - push.projected];
-  if (push.first >= $layer_of_triangles && order <= orders[pixel]) return;
+  if (push.first >= $layer_of_triangles ? order <= orders[pixel] : depths[push.place + pixel] > nearest) return;
 )";
   static constexpr char after[] = R"(  int z_bits = floatBitsToInt(z);
   if (push.first < $seen_of_triangles) {
@@ -243,6 +243,14 @@ ivec2 corner(int triangle, int i) {
   return ivec2(triangles[word], triangles[word + 1]);
 }
 
+// Interpolation rounds seven times, so that a depth is less than 1 + 2^-21 times the greatest of the corners.
+int nearest_of(int triangle) {
+  int word = triangle * $stride + $depth;
+  float nearest = max(max(intBitsToFloat(triangles[word]), intBitsToFloat(triangles[word + 1])),
+                      intBitsToFloat(triangles[word + 2]));
+  return floatBitsToInt(max(nearest, 0.0) * 1.000001);
+}
+
 // The pixels of the window whose centres lie in the bounds of the triangle, both ends included.
 ivec4 box_of(ivec2 a, ivec2 b, ivec2 c) {
   ivec2 first = (min(min(a, b), c) + 127) >> 8, last = (max(max(a, b), c) - 128) >> 8;
@@ -255,9 +263,10 @@ void visit_triangle(int triangle) {
   ivec4 box = box_of(a, b, c);
   ivec2 size = box.zw - box.xy + 1;
   if (size.x <= 0 || size.y <= 0) return;
+  int nearest = nearest_of(triangle);
   if (size.x <= $most_pixels && size.y <= $most_pixels && size.x * size.y <= $most_pixels) {
     for (int y = box.y; y <= box.w; ++y)
-      for (int x = box.x; x <= box.z; ++x) visit(ivec2(x, y), triangle, a, b, c);
+      for (int x = box.x; x <= box.z; ++x) visit(ivec2(x, y), triangle, a, b, c, nearest);
     return;
   }
   if (push.first != $depth_of_triangles && push.first != $first_layer) return;
@@ -274,15 +283,18 @@ void visit_tile(int triangle, int tile) {
   ivec4 box = box_of(a, b, c);
   int pitch = (push.width + $side - 1) / $side;
   ivec2 first = ivec2(push.origin_x, push.origin_y) + $side * ivec2(tile % pitch, tile / pitch);
+  int nearest = nearest_of(triangle);
   for (int i = int(gl_LocalInvocationID.x); i < $side * $side; i += $length) {
     ivec2 at = first + ivec2(i % $side, i / $side);
-    if (all(greaterThanEqual(at, box.xy)) && all(lessThanEqual(at, box.zw))) visit(at, triangle, a, b, c);
+    if (all(greaterThanEqual(at, box.xy)) && all(lessThanEqual(at, box.zw))) visit(at, triangle, a, b, c, nearest);
   }
 }
 
 void main() {
   if (push.first != $depth_of_tiles && push.first != $seen_of_tiles && push.first != $layer_of_tiles) {
-    if (int(gl_GlobalInvocationID.x) < push.columns) visit_triangle(push.left + int(gl_GlobalInvocationID.x));
+    // The last first: of shells around an object the outer ones hide the inner ones.
+    int index = push.columns - 1 - int(gl_GlobalInvocationID.x);
+    if (index >= 0) visit_triangle(push.left + index);
     return;
   }
   int count = min(tile_count, $room);
@@ -309,6 +321,7 @@ void main() {
                                          {"$order_bits", order_bits},
                                          {"$stride", triangle_word::stride},
                                          {"$position", triangle_word::position},
+                                         {"$depth", triangle_word::depth},
                                          {"$object", triangle_word::object},
                                          {"$flag_bits", triangle_flag::bits},
                                          {"$most_pixels", most_pixels},
