@@ -344,7 +344,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
       throw CLI::RequiredError("--output");
     const bool measures = !render_frames.empty() && (render.stats || !render.stats_json.empty());
-    if (render_app->parsed() && render.output.empty() && !measures) throw CLI::RequiredError("--output");
+    if (render_app->parsed() && render.output.empty() && !measures)
+      throw CLI::RequiredError(render_frames.empty() ? "--output" : "--output, --stats or --stats-json");
     if (varied.size() > 2) throw CLI::ValidationError("--vary", "a sheet has columns and rows; give --vary at most twice");
   } catch (const CLI::ParseError& error) {
     // CLI11 has an exit code for each kind of error; isoshade documents a single one.
