@@ -135,11 +135,12 @@ class FrameBench {
 
   /// Draws one frame, and plans it anew, as for a frame in which something has moved. The first frame of a drawer at a
   /// size is not counted.
-  bool frame(const scene::Scene& scene, int size, Drawer& drawer, Samples* samples, double& triangles) {
+  bool frame(const scene::Scene& scene, int size, Drawer& drawer, Samples* samples, double& triangles,
+             Diagnostics& diagnostics) {
     const auto made = plan(scene, size);
     if (!made) return false;
     render::DrawStats stats;
-    if (!drawer.renderer->draw(*made, stats, diagnostics_)) return false;
+    if (!drawer.renderer->draw(*made, stats, diagnostics)) return false;
     triangles = static_cast<double>(made->stats.triangles);
     if (samples == nullptr) return true;
     samples->plan.push_back(made->stats.plan_seconds);
@@ -167,11 +168,20 @@ class FrameBench {
     for (const int size : sizes)
       for (Drawer& drawer : drawers_) races.push_back({size, &drawer});
     options_.common.progress("frames of " + subject.name);
-    for (Race& race : races)
-      if (!frame(*scene, race.size, *race.drawer, nullptr, race.triangles)) return false;
+    const auto is_too_large = [](const support::Diagnostic& report) { return report.id == support::Id::device_limit; };
+    std::erase_if(races, [&](Race& race) {
+      Diagnostics reports;
+      // Another failure comes again, and is reported then.
+      if (frame(*scene, race.size, *race.drawer, nullptr, race.triangles, reports) ||
+          std::ranges::none_of(reports.all(), is_too_large))
+        return false;
+      options_.common.progress("no frame of " + std::to_string(race.size) + " pixels a side: too large for " +
+                               race.drawer->name);
+      return true;
+    });
     for (int i = 0; i < options_.common.repetitions; ++i)
       for (Race& race : races)
-        if (!frame(*scene, race.size, *race.drawer, &race.samples, race.triangles)) return false;
+        if (!frame(*scene, race.size, *race.drawer, &race.samples, race.triangles, diagnostics_)) return false;
     for (Race& race : races) {
       const auto quantile = [](std::vector<double>& samples, double q) {
         std::ranges::sort(samples);

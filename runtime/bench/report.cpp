@@ -116,9 +116,11 @@ std::string ratios_text(const Report& report) {
   for (const Point& p : report.points) {
     if (p.backend != "cpu" || p.lanes != lanes || p.form != "library" || p.precision != "default" || p.compute <= 0)
       continue;
+    // No ratio of a time that the clock cannot tell from none.
+    const auto is_measured = [](const Point* point) { return point != nullptr && point->compute > point->compute_spread; };
     const auto ratio = [&](const Point* other, const Point* base) {
-      return other == nullptr || base == nullptr || base->compute <= 0 ? std::string("-")
-                                                                       : fmt::format("{:.2g}", other->compute / base->compute);
+      return is_measured(other) && is_measured(base) ? fmt::format("{:.2g}", other->compute / base->compute)
+                                                     : std::string("-");
     };
     const Point* glm = find(p, "glm", "peer", "1");
     const Point* vulkan = find(p, "vulkan", "default", "");
