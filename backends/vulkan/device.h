@@ -158,12 +158,11 @@ class Device {
     int32_t triangle = 0;
     float points[3][4] = {};  ///< in clip space
   };
-  static constexpr size_t cut_room = 4096;
   struct Triangles {
     int64_t kept = 0;
     std::vector<Cut> cuts;  ///< in any order
   };
-  /// Leaves the records in the array of triangles. False if more than cut_room triangles are cut.
+  /// Leaves the records in the array of triangles. False if more than glsl::cut_room triangles are cut.
   bool make_triangles(const Geometry& geometry, Triangles& made);
 
   /// Runs vertex kernels, then copies the first words of the output buffer; at most max_buffer_bytes().

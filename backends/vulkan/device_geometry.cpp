@@ -39,12 +39,11 @@ void Device::upload_indices(std::span<const uint32_t> indices) {
 }
 
 bool Device::make_triangles(const Geometry& geometry, Triangles& made) {
-  static_assert(cut_room == glsl::cut_room);
   constexpr size_t position_bytes = 4 * sizeof(float),
                    record_bytes = lower::triangle_word::stride * sizeof(int32_t);
   constexpr size_t head_bytes = glsl::cut_head_words * sizeof(int32_t),
                    cut_bytes = glsl::cut_words * sizeof(int32_t);
-  constexpr size_t listed_bytes = head_bytes + cut_room * cut_bytes;
+  constexpr size_t listed_bytes = head_bytes + size_t{glsl::cut_room} * cut_bytes;
   Array& triangles = impl_->arrays[static_cast<size_t>(lower::FrameBuffer::triangles)];
   const size_t positions = geometry.vertex_count * position_bytes,
                records = geometry.triangle_count * record_bytes;
@@ -80,7 +79,7 @@ bool Device::make_triangles(const Geometry& geometry, Triangles& made) {
   const auto* listed = static_cast<const char*>(impl_->readback.data);
   int32_t counts[2];  // kept, cut
   std::memcpy(counts, listed, sizeof counts);
-  if (counts[1] > static_cast<int32_t>(cut_room)) return false;
+  if (counts[1] > glsl::cut_room) return false;
   made.kept = counts[0];
   made.cuts.resize(static_cast<size_t>(counts[1]));
   for (size_t i = 0; i < made.cuts.size(); ++i) {

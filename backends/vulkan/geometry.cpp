@@ -147,8 +147,8 @@ std::optional<DeviceTriangles> VulkanBackend::make_triangles(const ViewPass& pas
   for (const Draw& draw : pass.view.draws) positions += draw.vertex_count;
   for (const Part& part : parts) triangles += part.triangles();
   if (triangles >= size_t{1} << (31 - glsl::order_bits)) return std::nullopt;  // too many to be ordered
-  const size_t room = Device::cut_room * most_left,
-               made_bytes = Device::cut_room * most_made * lower::vertex_word::stride * sizeof(float);
+  const size_t room = size_t{glsl::cut_room} * most_left,
+               made_bytes = size_t{glsl::cut_room} * most_made * lower::vertex_word::stride * sizeof(float);
   const size_t vertex_bytes = frame.vertices.size() * sizeof(float);
   const size_t record_bytes = sizeof(int32_t) * lower::triangle_word::stride;
   if (std::max({positions * 4 * sizeof(float), (triangles + room) * record_bytes,

@@ -111,7 +111,8 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
  public:
   VulkanViewRenderer(VulkanBackend& backend, const ViewPass& pass, const backends::Layers& layers,
                      std::span<const float> vertices, bool knows_vertices)
-      : backend_(backend), pass_(pass), layers_(layers), vertices_(vertices), knows_vertices_(knows_vertices), shading_(pass.frame.programs.size()) {}
+      : backend_(backend), pass_(pass), layers_(layers), vertices_(vertices), knows_vertices_(knows_vertices),
+        shading_(pass.frame.programs.size()) {}
 
   bool draw(const Window& window, std::span<const int32_t> triangles, backends::Image& image,
             Diagnostics& diagnostics) override {
@@ -158,7 +159,8 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     };
     if (!add_runs(triangles.opaque, calls.visibility) || !add_runs(triangles.blended, calls.layers))
       return std::nullopt;
-    if (has_color && (!add_programs(triangles.programs, calls.color) || !add_programs(triangles.blending, calls.blending)))
+    if (has_color && (!add_programs(triangles.programs, calls.color) ||
+                      !add_programs(triangles.blending, calls.blending)))
       return std::nullopt;
     calls.blended = triangles.blended_count;
     calls.first_cut = triangles.first_cut;
@@ -212,8 +214,7 @@ class VulkanViewRenderer final : public backends::ViewRenderer {
     return opaque == count || add_layers(window, triangles, opaque, count, calls.layers, diagnostics);
   }
 
-  bool add_shading(size_t program, const Window& area, Calls& calls,
-                   Diagnostics& diagnostics) {
+  bool add_shading(size_t program, const Window& area, Calls& calls, Diagnostics& diagnostics) {
     std::optional<PipelineIndex>& pipeline = shading_[program];
     if (!pipeline) pipeline = backend_.screen_pipeline(*pass_.frame.programs[program], false, diagnostics);
     if (!pipeline) return false;
