@@ -15,6 +15,7 @@
 #include "compiler/driver/parameter_block.h"
 #include "compiler/driver/program.h"
 #include "compiler/graph/graph.h"
+#include "compiler/interface/skips.h"
 
 namespace isoshade::driver {
 
@@ -30,7 +31,8 @@ struct CompileOptions {
   /// Of eval and pixel programs. What decides visibility always uses the default tier, so that every tier shows the same
   /// pixels.
   functions::Tier tier = functions::Tier::standard;
-  Dump dump;  ///< may be empty
+  interface::Skips skips;  ///< what programs and frames may leave out
+  Dump dump;               ///< may be empty
 };
 
 /// One pass of an effect.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cli/arguments.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <isoshade/version.h>
@@ -158,6 +160,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
                        "Report what was drawn, what was skipped and why, and the time of each step; with --frames that of "
                        "the first frame, and a table of the times of all");
   add_fail_on_nan(*render_app, render.fail_on_nan);
+  add_no_skip(*render_app, render.skips);
   add_precision(*render_app, render.precision);
   add_changes(*render_app, render.changes);
   CLI::Option* frames_option =
@@ -226,6 +229,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   golden->excludes(verify_app->get_option("--size"));
   verify_app->add_flag("--update", verify.update, "Record the hashes in the golden file instead of comparing");
   add_fail_on_nan(*verify_app, verify.fail_on_nan);
+  add_no_skip(*verify_app, verify.skips);
   add_precision(*verify_app, verify.precision);
   add_changes(*verify_app, verify.changes);
   add_choice(*verify_app, verify.choice);
@@ -340,7 +344,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->excludes(schema_app->get_option("--stats"));
 
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> last_to_first = with_skip_names(argc, argv);
+    std::ranges::reverse(last_to_first);
+    app.parse(std::move(last_to_first));
     if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
       throw CLI::RequiredError("--output");
     const bool measures = !render_frames.empty() && (render.stats || !render.stats_json.empty());

@@ -12,6 +12,7 @@
 #include <isoshade/compiler.h>
 
 #include "compiler/functions/tier.h"
+#include "compiler/interface/skips.h"
 #include "compiler/support/process.h"
 
 namespace isoshade::cli {
@@ -86,6 +87,7 @@ struct RenderArguments {
   bool stats = false;
   std::string stats_json;  ///< a file for the times of all frames, or "-"; empty: none
   bool fail_on_nan = false;
+  interface::Skips skips;
   functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };
@@ -118,6 +120,7 @@ struct VerifyArguments {
   std::string golden;
   bool update = false;
   bool fail_on_nan = false;
+  interface::Skips skips;
   functions::Tier precision = functions::Tier::standard;
   BackendChoice choice;
 };

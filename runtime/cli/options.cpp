@@ -125,6 +125,64 @@ void add_output_choice(CLI::App& app, OutputChoice& choice, bool with_floats) {
       ->check(CLI::IsMember(compressions));
 }
 
+namespace {
+
+constexpr std::string_view all_skips = "all";
+
+/// The skips that a list names; nothing if one of the names is of none.
+std::optional<std::vector<interface::Skip>> parse_skips(const std::string& names) {
+  std::vector<interface::Skip> found;
+  for (size_t begin = 0; begin <= names.size();) {
+    const size_t end = std::min(names.find(',', begin), names.size());
+    const std::string name = names.substr(begin, end - begin);
+    begin = end + 1;
+    if (const auto skip = interface::find_skip(name)) {
+      found.push_back(*skip);
+    } else if (name == all_skips) {
+      for (size_t i = 0; i < interface::skip_count; ++i) found.push_back(static_cast<interface::Skip>(i));
+    } else {
+      return std::nullopt;
+    }
+  }
+  return found;
+}
+
+const CLI::Validator skip_names_text(
+    [](std::string& names) -> std::string {
+      if (parse_skips(names)) return "";
+      std::string known(all_skips);
+      for (const interface::SkipRow& row : interface::skip_rows) known += ", " + std::string(row.name);
+      return "\"" + names + "\" is not a list of skips; they are " + known;
+    },
+    "NAME,...");
+
+}  // namespace
+
+void add_no_skip(CLI::App& app, interface::Skips& skips) {
+  const auto leave_out = [&skips](const std::vector<std::string>& lists) {
+    for (const std::string& names : lists) {
+      const auto found = parse_skips(names);
+      for (const interface::Skip skip : *found) skips.set(skip, false);
+    }
+  };
+  std::string help = "Do not skip, for comparison: the image has the same bits, later. Without a name: all of";
+  for (const interface::SkipRow& row : interface::skip_rows)
+    help += (&row == interface::skip_rows ? " " : ", ") + std::string(row.name);
+  app.add_option_function<std::vector<std::string>>("--no-skip", leave_out, help)
+      ->check(skip_names_text)
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+std::vector<std::string> with_skip_names(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (size_t i = arguments.size(); i-- > 0;)
+    if (arguments[i] == "--no-skip" && (i + 1 == arguments.size() || !parse_skips(arguments[i + 1])))
+      arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::string(all_skips));
+  return arguments;
+}
+
 void add_changes(CLI::App& app, SceneChanges& changes) {
   app.add_option("--set", changes.settings,
                  "Override a parameter: NAME.PARAMETER=VALUE, or PARAMETER=VALUE if only one has it; or a value of the "

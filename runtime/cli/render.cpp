@@ -101,6 +101,7 @@ render::PlanOptions SceneRenderer::plan_options() {
   options.compiler.library = &library_;
   options.compiler.reference = arguments_.backend == "reference";
   options.compiler.tier = arguments_.precision;
+  options.compiler.skips = arguments_.skips;
   options.workers = &workers_;
   return options;
 }

@@ -105,6 +105,7 @@ class Verifier {
     options.height = size.height;
     options.compiler.library = &library_;
     options.compiler.tier = arguments_.precision;
+    options.compiler.skips = arguments_.skips;
     const auto plan = render::plan_frame(scene, options, diagnostics_);
     if (!plan) return failure;
     const std::string_view tier = functions::tier_name(arguments_.precision);

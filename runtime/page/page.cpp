@@ -125,7 +125,7 @@ std::vector<std::string> find_differences(const scene::Scene& scene, support::Di
 std::optional<std::string> make_page(const scene::Scene& scene, const PageOptions& options,
                                      backends::Backend& backend, support::Diagnostics& diagnostics) {
   render::PlanOptions all;
-  all.skip = false;
+  all.compiler.skips = interface::Skips::none();
   all.disabled = true;
   all.compiler.library = options.library;
   all.compiler.tier = options.tier;

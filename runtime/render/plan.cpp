@@ -296,7 +296,7 @@ bool Planner::update_objects(const PlanKeys& keys) {
 }
 
 bool Planner::reads_blurred_maps() const {
-  if (!options_.skip) return true;
+  if (!skips(interface::Skip::textures)) return true;
   const auto is_above_0 = [](const driver::EnvironmentReads& reads, const driver::ParameterBlock& block, const ParameterValues& values) {
     return std::ranges::any_of(reads.roughnesses, [&](size_t field) { return values.most(block.word_of(field)) > 0; });
   };

@@ -26,10 +26,9 @@ inline constexpr int64_t max_draws = 4'000'000;            ///< of all views
 struct PlanOptions {
   int width = 0;  ///< of the image; 0: the scene's own size
   int height = 0;
-  bool skip = true;                 ///< leave out what cannot be seen; the image has the same bits without
   std::string cache;                ///< the folder for maps of environments; empty: the usual one
   bool disabled = false;            ///< draw the passes that a parameter disables, too; for programs that change it later
-  driver::CompileOptions compiler;  ///< `lights` is set by the scene
+  driver::CompileOptions compiler;  ///< `lights` is set by the scene; `skips` are those of the whole frame
   threads::Workers* workers = nullptr;  ///< that may help; null: one for each core
 };
 

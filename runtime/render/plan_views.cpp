@@ -126,7 +126,7 @@ void Planner::see_copy(size_t number, Seen& seen) const {
     const backends::Target& target = plan_.frame.views[v].target;
     Appearance& appearance = seen.appearances[v];
     appearance.projected = scene::multiply(cameras_[v].projection, copy.model);
-    appearance.outside = options_.skip && outside_view(mesh.low, mesh.high, appearance.projected, target.width, target.height);
+    appearance.outside = skips(interface::Skip::objects) && outside_view(mesh.low, mesh.high, appearance.projected, target.width, target.height);
     if (!sorts) continue;
     const glm::vec4 middle(0.5f * mesh.low + 0.5f * mesh.high, 1.0f);
     appearance.nearness = scene::multiply(cameras_[v].view, scene::multiply(copy.model, middle)).z;
@@ -281,7 +281,7 @@ bool Planner::make_views(int width, int height) {
   plan_.samples = scene_->samples;
   plan_.stats.skips = unread_images(plan_.effects);
   if (scene_->environment && !has_blurred_maps_)
-    plan_.stats.skips.push_back({"blurred maps of the environment", "nothing reads them"});
+    plan_.stats.skips.push_back({interface::Skip::textures, "blurred maps of the environment", "nothing reads them"});
 
   const lanes::FpGuard guard;
   frame.frame = frame_words(*scene_, environment_);
@@ -298,7 +298,7 @@ bool Planner::make_views(int width, int height) {
                  all.skipped[static_cast<uint32_t>(o)], plan_.stats.skips);
   number_revisions(former);
   auto posts =
-      plan_posts(*scene_, posts_, width, height, options_.skip, plan_.stats.skips, *diagnostics_);
+      plan_posts(*scene_, posts_, width, height, options_.compiler.skips, plan_.stats.skips, *diagnostics_);
   if (!posts) return false;
   plan_.posts = *std::move(posts);
   if (plan_.motion && !plan_.posts.reads_motion()) plan_.motion.reset();

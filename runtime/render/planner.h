@@ -33,6 +33,8 @@ class Planner {
   Plan& made() { return plan_; }
 
  private:
+  bool skips(interface::Skip skip) const { return options_.compiler.skips.has(skip); }
+
   // What the camera does not change (plan.cpp).
   struct PassPrograms {
     uint32_t vertex, pixel, blend;  // in Frame::programs

@@ -28,13 +28,13 @@ int part_of(int side, float part) {
 class ChainPlanner {
  public:
   ChainPlanner(const scene::Scene& scene, const std::vector<const driver::Post*>& documents, int width,
-               int height, bool skip, std::vector<Skip>& skips, Diagnostics& diagnostics)
+               int height, interface::Skips skips, std::vector<Skipped>& skipped, Diagnostics& diagnostics)
       : scene_(scene),
         documents_(documents),
         width_(width),
         height_(height),
-        skip_(skip),
-        skips_(skips),
+        skip_(skips.has(interface::Skip::posts)),
+        skipped_(skipped),
         diagnostics_(diagnostics) {}
 
   std::optional<PostChain> plan();
@@ -60,7 +60,7 @@ class ChainPlanner {
   const std::vector<const driver::Post*>& documents_;
   int width_, height_;
   bool skip_;
-  std::vector<Skip>& skips_;
+  std::vector<Skipped>& skipped_;
   Diagnostics& diagnostics_;
   std::vector<Planned> planned_;
 };
@@ -114,7 +114,7 @@ bool ChainPlanner::read_post(size_t p) {
   if (!skip_ || !has_image || !document.parameters.is_off(document.enabled, planned.record)) return true;
   planned.runs = false;
   const std::string& parameter = document.parameters.fields[*document.enabled].name;
-  skips_.push_back({"post " + post.name, parameter + " is 0"});
+  skipped_.push_back({interface::Skip::posts, "post " + post.name, parameter + " is 0"});
   return true;
 }
 
@@ -136,7 +136,7 @@ void ChainPlanner::drop_unread() {
     if (!planned.runs) continue;
     if (!read[p]) {
       planned.runs = false;
-      skips_.push_back({"post " + scene_.posts[p].name, "nothing reads its image"});
+      skipped_.push_back({interface::Skip::posts, "post " + scene_.posts[p].name, "nothing reads its image"});
       continue;
     }
     for (size_t i = 0; i < planned.sources.size(); ++i)
@@ -232,8 +232,8 @@ std::optional<PostChain> ChainPlanner::plan() {
 
 std::optional<PostChain> plan_posts(const scene::Scene& scene,
                                     const std::vector<const driver::Post*>& documents, int width, int height,
-                                    bool skip, std::vector<Skip>& skips, Diagnostics& diagnostics) {
-  return ChainPlanner(scene, documents, width, height, skip, skips, diagnostics).plan();
+                                    interface::Skips skips, std::vector<Skipped>& skipped, Diagnostics& diagnostics) {
+  return ChainPlanner(scene, documents, width, height, skips, skipped, diagnostics).plan();
 }
 
 }  // namespace isoshade::render

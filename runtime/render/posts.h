@@ -50,11 +50,11 @@ struct PostChain {
 inline constexpr int64_t max_kept_pixels = int64_t{4} * scene::max_size * scene::max_size;
 
 /// Plans the chain: leaves out posts that are switched off and posts whose images are then unused, and records them in
-/// `skips`; with `skip` off all run. `documents`: one for each post of the scene. The size is that of the frame. The
+/// `skipped`; without Skip::posts all run. `documents`: one for each post of the scene. The size is that of the frame. The
 /// caller holds lanes::FpGuard. Reports inputs and parameters that a document does not have, a result that does not have
 /// the size of the frame, and images beyond the limit.
 std::optional<PostChain> plan_posts(const scene::Scene& scene,
                                     const std::vector<const driver::Post*>& documents, int width, int height,
-                                    bool skip, std::vector<Skip>& skips, support::Diagnostics& diagnostics);
+                                    interface::Skips skips, std::vector<Skipped>& skipped, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::render

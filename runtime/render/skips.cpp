@@ -10,31 +10,31 @@
 namespace isoshade::render {
 
 void report_skips(const scene::Object& object, const driver::Effect& effect, int64_t parts,
-                  std::span<const PassSkips> passes, std::vector<Skip>& skips) {
+                  std::span<const PassSkips> passes, std::vector<Skipped>& skips) {
   const int64_t copies = scene::instance_count(object);
   /// `count` of `total`, called `unit`.
-  const auto report = [&](int64_t count, int64_t total, const std::string& unit, const std::string& pass,
-                          std::string reason) {
+  const auto report = [&](std::optional<interface::Skip> skip, int64_t count, int64_t total, const std::string& unit,
+                          const std::string& pass, std::string reason) {
     if (count == 0) return;
     const std::string what = total == 1 ? object.name
                                         : std::to_string(count) + " of " + std::to_string(total) + " " +
                                               unit + " of " + object.name;
-    skips.push_back({pass.empty() ? what : pass + " of " + what, std::move(reason)});
+    skips.push_back({skip, pass.empty() ? what : pass + " of " + what, std::move(reason)});
   };
   const bool alike = std::ranges::all_of(
       passes, [&](const PassSkips& pass) { return pass.unseen == passes.front().unseen; });
-  if (alike) report(passes.front().unseen, copies, "copies", "", "outside of the view");
+  if (alike) report(interface::Skip::objects, passes.front().unseen, copies, "copies", "", "outside of the view");
   for (size_t p = 0; p < passes.size(); ++p) {
     const driver::EffectPass& pass = effect.passes[p];
-    if (!alike) report(passes[p].unseen, copies, "copies", pass.name, "outside of the view");
+    if (!alike) report(interface::Skip::objects, passes[p].unseen, copies, "copies", pass.name, "outside of the view");
     const std::string unit = parts == 1 ? "copies" : "parts";
     if (pass.cutoff) {
       const driver::Field& field = effect.parameters.fields[*pass.cutoff];
-      report(passes[p].uncut, copies * parts, unit, "cut-out of " + pass.name, field.name + " is not above 0");
+      report({}, passes[p].uncut, copies * parts, unit, "cut-out of " + pass.name, field.name + " is not above 0");
     }
     if (!pass.enabled) continue;
     const driver::Field& field = effect.parameters.fields[*pass.enabled];
-    report(passes[p].disabled, copies * parts, unit, pass.name,
+    report({}, passes[p].disabled, copies * parts, unit, pass.name,
            field.name + " is " + (field.type == "boolean" ? "false" : "0"));
   }
 }

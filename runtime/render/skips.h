@@ -21,6 +21,6 @@ struct PassSkips {
 
 /// Adds to `skips` what the passes of its effect, at least one, left out of an object whose mesh has `parts`.
 void report_skips(const scene::Object& object, const driver::Effect& effect, int64_t parts,
-                  std::span<const PassSkips> passes, std::vector<Skip>& skips);
+                  std::span<const PassSkips> passes, std::vector<Skipped>& skips);
 
 }  // namespace isoshade::render

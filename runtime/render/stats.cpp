@@ -31,7 +31,7 @@ std::string text(const PlanStats& stats) {
   if (stats.posts > 0)
     text += fmt::format("posts:    {}{}\n", stats.posts,
                         stats.sample_posts > 0 ? fmt::format(", {} for each sample", stats.sample_posts) : "");
-  for (const Skip& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
+  for (const Skipped& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
   return text;
 }
 

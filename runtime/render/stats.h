@@ -3,16 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "backends/backend.h"
+#include "compiler/interface/skips.h"
 #include "runtime/render/finite.h"
 
 namespace isoshade::render {
 
 /// Something that was left out because it could not change a bit of the image.
-struct Skip {
+struct Skipped {
+  std::optional<interface::Skip> skip;  ///< none: the document asks for it, and it cannot be switched off
   std::string what;    ///< "12 of 50 copies of balls"
   std::string reason;  ///< "outside of the view"
 };
@@ -35,7 +38,7 @@ struct PlanStats {
   int64_t posts = 0;  ///< that are run
   int64_t sample_posts = 0;  ///< of them, those that are run for each sample
   double compile_seconds = 0, plan_seconds = 0;
-  std::vector<Skip> skips;
+  std::vector<Skipped> skips;
 };
 
 struct DrawStats {

@@ -39,8 +39,8 @@ bool is_srgb(lower::Decoding decoding, const ImageSource& source, const scene::I
 
 }  // namespace
 
-std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects) {
-  std::vector<Skip> skips;
+std::vector<Skipped> unread_images(const std::vector<driver::Effect>& effects) {
+  std::vector<Skipped> skips;
   for (const driver::Effect& effect : effects) {
     for (const driver::Field& field : effect.parameters.fields) {
       const bool read = std::ranges::any_of(effect.parameters.images, [&](const driver::Image& image) {
@@ -48,7 +48,7 @@ std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects) {
       });
       if (field.type == graph::type_name(graph::Type::filename) && !read)
         skips.push_back(
-            {"the images of " + field.name + " of the effect " + effect.name, "no pass reads them"});
+            {{}, "the images of " + field.name + " of the effect " + effect.name, "no pass reads them"});
     }
   }
   return skips;

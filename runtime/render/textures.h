@@ -26,7 +26,7 @@ inline constexpr int64_t max_texture_bytes = int64_t{3} << 29;
 inline constexpr size_t max_textures = 4096;
 
 /// The parameters of effects that name images which no pass reads.
-std::vector<Skip> unread_images(const std::vector<driver::Effect>& effects);
+std::vector<Skipped> unread_images(const std::vector<driver::Effect>& effects);
 
 /// Appends levels as textures, each the record after the other; returns the record of the first. Call it after
 /// TextureStore::store.

@@ -51,7 +51,7 @@ inline render::Plan plan(const scene::Scene& scene, int width = 0, int height = 
   render::PlanOptions options;
   options.width = width;
   options.height = height;
-  options.skip = skip;
+  if (!skip) options.compiler.skips = interface::Skips::none();
   options.compiler.library = &library;
   options.compiler.tier = tier;
   auto made = render::plan_frame(scene, options, diagnostics);

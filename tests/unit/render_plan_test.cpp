@@ -339,7 +339,7 @@ TEST_F(PlanTest, CullingChangesNoBit) {
   backends::Image images[2];
   int64_t draws[2];
   for (const bool skip : {false, true}) {
-    options_.skip = skip;
+    options_.compiler.skips = skip ? interface::Skips() : interface::Skips::none();
     const auto made = plan(members);
     ASSERT_TRUE(made) << diagnostics_.text();
     render::DrawStats stats;

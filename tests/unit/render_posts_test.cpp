@@ -187,7 +187,7 @@ TEST_F(PostsTest, SkippingChangesNoBit) {
                             "," + post("unread", "fill") + "," +
                             post("c", "gain", R"("inputs": {"color": "b"})");
   const float skipped = red(chain);
-  options_.skip = false;
+  options_.compiler.skips = interface::Skips::none();
   const auto made = plan(chain);
   ASSERT_TRUE(made);
   EXPECT_EQ(made->posts.steps.size(), 4u);
