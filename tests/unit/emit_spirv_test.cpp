@@ -71,6 +71,19 @@ TEST(CompileSpirv, MarksAllOperationsNoContractionWithoutPrecise) {
   }
 }
 
+TEST(CompileSpirv, LetsDriversContractWhatPromisesNothing) {
+  constexpr uint32_t op_fadd = 129, op_fmul = 133;
+  const std::string text = fragment("  precise float sum = a * b + a;\n  color = vec4(sum);\n");
+  support::Diagnostics diagnostics;
+  for (const auto contract : {glsl::Contract::outside, glsl::Contract::free}) {
+    const auto spirv = glsl::compile_spirv(text, glsl::ShaderKind::fragment, diagnostics, "a shader", contract);
+    ASSERT_TRUE(spirv) << diagnostics.text();
+    const Operations sums(*spirv, op_fadd), products(*spirv, op_fmul);
+    EXPECT_EQ(sums.results.size() + products.results.size(), 2u);
+    EXPECT_EQ(sums.exact.size(), contract == glsl::Contract::free ? 0u : 2u);
+  }
+}
+
 // 2^200 paths lead from the last result back to the first: what follows each of them never ends.
 TEST(CompileSpirv, CompilesLongChainsOfMultiResultFunctions) {
   std::string text =

@@ -154,14 +154,14 @@ std::optional<std::vector<uint32_t>> compile_spirv(const std::string& glsl, Shad
   // one after another. Here no operation may be contracted at all, so it need not look.
   std::optional<std::vector<uint32_t>> spirv = translate(glsl, kind, "#define precise\n", error);
   if (spirv) {
-    forbid_contraction(*spirv);
+    if (contract != Contract::free) forbid_contraction(*spirv);
     error = validate(*spirv);
   }
   if (!error.empty()) {
     refuse(diagnostics, what, error);
     return std::nullopt;
   }
-  support::assert_that(contract == Contract::outside || preserves_nan(*spirv),
+  support::assert_that(contract != Contract::within || preserves_nan(*spirv),
                        "a shader without SignedZeroInfNanPreserve 32");
   return spirv;
 }

@@ -17,11 +17,15 @@ std::string_view name(ShaderKind kind);
 
 /// Whether a shader promises bits. One that does begins with head(); a module of it without SignedZeroInfNanPreserve 32
 /// would be a bug of ours, so it aborts.
-enum class Contract : uint8_t { within, outside };
+enum class Contract : uint8_t {
+  within,
+  outside,
+  free  ///< promises nothing, and drivers may contract and reorder operations
+};
 
 /// The module with entry point `main`, validated by SPIRV-Tools. Not optimised: every operation is as in the text, and
-/// those on floats are NoContraction, whether the text says `precise` or not. The same text gives the same words on
-/// every machine, in time linear in its length. Thread-safe.
+/// those on floats are NoContraction unless `contract` is free, whether the text says `precise` or not. The same text
+/// gives the same words on every machine, in time linear in its length. Thread-safe.
 ///
 /// A text that does not compile is reported (bad-shader): a graph may be larger than glslang can take.
 /// `what` names the text in that report: `the pixel stage of "fur" (fur.json)`.
