@@ -34,61 +34,6 @@ constexpr Effect effects[] = {
     {"fog", "fog/height_density", "fog_density"},
 };
 
-/// GLSL's built-in functions under the names of generated functions: of rows of functions.def, of a power with a constant
-/// exponent, and of a whole effect.
-constexpr const char* built_ins = R"(float iso_rsqrt(float a) {
-  return inversesqrt(a);
-}
-float iso_exp2(float a) {
-  return exp2(a);
-}
-float iso_exp(float a) {
-  return exp(a);
-}
-float iso_log2(float a) {
-  return log2(a);
-}
-float iso_log(float a) {
-  return log(a);
-}
-float iso_pow(float a, float b) {
-  return pow(a, b);
-}
-float iso_pow_5(float a) {
-  return pow(a, 5.0);
-}
-float iso_sin(float a) {
-  return sin(a);
-}
-float iso_cos(float a) {
-  return cos(a);
-}
-float iso_srgb_encode(float a) {
-  return a < 0.0031308 ? 12.92 * a : 1.055 * pow(a, 1.0 / 2.4) - 0.055;
-}
-float iso_srgb_decode(float a) {
-  return a <= 0.04045 ? a / 12.92 : pow((a + 0.055) / 1.055, 2.4);
-}
-vec3 iso_normalize(vec3 a) {
-  return normalize(a);
-}
-float iso_length(vec3 a) {
-  return length(a);
-}
-float iso_dot(vec3 a, vec3 b) {
-  return dot(a, b);
-}
-float iso_min(float a, float b) {
-  return min(a, b);
-}
-float iso_max(float a, float b) {
-  return max(a, b);
-}
-float toon_highlight(float spec, float scale, float width, float least_scale) {
-  return smoothstep(-width, width, spec + scale - 1.0) * step(least_scale, scale);
-}
-)";
-
 /// Whether some tier has its own implementation; of several widths, 1 and 3 are measured.
 bool is_measured(const functions::Variant& variant) {
   if (!variant.has_own_body(functions::Tier::fast) && !variant.has_own_body(functions::Tier::precise))
@@ -141,11 +86,11 @@ std::vector<Subject> subjects(const std::string& graphs, const std::string& filt
     if (!wanted(effect.name) || !std::filesystem::exists(library) || !std::filesystem::exists(source))
       continue;
     found.push_back({effect.name, "library", library, nullptr, ""});
-    found.push_back({effect.name, "source", source, nullptr, built_ins});
+    found.push_back({effect.name, "source", source, nullptr, built_in_definitions});
   }
   for (const functions::Variant& variant : functions::variants()) {
     if (!is_measured(variant) || !wanted(variant.row)) continue;
-    found.push_back({std::string(variant.row), "function", "", &variant, built_ins});
+    found.push_back({std::string(variant.row), "function", "", &variant, built_in_definitions});
   }
   return found;
 }

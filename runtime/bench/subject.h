@@ -25,6 +25,10 @@ struct Subject {
   std::string builtins;  ///< GLSL definitions that replace the generated ones of the same names; may be empty
 };
 
+/// GLSL's built-in functions under the names of generated functions: of rows of functions.def, of a power with a constant
+/// exponent, and of a whole effect.
+extern const char* const built_in_definitions;
+
 /// The effects that have both forms below `graphs` (library/*/NAME.json, source_forms/NAME.json), and each row with its own
 /// implementation in some tier; only those whose names contain `filter`.
 std::vector<Subject> subjects(const std::string& graphs, const std::string& filter);

@@ -48,4 +48,5 @@ target_compile_definitions(random_programs_test PRIVATE $<$<BOOL:${ISOSHADE_VULK
 
 if(ISOSHADE_VULKAN)
   equivalence_test(forward_picture_test 300)
+  target_link_libraries(forward_picture_test PRIVATE isoshade_bench)
 endif()
