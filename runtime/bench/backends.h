@@ -33,8 +33,9 @@ std::vector<Contestant> contestants(const BenchOptions& options, const BuiltIns&
 /// drivers may optimise it.
 std::string with_built_ins(std::string glsl, const std::string& definitions);
 
-/// Adds a point for each scene, tier and contestant: the time per pixel of the image, including visibility and background,
-/// and the error of its colours at a smaller size. `plans` keeps the plans alive, because contestants cache the texts of
+/// Adds a point for each scene, tier and contestant: the time per pixel of the image, including vertices, visibility and
+/// background, and the error of its colours at a smaller size; and one of an ordinary renderer on the Vulkan device, see
+/// ForwardPeer. `plans` keeps the plans alive, because contestants cache the texts of
 /// their programs by address.
 bool measure_scenes(const BenchOptions& options, const std::vector<Contestant>& devices,
                     std::deque<render::Plan>& plans, Report& report, support::Diagnostics& diagnostics);

@@ -373,8 +373,8 @@ std::optional<Report> measure(const BenchOptions& options, Diagnostics& diagnost
 }
 
 bool all_identical(const Report& report) {
-  return std::ranges::all_of(
-      report.points, [](const Point& point) { return point.identical || point.precision == "built-ins" || point.precision == "peer"; });
+  return std::ranges::all_of(report.points,
+                             [](const Point& point) { return point.identical || is_foreign(point.precision); });
 }
 
 }  // namespace isoshade::bench

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/support/diagnostics.h"
@@ -33,12 +34,16 @@ struct BenchOptions {
 /// The error in ULP from which no digit is correct; a NaN or infinity in place of a number counts as this error.
 inline constexpr double no_digit = 0x1p24;
 
+/// The backend of a scene that an ordinary renderer draws on the Vulkan device: with the forward pairs of its effects and
+/// posts, the device's interpolation and depth test, and GLSL's built-in functions.
+inline constexpr const char* forward_backend = "forward";
+
 /// One computation in one form and precision on one backend.
 struct Point {
   std::string effect;     ///< "cook_torrance", "pow", "material_balls"
   std::string form;       ///< "source", "library", "function", "scene"
   std::string precision;  ///< "fast", "default", "precise"; "built-ins" are GLSL's own; "peer": others' C++
-  std::string backend;    ///< "cpu", "vulkan"; of peers "glm", "spirv-cross"
+  std::string backend;    ///< "cpu", "vulkan"; of peers "glm", "spirv-cross"; forward_backend
   std::string lanes;      ///< of the cpu backend: "16x2"
   /// Nanoseconds for one more row of a table or one pixel of a scene, without the fixed cost of a call: the median, and
   /// the interquartile range. `transfer` is the time of a program that only reads the same inputs and writes as many
@@ -71,7 +76,10 @@ std::optional<Report> measure(const BenchOptions& options, support::Diagnostics&
 /// What is compared: the time of the computation alone, or that of a pixel of a scene.
 inline double time_of(const Point& point) { return point.form == "scene" ? point.nanoseconds : point.compute; }
 
-/// Whether all points of the same effect, form and precision computed the same bits; built-ins and peers are exempt.
+/// Whether the bits of a point may differ from ours: those of GLSL's built-ins and of peers.
+inline bool is_foreign(std::string_view precision) { return precision == "built-ins" || precision == "peer"; }
+
+/// Whether all points of the same effect, form and precision computed the same bits, but for foreign ones.
 bool all_identical(const Report& report);
 
 /// One line for each point, with a heading.
@@ -80,7 +88,7 @@ std::string json_text(const Report& report);
 /// The table that the command prints.
 std::string summary(const Report& report);
 /// For README: effects on the fastest lanes of the cpu in computation apart from transfer, the share of the port bound, and
-/// ratios to scalar C++ and to Vulkan, as a table in Markdown.
+/// ratios to scalar C++ and to Vulkan, as a table in Markdown; and a table of the scenes that an ordinary renderer drew, too.
 std::string ratios_text(const Report& report);
 
 /// The points that no other point beats in both time and error, fastest first.

@@ -26,9 +26,6 @@ std::string drawn_lanes(const Report& report) {
   return lanes;
 }
 
-/// Whether bits may differ from ours.
-bool is_foreign(std::string_view precision) { return precision == "built-ins" || precision == "peer"; }
-
 /// A logarithmic axis cannot show an error of 0.
 double error_of(const Point& point) { return std::max(point.max_ulp, 0.1); }
 
@@ -67,7 +64,7 @@ class Plot {
     std::vector<const Point*> points;
     for (const Point& point : report_.points)
       if (point.effect == effect && time_of(point) > 0 &&
-          (vulkan ? point.backend == "vulkan" : point.lanes == lanes_ || point.precision == "peer"))
+          (vulkan ? point.backend == "vulkan" || point.backend == forward_backend : point.lanes == lanes_ || point.precision == "peer"))
         points.push_back(&point);
     return points;
   }
@@ -124,7 +121,7 @@ class Plot {
         for (const Point* point : points) {
           if (point->precision != mark.precision) continue;
           data += fmt::format("{} {}\n", time_of(*point), error_of(*point));
-          if (point->precision == "peer")
+          if (point->precision == "peer" || point->backend == forward_backend)
             letters += fmt::format("{} {} {}\n", time_of(*point), error_of(*point), point->backend);
           else if (point->form == "source") letters += fmt::format("{} {} s\n", time_of(*point), error_of(*point));
         }

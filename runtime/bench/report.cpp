@@ -98,18 +98,41 @@ std::string summary(const Report& report) {
   return text;
 }
 
+namespace {
+
+/// The point of the same effect and form with these; null if there is none.
+const Point* find(const Report& report, const Point& like, std::string_view backend, std::string_view precision,
+                  std::string_view lanes) {
+  const auto found = std::ranges::find_if(report.points, [&](const Point& p) {
+    return p.effect == like.effect && p.form == like.form && p.backend == backend && p.precision == precision &&
+           p.lanes == lanes;
+  });
+  return found != report.points.end() ? &*found : nullptr;
+}
+
+/// The scenes that an ordinary renderer drew, too; empty if there are none.
+std::string scene_ratios_text(const Report& report, const std::string& lanes) {
+  std::string rows;
+  for (const Point& forward : report.points) {
+    if (forward.backend != forward_backend) continue;
+    const Point* cpu = find(report, forward, "cpu", "default", lanes);
+    const Point* vulkan = find(report, forward, "vulkan", "default", "");
+    if (cpu == nullptr || vulkan == nullptr) continue;
+    rows += fmt::format("| {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2g} / {:.2g} |\n", forward.effect, cpu->nanoseconds,
+                        vulkan->nanoseconds, forward.nanoseconds, forward.nanoseconds / vulkan->nanoseconds,
+                        forward.mean_ulp, vulkan->mean_ulp);
+  }
+  if (rows.empty()) return "";
+  return fmt::format("\n| ns a pixel | cpu, {} lanes | Vulkan | forward, built-ins | forward / Vulkan | its mean ULP / ours |\n"
+                     "|---|---|---|---|---|---|\n", lanes) + rows;
+}
+
+}  // namespace
+
 std::string ratios_text(const Report& report) {
   std::string lanes;
   for (const Point& p : report.points)
     if (p.backend == "cpu") lanes = p.lanes;
-  const auto find = [&](const Point& like, const std::string& backend, const std::string& precision,
-                        const std::string& its_lanes) -> const Point* {
-    for (const Point& p : report.points)
-      if (p.effect == like.effect && p.form == like.form && p.backend == backend && p.precision == precision &&
-          p.lanes == its_lanes)
-        return &p;
-    return nullptr;
-  };
   std::string text = fmt::format(
       "| cpu, {} lanes | compute, ns | transfer, ns | of the port bound | busiest | GLM / ours | its max ULP / ours | SPIRV-Cross / ours "
       "| one lane / ours | Vulkan / ours | built-ins / Vulkan |\n|---|---|---|---|---|---|---|---|---|---|---|\n", lanes);
@@ -122,19 +145,19 @@ std::string ratios_text(const Report& report) {
       return is_measured(other) && is_measured(base) ? fmt::format("{:.2g}", other->compute / base->compute)
                                                      : std::string("-");
     };
-    const Point* glm = find(p, "glm", "peer", "1");
-    const Point* vulkan = find(p, "vulkan", "default", "");
+    const Point* glm = find(report, p, "glm", "peer", "1");
+    const Point* vulkan = find(report, p, "vulkan", "default", "");
     Point source = p;
     source.form = "source";  // the built-ins are those of the source's formula
     text += fmt::format("| {} | {:.2f} | {:.2f} | {} | {} | {} | {} | {} | {} | {} | {} |\n", p.effect, p.compute, p.transfer,
                         p.cycles > 0 ? fmt::format("{:.0f} %", 100 * p.port_cycles / p.cycles) : "-",
                         p.busiest.empty() ? "-" : p.busiest, ratio(glm, &p),
                         glm != nullptr ? fmt::format("{:.3g} / {:.3g}", glm->max_ulp, p.max_ulp) : "-",
-                        ratio(find(p, "spirv-cross", "peer", "1"), &p), ratio(find(p, "cpu", "default", "1"), &p),
+                        ratio(find(report, p, "spirv-cross", "peer", "1"), &p), ratio(find(report, p, "cpu", "default", "1"), &p),
                         ratio(vulkan, &p),
-                        ratio(find(source, "vulkan", "built-ins", ""), find(source, "vulkan", "default", "")));
+                        ratio(find(report, source, "vulkan", "built-ins", ""), find(report, source, "vulkan", "default", "")));
   }
-  return text;
+  return text + scene_ratios_text(report, lanes);
 }
 
 }  // namespace isoshade::bench

@@ -2,13 +2,18 @@
 // Whole scenes: time per pixel, and error against the reference at a smaller size.
 #include <algorithm>
 #include <bit>
-#include <filesystem>
+#include <functional>
+#include <memory>
 
 #include "backends/reference/backend.h"
 #include "runtime/bench/backends.h"
 #include "runtime/bench/subject.h"
+#include "runtime/render/clock.h"
 #include "runtime/render/render.h"
 #include "runtime/scene/load.h"
+#ifdef ISOSHADE_VULKAN
+#include "runtime/bench/forward.h"
+#endif
 
 namespace isoshade::bench {
 
@@ -45,13 +50,7 @@ class SceneBench {
     if (!scene) return false;
     options_.progress("reference of " + name);
     if (!draw_reference(*scene)) return false;
-    struct Race {
-      const Contestant* contestant;
-      const render::Plan* plan;
-      size_t point;
-      std::vector<double> samples = {};
-    };
-    std::vector<Race> races;
+    races_.clear();
     for (const Tier tier : functions::tiers) {
       const render::Plan* small = plan(*scene, exact, tier);
       const render::Plan* large = plan(*scene, timed, tier);
@@ -65,24 +64,22 @@ class SceneBench {
         Point point{name, "scene", std::string(functions::tier_name(tier)), contestant.backend,
                     contestant.lanes};
         point.identical = bits_of(image) == bits_of(*first);
-        const Errors errors = errors_of(bits_of(image), reference_);
-        point.max_ulp = errors.max_ulp;
-        point.mean_ulp = errors.mean_ulp;
-        point.max_absolute = errors.max_absolute;
-        races.push_back({&contestant, large, report_.points.size()});
-        report_.points.push_back(std::move(point));
+        enter(std::move(point), image, [this, large, &contestant] {
+          backends::Image drawn;
+          return draw(*large, contestant, drawn);
+        });
       }
+      if (tier == Tier::standard && options_.vulkan && !enter_forward(name, *small, *large)) return false;
     }
     options_.progress("timing " + name);
     const int repetitions = std::max(3, options_.repetitions / 4);
     for (int i = 0; i < repetitions; ++i)
-      for (Race& race : races) {
-        backends::Image image;
-        const auto seconds = draw(*race.plan, *race.contestant, image);
+      for (Race& race : races_) {
+        const auto seconds = race.run();
         if (!seconds) return false;
         race.samples.push_back(*seconds * 1e9 / (timed.width * timed.height));
       }
-    for (Race& race : races) {
+    for (Race& race : races_) {
       std::ranges::sort(race.samples);
       const size_t n = race.samples.size();
       report_.points[race.point].nanoseconds = race.samples[n / 2];
@@ -92,6 +89,51 @@ class SceneBench {
   }
 
  private:
+  /// Seconds that drawing took; nothing after an error.
+  using Run = std::function<std::optional<double>()>;
+  struct Race {
+    Run run;
+    size_t point;
+    std::vector<double> samples = {};
+  };
+
+  /// Adds a point, with the errors of its image at the small size, that `run` is to time.
+  void enter(Point point, const backends::Image& image, Run run) {
+    const Errors errors = errors_of(bits_of(image), reference_);
+    point.max_ulp = errors.max_ulp;
+    point.mean_ulp = errors.mean_ulp;
+    point.max_absolute = errors.max_absolute;
+    races_.push_back({std::move(run), report_.points.size()});
+    report_.points.push_back(std::move(point));
+  }
+
+#ifdef ISOSHADE_VULKAN
+  /// Adds the point of an ordinary renderer on the same device.
+  bool enter_forward(const std::string& name, const render::Plan& small, const render::Plan& large) {
+    if (const std::string lack = forward_lack(small); !lack.empty()) {
+      report_.notes.push_back("no forward renderer of " + name + ": it has " + lack);
+      return true;
+    }
+    const auto peer_of = [&](const render::Plan& plan) -> std::shared_ptr<ForwardPeer> {
+      return ForwardPeer::make(plan, options_.graphs, options_.device, library_, diagnostics_);
+    };
+    const auto compared = peer_of(small), raced = peer_of(large);
+    backends::Image image;
+    // The first frame of the large one compiles what the driver puts off until then.
+    if (!compared || !raced || !compared->renderer->draw(diagnostics_) || !compared->renderer->read(image, diagnostics_) ||
+        !raced->renderer->draw(diagnostics_))
+      return false;
+    enter({name, "scene", "built-ins", forward_backend, ""}, image, [this, raced]() -> std::optional<double> {
+      render::Clock clock;
+      if (!raced->renderer->draw(diagnostics_)) return std::nullopt;
+      return clock.lap();
+    });
+    return true;
+  }
+#else
+  static bool enter_forward(const std::string&, const render::Plan&, const render::Plan&) { return true; }
+#endif
+
   const render::Plan* plan(const scene::Scene& scene, Size size, Tier tier, bool reference = false) {
     render::PlanOptions options;
     options.width = size.width;
@@ -103,11 +145,11 @@ class SceneBench {
     return made ? &plans_.emplace_back(*std::move(made)) : nullptr;
   }
 
-  /// Returns the time that the backend took to draw, including posts, in seconds.
+  /// Returns the time that all steps of a frame took, from its vertices to its posts, in seconds.
   std::optional<double> draw(const render::Plan& plan, const Contestant& contestant, backends::Image& image) {
     render::DrawStats stats;
     if (!render::render(plan, *contestant.device, image, stats, diagnostics_)) return std::nullopt;
-    return stats.draw_seconds + stats.post_seconds;
+    return stats.transform_seconds + stats.clip_seconds + stats.draw_seconds + stats.post_seconds;
   }
 
   bool draw_reference(const scene::Scene& scene) {
@@ -133,6 +175,7 @@ class SceneBench {
   Diagnostics& diagnostics_;
   check::Library library_;
   std::vector<reference::Real> reference_;
+  std::vector<Race> races_;
 };
 
 }  // namespace

@@ -290,7 +290,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
 
   BenchArguments bench;
   CLI::App* bench_app = app.add_subcommand(
-      "bench", "Measure run time and error: formulas, precisions, lane counts, Vulkan, GLSL's built-ins and scalar C++; or frames");
+      "bench",
+      "Measure run time and error: formulas, precisions, lane counts, Vulkan, GLSL's built-ins, scalar C++, and scenes also by an "
+      "ordinary forward renderer; or frames");
   bench_app->add_option("-o,--output", bench.output,
                         "Folder for bench.csv, bench.json, bench.md, bench.gp and bench.svg (drawn by gnuplot)");
   bench_app->add_option("--only", bench.only, "Only effects, functions and scenes whose names contain this");

@@ -19,4 +19,7 @@ if(ISOSHADE_VULKAN)
     LINKS isoshade_vulkan
     TIMEOUT 120
     DEVICES)
+
+  isoshade_test(bench_test SOURCES unit/bench_scenes_test.cpp LINKS isoshade_bench DEVICES)
+  target_compile_definitions(bench_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 endif()
