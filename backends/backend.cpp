@@ -26,7 +26,8 @@ Contents contents_of(FrameBuffer array) {
     case FrameBuffer::triangles:
       return {"the triangles to draw", "draw fewer copies, or meshes of fewer triangles",
               &Frame::largest_mesh};
-    case FrameBuffer::objects: return {"the parameters of all copies of objects", "draw fewer copies"};
+    case FrameBuffer::objects:
+    case FrameBuffer::object_integers: return {"the parameters of all copies of objects", "draw fewer copies"};
     case FrameBuffer::view: return {"the matrices of all copies of objects", "draw fewer copies"};
     case FrameBuffer::lights: return {"the lights", "use fewer lights"};
     case FrameBuffer::texels:

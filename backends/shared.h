@@ -27,7 +27,8 @@ inline Known known_of(const Frame& frame, const View* view, lower::FrameBuffer b
   };
   switch (buffer) {
     case FrameBuffer::vertices: return all(frame.revisions.vertices, frame.vertices);
-    case FrameBuffer::objects: return all(frame.revisions.objects, frame.objects);
+    case FrameBuffer::objects:
+    case FrameBuffer::object_integers: return all(frame.revisions.objects, frame.objects);
     case FrameBuffer::lights: return all(frame.revisions.lights, frame.lights);
     case FrameBuffer::texels: return all(frame.revisions.texels, frame.texels);
     case FrameBuffer::texel_bytes: return all(frame.revisions.texel_bytes, frame.texel_bytes);
@@ -48,6 +49,11 @@ struct Layers {
   std::span<const int32_t> records;
 };
 
+/// The same memory.
+inline std::span<const int32_t> integers_of(std::span<const float> words) {
+  return {reinterpret_cast<const int32_t*>(words.data()), words.size()};
+}
+
 /// Calls use(buffer, words) for each array that programs of a view read, except textures and triangles, until a call
 /// returns false. `vertices`: see Drawing.
 template <class Use>
@@ -55,6 +61,7 @@ bool for_each_array(const ViewPass& pass, const Layers& layers, std::span<const 
   using lower::FrameBuffer;
   const Frame& frame = pass.frame;
   return use(FrameBuffer::vertices, vertices) && use(FrameBuffer::objects, std::span(frame.objects)) &&
+         use(FrameBuffer::object_integers, integers_of(frame.objects)) &&
          use(FrameBuffer::lights, std::span(frame.lights)) &&
          use(FrameBuffer::frame, std::span(pass.view.frame.empty() ? frame.frame : pass.view.frame)) &&
          use(FrameBuffer::view, std::span(pass.view.words)) && use(FrameBuffer::layers, layers.floats) &&
@@ -73,7 +80,8 @@ template <class Use>
 bool for_each_array(const ScreenPass& pass, const Layers& layers, const Use& use) {
   using lower::FrameBuffer;
   return use(FrameBuffer::frame, pass.frame) && use(FrameBuffer::view, pass.view) &&
-         use(FrameBuffer::objects, pass.record) && use(FrameBuffer::layers, layers.floats) &&
+         use(FrameBuffer::objects, pass.record) &&
+         use(FrameBuffer::object_integers, integers_of(pass.record)) && use(FrameBuffer::layers, layers.floats) &&
          use(FrameBuffer::layer_records, layers.records) &&
          (pass.textures == nullptr || for_each_texture_array(*pass.textures, use));
 }

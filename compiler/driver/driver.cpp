@@ -125,6 +125,12 @@ interface::RecordLayout layout_of(const Effect& effect) {
   return layout;
 }
 
+/// Behind the columns of the frame before, also where there are none: which programs read them shows only later.
+uint32_t first_draw_word(const Effect& effect) {
+  constexpr size_t columns = 12;
+  return static_cast<uint32_t>(static_cast<size_t>(layout_of(effect).previous) + columns);
+}
+
 bool reads_previous(const Program& program) {
   return std::ranges::any_of(program.bindings, [](const interface::Binding& binding) {
     const auto* attribute = std::get_if<interface::source::Attribute>(&binding.source);
@@ -156,8 +162,11 @@ void name_words(ir::Module& module, const ParameterBlock& block, size_t first) {
   for (size_t i = 0; i < block.taps.size(); ++i) add("taps_" + block.taps[i].name, block.word_of_taps(i), 1);
 }
 
+/// The words of a program's values, behind those that other programs have in the same record.
+uint32_t draw_words(const Program& program) { return program.draw == nullptr ? 0 : program.draw->words; }
+
 Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
-                       const CompileOptions& options) {
+                       const CompileOptions& options, uint32_t room) {
   if (typed.position_of(pass) == nullptr && !options.dump) {
     Program program = plain_vertex_program();
     program.name = typed.graph.name;
@@ -177,13 +186,13 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
       lowered.module, lowered.interface, layout_of(effect), typed.graph.passes[pass].position_space);
   program.module = std::move(lowered.module);
   program.bindings = std::move(lowered.interface.bindings);
-  finish(program, kernel, options, typed.graph.source);
+  finish(program, kernel, options, typed.graph.source, room);
   return program;
 }
 
 /// The pixel program, or if it is `blended` the one of Stage::blend.
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
-                      const CompileOptions& options, bool blended = false) {
+                      const CompileOptions& options, uint32_t room, bool blended = false) {
   lower::Lowered lowered = lower_with_buffers(typed, {pass});
   name_words(lowered.module, effect.parameters, lower::object_word::parameters);
   lower::LightKinds lights = options.lights;
@@ -195,7 +204,7 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect&
   Program program{blended ? lower::Stage::blend : lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
                   options.tier};
   program.bindings = std::move(lowered.interface.bindings);
-  finish(program, kernel, options, typed.graph.source);
+  finish(program, kernel, options, typed.graph.source, room);
   return program;
 }
 
@@ -207,14 +216,14 @@ std::optional<size_t> cutoff_parameter(const check::TypedGraph& typed, size_t pa
 }
 
 std::optional<Program> cutout_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
-                                      const CompileOptions& options) {
+                                      const CompileOptions& options, uint32_t room) {
   if (!lower::has_part(typed, pass, lower::PassPart::coverage)) return std::nullopt;
   lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::coverage});
   name_words(lowered.module, effect.parameters, lower::object_word::parameters);
   const uint32_t kernel = lower::add_cutout_kernel(lowered.module, lowered.interface, layout_of(effect));
   Program program{lower::Stage::cutout, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {}};
   program.bindings = std::move(lowered.interface.bindings);
-  finish(program, kernel, options, typed.graph.source);
+  finish(program, kernel, options, typed.graph.source, room);
   return program;
 }
 
@@ -239,20 +248,25 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
                 environment_reads(*typed)};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
+    uint32_t room = first_draw_word(effect);
+    Program vertex = vertex_program(*typed, i, effect, options, room);
+    room += draw_words(vertex);
+    std::optional<Program> cutout = cutout_program(*typed, i, effect, options, room);
+    if (cutout) room += draw_words(*cutout);
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
                              pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow,
-                             pass.casts_blended_shadow, pass.receives_shadow, pass.repeat,
-                             vertex_program(*typed, i, effect, options),
-                             pixel_program(*typed, i, effect, options), {},
-                             cutout_program(*typed, i, effect, options)});
+                             pass.casts_blended_shadow, pass.receives_shadow, pass.repeat, std::move(vertex),
+                             pixel_program(*typed, i, effect, options, room), {}, std::move(cutout)});
     EffectPass& made = effect.passes.back();
     effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
                              (made.cutout && reads_previous(*made.cutout));
     made.receives_shadow &= std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
       return std::holds_alternative<interface::source::LightCount>(binding.source);
     });
-    if (pass.state.blend == interface::Blend::none) continue;
-    made.blend = pixel_program(*typed, i, effect, options, true);
+    if (pass.state.blend != interface::Blend::none) made.blend = pixel_program(*typed, i, effect, options, room, true);
+    room += std::max(draw_words(made.pixel), made.blend ? draw_words(*made.blend) : 0);
+    effect.draw_words = std::max(effect.draw_words, room - first_draw_word(effect));
+    if (!made.blend) continue;
     made.reads_scene = std::ranges::any_of(made.blend->bindings, [](const interface::Binding& binding) {
       return std::holds_alternative<interface::source::PixelOfImage>(binding.source);
     });
@@ -297,7 +311,7 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
   post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {},
                   options.tier};
   post.program.bindings = std::move(lowered.interface.bindings);
-  finish(post.program, kernel, options, typed->graph.source);
+  finish(post.program, kernel, options, typed->graph.source, static_cast<uint32_t>(post.parameters.word_count()));
   return post;
 }
 

@@ -62,6 +62,9 @@ struct Effect {
   /// Behind the parameters, the object's record has the columns that led to world space at the frame before.
   bool reads_previous = false;
   EnvironmentReads environment;
+  /// Behind all of that each record has what is the same all over a draw (Program::draw), at most so many words. Where
+  /// there are any, there are always words for the columns before them.
+  uint32_t draw_words = 0;
 };
 
 /// A full-screen effect.

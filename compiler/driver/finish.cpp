@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "compiler/driver/dumps.h"
+#include "compiler/lower/frame_layout.h"
 #include "compiler/lower/setup.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
@@ -17,13 +18,40 @@ void set_number(Program& program) {
   program.number = ++last_number;
 }
 
-void finish(Program& program, uint32_t kernel, const CompileOptions& options,
-            support::Source source) {
+std::optional<passes::DrawRate> draw_rate(Stage stage, uint32_t first) {
+  using lower::FrameBuffer;
+  const auto number = [](FrameBuffer buffer) { return static_cast<uint32_t>(buffer); };
+  passes::DrawRate rate;
+  rate.floats = number(FrameBuffer::objects);
+  rate.integers = number(FrameBuffer::object_integers);
+  rate.first = first;
+  rate.buffers = {number(FrameBuffer::objects), number(FrameBuffer::textures), number(FrameBuffer::frame)};
+  switch (stage) {
+    case Stage::vertex: rate.parameter = 1; break;
+    case Stage::cutout: rate.parameter = 3; break;
+    case Stage::pixel:
+    case Stage::blend: rate.parameter = 3; break;
+    case Stage::post:
+      // Where the images lie is up to the backend.
+      namespace word = lower::image_word;
+      rate.buffers.push_back(number(FrameBuffer::view));
+      rate.records = {number(FrameBuffer::layer_records), word::stride, {word::width, word::height}};
+      break;
+    case Stage::setup:
+    case Stage::depth:
+    case Stage::eval: return std::nullopt;
+  }
+  return rate;
+}
+
+void finish(Program& program, uint32_t kernel, const CompileOptions& options, support::Source source,
+            std::optional<uint32_t> room) {
   set_number(program);
   program.entry = kernel;
   program.source = std::move(source);
   if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);
   passes::Entries entries{kernel};
+  if (room && options.skips.has(interface::Skip::rates)) entries.draw_rate = draw_rate(program.stage, *room);
   const auto dump = [&](std::string_view pass, const ir::Module& after) {
     options.dump(pass, [&] { return dump_module(after); });
   };
@@ -31,6 +59,7 @@ void finish(Program& program, uint32_t kernel, const CompileOptions& options,
   passes::run(passes::optimisations(), program.module, entries, program.tier,
               options.dump ? passes::Dump(dump) : passes::Dump());
   program.entry = entries[0];
+  if (entries.draw_values) program.draw = std::make_shared<const passes::DrawValues>(*std::move(entries.draw_values));
 }
 
 namespace {

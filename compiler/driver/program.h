@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "compiler/interface/binding.h"
 #include "compiler/ir/module.h"
 #include "compiler/lower/stages.h"
+#include "compiler/passes/hoist.h"
 #include "compiler/support/source.h"
 
 namespace isoshade::driver {
@@ -41,6 +43,8 @@ struct Program {
   support::Source source = nullptr;  ///< of the document, for messages; null if there is none
   /// The bindings of the document's function, as lowered; empty if there is none.
   std::vector<interface::Binding> bindings = {};
+  /// What is computed once for a draw and lies in its record; null if nothing is.
+  std::shared_ptr<const passes::DrawValues> draw = nullptr;
   /// Of what was compiled in this process; copies have the same. So backends need not print a program to recognise it.
   /// 0: it was not compiled.
   uint64_t number = 0;

@@ -25,7 +25,8 @@ enum class FrameBuffer : uint32_t {
   texel_bytes,
   textures,
   layers,
-  layer_records
+  layer_records,
+  object_integers
 };
 
 struct FrameBufferInfo {
@@ -45,6 +46,7 @@ inline constexpr FrameBufferInfo frame_buffers[] = {
     {"textures", ir::Scalar::integer},     ///< where each texture lies in one of the two
     {"layers", ir::Scalar::floating},      ///< images that were made before, rows top down: r g b a, or depth alone
     {"layer_records", ir::Scalar::integer},
+    {"object_integers", ir::Scalar::integer},  ///< the memory of `objects`; some words of records are integers
 };
 
 /// The words of each record (records.def): constants called as its fields, and the words of the whole.

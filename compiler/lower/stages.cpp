@@ -232,7 +232,8 @@ std::vector<ir::RecordField> fields_of(FrameBuffer buffer) {
     case FrameBuffer::texels:
     case FrameBuffer::texel_bytes:
     case FrameBuffer::layers:
-    case FrameBuffer::layer_records: break;
+    case FrameBuffer::layer_records:
+    case FrameBuffer::object_integers: break;
   }
   return {};
 }

@@ -65,6 +65,10 @@ void cse(ir::Module& module);
 /// Needs: a valid module without dead calls (renumber). Leaves: only functions that are reached.
 void dce(ir::Module& module, std::vector<uint32_t>& entries);
 
+/// Drops parameters that their function does not read, and the arguments for them; not those of the entries.
+/// Needs: a valid module without dead instructions. Leaves: nothing dead.
+void drop_parameters(ir::Module& module, std::span<const uint32_t> entries);
+
 /// Replaces what the ranges of parameters decide, in functions of documents: comparisons with a known outcome by
 /// constants; min, max, clamp and saturate of values within the limits, and magnitudes of positive values, by the
 /// operand that they return. Bit-exact. Relies on parameters being in range (scenes are checked when loaded); takes

@@ -22,6 +22,10 @@ void run_cse(ir::Module& m, Entries&, Tier) { cse(m); }
 void run_expand(ir::Module& m, Entries&, Tier tier) { functions::expand(m, tier); }
 void run_decide(ir::Module& m, Entries&, Tier tier) { decide(m, tier); }
 void run_specialize(ir::Module& m, Entries&, Tier) { specialize(m); }
+void run_hoist(ir::Module& m, Entries& entries, Tier) {
+  if (!entries.draw_rate) return;
+  entries.draw_values = hoist(m, entries.functions[0], *entries.draw_rate);
+}
 void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries.functions); }
 void run_hide(ir::Module& m, Entries& entries, Tier) {
   hide_foldables(m, entries.are_linked ? std::span<const uint32_t>() : entries.functions);
@@ -41,6 +45,8 @@ constexpr ModulePass optimisation_table[] = {
     {"expand", run_expand, "all that reasons about functions has seen them"},
     {"decide", run_decide, "the bodies tell what ranges the ranges of their arguments make"},
     {"fold", run_fold, "bodies are templates: they have constants to fold, and what was decided is constant"},
+    {"renumber", run_renumber, "nothing dead is hoisted"},
+    {"hoist", run_hoist, "bodies show what is the same for a draw, and what is constant is no longer there"},
     {"specialize", run_specialize, "only bodies can take constants in"},
     {"hide_foldables", run_hide, "after the last fold, which could bring the shapes back"},
     {"cse", run_cse, "bodies compute things twice, and hidden shapes share their bits"},

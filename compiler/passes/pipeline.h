@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/functions/tier.h"
+#include "compiler/passes/hoist.h"
 #include "compiler/ir/module.h"
 
 namespace isoshade::passes {
@@ -18,6 +19,9 @@ struct Entries {
   std::vector<uint32_t> functions;
   /// Other programs call them, and compute with what they return.
   bool are_linked = false;
+  /// What hoist goes by, for the only function; none: it does nothing. What it moved is left in `draw_values`.
+  std::optional<DrawRate> draw_rate = {};
+  std::optional<DrawValues> draw_values = {};
 
   Entries(std::initializer_list<uint32_t> list) : functions(list) {}
   uint32_t operator[](size_t i) const { return functions[i]; }

@@ -10,8 +10,10 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/visible.h"
 #include "runtime/environment/environment.h"
+#include "runtime/lanes/lanes.h"
 #include "runtime/render/clock.h"
 #include "runtime/render/samples.h"
+#include "runtime/scene/host_math.h"
 
 namespace isoshade::render {
 
@@ -32,6 +34,15 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
     kinds.shadows |= light.shadow.has_value();
   }
   return kinds;
+}
+
+bool draw_reads_frame(const driver::Program& program) {
+  const auto reads_frame = [](const ir::Function& function) {
+    return std::ranges::any_of(function.instructions, [](const ir::Instruction& made) {
+      return made.op == ir::Opcode::load && made.imm == static_cast<uint32_t>(lower::FrameBuffer::frame);
+    });
+  };
+  return program.draw != nullptr && std::ranges::any_of(program.draw->module.functions, reads_frame);
 }
 
 struct Size {
@@ -79,6 +90,8 @@ bool Planner::compile_effects() {
       const uint32_t cutout = pass.cutout ? add_program(*pass.cutout) : backends::Frame::no_program;
       const uint32_t pixel = add_program(pass.pixel, cutout);
       programs.push_back({vertex, pixel, pass.blend ? add_program(*pass.blend, cutout) : pixel});
+      draws_read_frame_ |= draw_reads_frame(pass.vertex) || draw_reads_frame(pass.pixel) ||
+                           (pass.blend && draw_reads_frame(*pass.blend)) || (pass.cutout && draw_reads_frame(*pass.cutout));
     }
   }
   return true;
@@ -366,6 +379,7 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   frame.revisions.texel_bytes = next_revision();
   if (!add_environment()) return false;
   keys_ = keys_of(scene);
+  update_frame_words();
   place_all();
   if (!make_views(width, height)) return false;
   plan_.stats.compile_seconds = compile_seconds;
@@ -388,10 +402,21 @@ bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
   plan_.stats.environment = scene.environment.has_value();
   plan_.stats.environment_kept = is_lit && plan_.stats.environment;
   keys_ = std::move(keys);
-  if (!is_placed) place_all();
+  const bool same_frame = update_frame_words();
+  if (!is_placed || (draws_read_frame_ && !same_frame)) place_all();
   if (!make_views(width, height)) return false;
   finish_stats(clock.lap());
   return true;
+}
+
+bool Planner::update_frame_words() {
+  const lanes::FpGuard guard;
+  const std::vector<float> now = std::exchange(frame_now_, frame_words(*scene_, environment_));
+  const std::vector<float> earlier = std::exchange(frame_earlier_, frame_now_);
+  const double time = static_cast<double>(scene_->time) - 1 / static_cast<double>(scene_->frames_per_second);
+  frame_earlier_[lower::frame_word::time] =
+      scene::canonical(scene_->before != nullptr ? scene_->before->time : static_cast<float>(time));
+  return now == frame_now_ && (earlier == frame_earlier_ || !has_motion_);
 }
 
 void Planner::finish_stats(double seconds) {

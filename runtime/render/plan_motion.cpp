@@ -33,10 +33,7 @@ void Planner::begin_motion(int width, int height) {
   projection_before_ = view.projection;
   motion.before.target = motion.now.target = {"the motion", width, height};
   motion.before.words = view_words(camera, view, width, height);
-  motion.before.frame = plan_.frame.frame;
-  const double earlier = static_cast<double>(scene_->time) - 1 / static_cast<double>(scene_->frames_per_second);
-  motion.before.frame[lower::frame_word::time] =
-      scene::canonical(scene_->before != nullptr ? scene_->before->time : static_cast<float>(earlier));
+  motion.before.frame = frame_earlier_;
   append_rows(scene::make_view(scene_->camera, width, height).projection, motion.backdrop);
   append_rows(view.projection, motion.backdrop);
   motion.complete = &driver::backdrop_motion_program(options_.compiler.reference);
@@ -53,16 +50,16 @@ uint32_t Planner::motion_program(uint32_t pixel) {
 }
 
 /// Appends the records of a pass again, and then those at the frame before. place_all() writes their program.
-void Planner::append_motion_records(size_t o, const scene::Instance& instance, size_t part, int record, int repetitions,
-                                    std::vector<float>& objects) const {
-  const std::vector<float> now(objects.begin() + record, objects.end());
-  objects.insert(objects.end(), now.begin(), now.end());
+void Planner::append_motion_records(size_t o, const scene::Instance& instance, size_t part, const driver::EffectPass& pass,
+                                    const PlacedPass& made, Placed& placed) const {
+  const std::vector<float> now(placed.objects.begin() + made.record, placed.objects.end());
+  placed.objects.insert(placed.objects.end(), now.begin(), now.end());
   const ObjectTransforms place = place_of(before(o), instance);
   const PartValues& parameters = parameters_before_[o].empty() ? parameters_[o] : parameters_before_[o];
   std::vector<float> words = parameters[part].words(instance, [&](int number) { return textures_.record(number); });
   if (plan_.effects[effect_of_object_[o]].reads_previous) append_columns(place.model, words);
-  for (int repetition = 0; repetition < repetitions; ++repetition)
-    append_object(place, 0, {repetition, repetitions}, words, objects);
+  for (int repetition = 0; repetition < made.repetitions; ++repetition)
+    append_record(o, pass, made.blended, place, 0, {repetition, made.repetitions}, words, placed, true);
 }
 
 void Planner::see_motion(const PlacedPass& pass, size_t copy, int repetition, const backends::Draw& draw, float nearness,

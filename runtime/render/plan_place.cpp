@@ -22,7 +22,8 @@ int Planner::repetitions_of(const driver::Effect& effect, const driver::EffectPa
 int Planner::record_words(size_t o) const {
   const driver::Effect& effect = plan_.effects[effect_of_object_[o]];
   const int64_t values = parameters_[o].front().word_count();
-  return static_cast<int>(lower::object_word::parameters + values + (effect.reads_previous ? columns_words : 0));
+  const bool has_columns = effect.reads_previous || effect.draw_words != 0;
+  return static_cast<int>(lower::object_word::parameters + values + (has_columns ? columns_words : 0) + effect.draw_words);
 }
 
 Hull Planner::hull_of(size_t o, const glm::mat4& model) const {
@@ -41,6 +42,25 @@ Hull Planner::hull_of(size_t o, const glm::mat4& model) const {
   hull.may_show = object.receives_shadow;
   hull.may_darken = object.receives_shadow && std::ranges::any_of(passes, &driver::EffectPass::receives_shadow);
   return hull;
+}
+
+void Planner::append_record(size_t o, const driver::EffectPass& pass, bool blended, const ObjectTransforms& place,
+                            uint32_t program, Repetition repetition, std::span<const float> words, Placed& placed,
+                            bool before) const {
+  const size_t first = placed.objects.size();
+  append_object(place, program, repetition, words, placed.objects);
+  if (plan_.effects[effect_of_object_[o]].draw_words == 0) return;
+  placed.objects.resize(first + static_cast<size_t>(record_words(o)));
+  std::optional<DrawEvaluator>& evaluator = before ? placed.evaluator_before : placed.evaluator;
+  if (!evaluator) {
+    evaluator.emplace();
+    evaluator->bind(lower::FrameBuffer::frame, before ? frame_earlier_ : frame_now_);
+    evaluator->bind(lower::FrameBuffer::textures, plan_.frame.textures);
+  }
+  const std::span<float> record = std::span(placed.objects).subspan(first);
+  evaluator->fill(pass.vertex.draw, record);
+  if (pass.cutout) evaluator->fill(pass.cutout->draw, record);
+  evaluator->fill((blended ? *pass.blend : pass.pixel).draw, record);
 }
 
 /// Writes the records of one copy: of one pass after the other, those over each part.
@@ -75,10 +95,10 @@ void Planner::place_copy(size_t o, int64_t number, Placed& placed) const {
       if (effect.reads_previous) append_columns(model_before, words);
       for (int repetition = 0; repetition < made.repetitions; ++repetition) {
         placed.origins.push_back({static_cast<int>(placed.objects.size()), static_cast<uint32_t>(o), &pass});
-        append_object(place, made.blended ? programs.blend : programs.pixel, {repetition, made.repetitions}, words,
-                      placed.objects);
+        append_record(o, pass, made.blended, place, made.blended ? programs.blend : programs.pixel,
+                      {repetition, made.repetitions}, words, placed);
       }
-      if (made.moves) append_motion_records(o, instance, part, made.record, made.repetitions, placed.objects);
+      if (made.moves) append_motion_records(o, instance, part, pass, PlacedPass(made), placed);
     }
   }
 }

@@ -284,7 +284,7 @@ bool Planner::make_views(int width, int height) {
     plan_.stats.skips.push_back({interface::Skip::textures, "blurred maps of the environment", "nothing reads them"});
 
   const lanes::FpGuard guard;
-  frame.frame = frame_words(*scene_, environment_);
+  frame.frame = frame_now_;
   add_views(width, height);
   begin_motion(width, height);
   Seen all;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/render/draw_evaluator.h"
 #include "runtime/render/parameters.h"
 #include "runtime/render/plan.h"
 #include "runtime/render/plan_keys.h"
@@ -77,6 +78,8 @@ class Planner {
   std::optional<int> find_texture(const ImageSource& source, const lower::ImageSlot& slot);
   /// The object at the frame before.
   const scene::Object& before(size_t o) const { return object_before(*scene_, o); }
+  /// Makes frame_now_ and frame_earlier_; whether they are as they were.
+  bool update_frame_words();
   void finish_stats(double seconds);
 
   // The records of all copies (plan_place.cpp).
@@ -100,8 +103,12 @@ class Planner {
     std::vector<Hull> hulls;               ///< of each copy, if a light has a shadow
     std::vector<float> objects;            ///< their records
     std::vector<RecordOrigin> origins;
+    std::optional<DrawEvaluator> evaluator, evaluator_before;  ///< of this frame, and of the one before
   };
   void place_all();
+  /// Appends a record, with what is the same for its draws. `words`: of the parameters.
+  void append_record(size_t o, const driver::EffectPass& pass, bool blended, const ObjectTransforms& place, uint32_t program,
+                     Repetition repetition, std::span<const float> words, Placed& placed, bool before = false) const;
   void place_copy(size_t o, int64_t number, Placed& placed) const;
   void append(Placed& part);
   Hull hull_of(size_t o, const glm::mat4& model) const;
@@ -168,8 +175,8 @@ class Planner {
   void begin_motion(int width, int height);
   /// A program that draws motion, with the cut-out of a pixel program.
   uint32_t motion_program(uint32_t pixel);
-  void append_motion_records(size_t o, const scene::Instance& instance, size_t part, int record, int repetitions,
-                             std::vector<float>& objects) const;
+  void append_motion_records(size_t o, const scene::Instance& instance, size_t part, const driver::EffectPass& pass,
+                             const PlacedPass& made, Placed& placed) const;
   /// Adds a draw of the picture to both views. `record`: the pass's.
   void see_motion(const PlacedPass& pass, size_t copy, int repetition, const backends::Draw& draw, float nearness,
                   int& matrix_before, Seen& seen) const;
@@ -204,6 +211,8 @@ class Planner {
   size_t shadow_maps_ = 0;                               ///< the views that begin the frame
   uint64_t shadow_texels_ = 0, most_shadow_texels_ = 0;  ///< of all shadow maps; of those of one light
   bool has_opaque_view_ = false;
+  std::vector<float> frame_now_, frame_earlier_;         ///< what will be Frame::frame, and what it was at the frame before
+  bool draws_read_frame_ = false;                        ///< what is the same for a draw may depend on it
   std::vector<float> lights_before_, frame_before_;  ///< arrays of the frame before, to compare with
   std::vector<const driver::Program*> programs_before_;
   std::vector<uint32_t> cutouts_before_;

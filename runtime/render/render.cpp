@@ -57,7 +57,10 @@ class FrameRenderer {
         stats_(stats),
         diagnostics_(diagnostics),
         built_(backend_.build_seconds()) {
-    for (size_t s = 0; s < plan.posts.steps.size(); ++s) images_of_step_.push_back(images_of(s));
+    for (size_t s = 0; s < plan.posts.steps.size(); ++s) {
+      images_of_step_.push_back(images_of(s));
+      records_of_step_.push_back(record_of(s));
+    }
   }
 
   /// With `search`, looks after each step for pixels that are not finite; the layout must be that of steps apart.
@@ -213,9 +216,26 @@ class FrameRenderer {
             .height = over_samples ? target.height : step.height,
             .frame = frame_.frame,
             .view = std::span(frame_.picture().words).first(lower::view_word::camera_words),
-            .record = step.record,
+            .record = s < records_of_step_.size() ? std::span<const float>(records_of_step_[s]) : std::span<const float>(),
             .images = images_of_step_[s],
             .textures = step.post->environment.any ? &frame_ : nullptr};
+  }
+
+  std::vector<float> record_of(size_t s) {
+    const PostStep& step = plan_.posts.steps[s];
+    std::vector<float> record = step.record;
+    const std::shared_ptr<const passes::DrawValues>& values = step.post->program.draw;
+    if (values == nullptr) return record;
+    record.resize(values->first + values->words);
+    const ScreenPass pass = pass_of(s);
+    const std::vector<int32_t> images = backends::image_records(pass.width, pass.height, pass.images);
+    DrawEvaluator& evaluator = memory_.evaluator_;
+    evaluator.bind(lower::FrameBuffer::frame, pass.frame);
+    evaluator.bind(lower::FrameBuffer::view, pass.view);
+    evaluator.bind(lower::FrameBuffer::textures, frame_.textures);
+    evaluator.bind(lower::FrameBuffer::layer_records, images);
+    evaluator.fill(values, record);
+    return record;
   }
 
   bool run_posts(const StepGroup& group) {
@@ -323,6 +343,7 @@ class FrameRenderer {
   Clock clock_;
   double built_;  ///< Backend::build_seconds() at the last lap
   std::vector<std::vector<ImageRead>> images_of_step_;
+  std::vector<std::vector<float>> records_of_step_;  ///< with what is the same for all pixels of the step
   std::vector<bool> finite_;  ///< of each image of the chain, in a search
 };
 

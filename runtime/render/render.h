@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "runtime/raster/clip.h"
+#include "runtime/render/draw_evaluator.h"
 #include "runtime/render/plan.h"
 #include "runtime/scene/image_file.h"
 
@@ -30,6 +31,7 @@ class Renderer {
   support::Array<float> vertices_;  ///< of the view that is drawn: the frame's, and those that clipping made
   support::Array<int32_t> triangles_;
   raster::Clipper clipper_;
+  DrawEvaluator evaluator_;  ///< for posts
   backends::Slot color_, depth_;  ///< of the picture that was drawn last
 };
 

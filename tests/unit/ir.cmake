@@ -14,6 +14,7 @@ isoshade_test(passes_test
   SOURCES
     unit/passes_cut_long_test.cpp
     unit/passes_golden_test.cpp
+    unit/passes_hoist_test.cpp
     unit/passes_keep_bits_test.cpp
     unit/passes_test.cpp
     unit/random_module.cpp

@@ -211,7 +211,8 @@ class Pair {
       case FrameBuffer::texels:
       case FrameBuffer::texel_bytes:
       case FrameBuffer::textures:
-      case FrameBuffer::layers: break;
+      case FrameBuffer::layers:
+      case FrameBuffer::object_integers: break;
     }
     support::bug("a forward pair has no such word");
   }

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/passes/hoist_slice.h"
+
+#include <utility>
+
+#include "compiler/support/assert.h"
+
+namespace isoshade::passes {
+
+using namespace ir;
+
+/// Which parameters the results of a function depend on.
+std::vector<bool> parameters_needed(const Function& f) {
+  std::vector<InstructionId> made_by(f.values.size(), none);
+  for (InstructionId id = 0; id < f.instructions.size(); ++id)
+    for (uint32_t k = 0; k < f.instructions[id].result_count; ++k) made_by[f.instructions[id].first_result + k] = id;
+  std::vector<bool> read(f.values.size());
+  std::vector<ValueId> waiting(f.blocks[0].yields);
+  while (!waiting.empty()) {
+    const ValueId value = waiting.back();
+    waiting.pop_back();
+    if (read[value]) continue;
+    read[value] = true;
+    if (made_by[value] == none) continue;
+    const Instruction& made = f.instructions[made_by[value]];
+    const auto operands = f.operands_of(made);
+    waiting.insert(waiting.end(), operands.begin(), operands.end());
+    for (const BlockId block : made.blocks)
+      if (block != none) waiting.insert(waiting.end(), f.blocks[block].yields.begin(), f.blocks[block].yields.end());
+  }
+  std::vector<bool> parameters;
+  for (const ValueId parameter : f.blocks[0].parameters) parameters.push_back(read[parameter]);
+  return parameters;
+}
+
+bool Free::operator()(ValueId value) const {
+  if (rates_.made_by[value] == none) return true;  // a parameter
+  const Instruction& made = f_.instructions[rates_.made_by[value]];
+  switch (made.op) {
+    case Opcode::constant:
+    case Opcode::hidden_zero: return true;
+    case Opcode::construct:
+    case Opcode::extract: return all_free(made);
+    case Opcode::load: return is_kernel_ && all_free(made);
+    case Opcode::iadd: return (is_kernel_ && is_address(made)) || is_constant(value);
+    case Opcode::fne:
+    case Opcode::ine: return (is_kernel_ && all_free(made)) || is_constant(value);  // a boolean of a record
+    default: return is_constant(value);
+  }
+}
+
+bool Free::is_constant(ValueId value) const {
+  const InstructionId id = rates_.made_by[value];
+  if (id == none) return false;
+  const Instruction& made = f_.instructions[id];
+  if (made.op == Opcode::call || made.op == Opcode::load || block_count(made.op) != 0) return false;
+  return std::ranges::all_of(f_.operands_of(made), [&](ValueId v) { return is_constant(v); });
+}
+
+bool Free::all_free(const Instruction& made) const {
+  return std::ranges::all_of(f_.operands_of(made), [&](ValueId v) { return (*this)(v); });
+}
+
+bool Free::is_address(const Instruction& made) const {
+  const auto operands = f_.operands_of(made);
+  const InstructionId second = rates_.made_by[operands[1]];
+  return rates_.made_by[operands[0]] == none && second != none && f_.instructions[second].op == Opcode::constant;
+}
+
+Slice::Slice(const Function& from, const RatesOfFunction& rates, const std::map<InstructionId, const Split*>& splits,
+             Function& to)
+    : from_(from), rates_(rates), splits_(splits), to_(to) {
+  to_.blocks.emplace_back();
+}
+
+void Slice::yield(ValueId value, std::string name) {
+  to_.results.push_back({std::move(name), to_.type(value)});
+  to_.blocks[0].yields.push_back(value);
+}
+
+ValueId Slice::copy(ValueId value) {
+  if (const auto found = values_.find(value); found != values_.end()) return found->second;
+  if (rates_.made_by[value] == none) return add_parameter(value);
+  const InstructionId id = rates_.made_by[value];
+  for (const ValueId read : read_from_outside(id)) copy(read);
+  const InstructionId copied = copy_instruction(id);  // may add blocks
+  to_.blocks[0].instructions.push_back(copied);
+  return values_.at(value);
+}
+
+ValueId Slice::copy_result(const Item& item) {
+  const auto found = calls_.find(item.call);
+  if (found != calls_.end()) return found->second + static_cast<ValueId>(item.of_call);
+  const Split& split = *splits_.at(item.call);
+  std::vector<ValueId> arguments;
+  for (const size_t parameter : split.needs)
+    arguments.push_back(copy(from_.operands_of(from_.instructions[item.call])[parameter]));
+  Instruction call;
+  call.op = Opcode::call;
+  call.imm = split.draw;
+  call.first_operand = static_cast<uint32_t>(to_.operands.size());
+  call.operand_count = static_cast<uint32_t>(arguments.size());
+  to_.operands.insert(to_.operands.end(), arguments.begin(), arguments.end());
+  call.first_result = static_cast<ValueId>(to_.values.size());
+  call.result_count = static_cast<uint32_t>(split.items.size());
+  for (const Parameter& result : split.items) to_.values.push_back({result.type, 0});
+  to_.blocks[0].instructions.push_back(static_cast<InstructionId>(to_.instructions.size()));
+  to_.instructions.push_back(call);
+  calls_[item.call] = call.first_result;
+  return call.first_result + static_cast<ValueId>(item.of_call);
+}
+
+ValueId Slice::add_parameter(ValueId value) {
+  const auto& parameters = from_.blocks[0].parameters;
+  const auto number = static_cast<size_t>(std::ranges::find(parameters, value) - parameters.begin());
+  support::assert_that(number < parameters.size(), "a value of a block that is not copied");
+  needs.push_back(number);
+  to_.parameters.push_back(from_.parameters[number]);
+  to_.parameters.back().group.clear();
+  to_.parameters.back().uniform = true;
+  to_.blocks[0].parameters.push_back(new_value(value));
+  return values_.at(value);
+}
+
+ValueId Slice::new_value(ValueId of) {
+  to_.values.push_back({from_.type(of), 0});
+  return values_[of] = static_cast<ValueId>(to_.values.size() - 1);
+}
+
+std::vector<ValueId> Slice::read_from_outside(InstructionId id) const {
+  std::vector<ValueId> made, outside;
+  const auto read = [&](ValueId value) {
+    if (std::ranges::find(made, value) == made.end()) outside.push_back(value);
+  };
+  const auto visit = [&](const auto& self, InstructionId inner) -> void {
+    const Instruction& instruction = from_.instructions[inner];
+    for (const ValueId value : from_.operands_of(instruction)) read(value);
+    for (const BlockId block : instruction.blocks) {
+      if (block == none) continue;
+      const Block& body = from_.blocks[block];
+      made.insert(made.end(), body.parameters.begin(), body.parameters.end());
+      for (const InstructionId next : body.instructions) self(self, next);
+      for (const ValueId value : body.yields) read(value);
+    }
+    for (uint32_t k = 0; k < instruction.result_count; ++k) made.push_back(instruction.first_result + k);
+  };
+  visit(visit, id);
+  return outside;
+}
+
+InstructionId Slice::copy_instruction(InstructionId id) {
+  Instruction made = from_.instructions[id];
+  std::vector<ValueId> operands;
+  for (const ValueId operand : from_.operands_of(made)) operands.push_back(values_.at(operand));
+  for (BlockId& block : made.blocks)
+    if (block != none) block = copy_block(block);
+  made.first_operand = static_cast<uint32_t>(to_.operands.size());
+  to_.operands.insert(to_.operands.end(), operands.begin(), operands.end());
+  made.origin = 0;
+  const ValueId first = made.first_result;
+  made.first_result = static_cast<ValueId>(to_.values.size());
+  for (uint32_t k = 0; k < made.result_count; ++k) new_value(first + k);
+  to_.instructions.push_back(made);
+  return static_cast<InstructionId>(to_.instructions.size() - 1);
+}
+
+BlockId Slice::copy_block(BlockId id) {
+  Block copied;
+  for (const ValueId parameter : from_.blocks[id].parameters) copied.parameters.push_back(new_value(parameter));
+  for (const InstructionId inner : from_.blocks[id].instructions) copied.instructions.push_back(copy_instruction(inner));
+  for (const ValueId value : from_.blocks[id].yields) copied.yields.push_back(values_.at(value));
+  to_.blocks.push_back(std::move(copied));
+  return static_cast<BlockId>(to_.blocks.size() - 1);
+}
+
+}  // namespace isoshade::passes

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// A function in two parts, for hoist.cpp: what pixels compute, and what the draw computes for them.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "compiler/ir/module.h"
+#include "compiler/passes/draw_rate.h"
+
+namespace isoshade::passes {
+
+/// A value that pixels read: of the function itself, or one of those that a call of it reads.
+struct Item {
+  ir::ValueId value = ir::none;  ///< none: of a call
+  ir::InstructionId call = ir::none;
+  size_t of_call = 0;  ///< the number of the callee's item
+  bool operator<(const Item& other) const {
+    return std::tie(value, call, of_call) < std::tie(other.value, other.call, other.of_call);
+  }
+};
+
+/// A function in two: what pixels compute, and what the draw computes for them.
+struct Split {
+  uint32_t pixels = ir::none;  ///< the function with the items as further parameters
+  uint32_t draw = ir::none;    ///< (what it needs of the parameters that are the same) -> the items
+  std::vector<size_t> needs;   ///< these parameters
+  std::vector<bool> reads;     ///< by parameter: whether pixels still read it
+  std::vector<ir::Parameter> items;
+};
+
+/// Which parameters the results of a function depend on.
+std::vector<bool> parameters_needed(const ir::Function& f);
+
+/// Tells values that cost pixels no operation: constants, words of records, and vectors of such.
+class Free {
+ public:
+  Free(const ir::Function& f, const RatesOfFunction& rates, bool is_kernel) : f_(f), rates_(rates), is_kernel_(is_kernel) {}
+
+  bool operator()(ir::ValueId value) const;
+
+ private:
+  /// Computed from constants: hide_foldables keeps drivers from folding them.
+  bool is_constant(ir::ValueId value) const;
+  bool all_free(const ir::Instruction& made) const;
+  /// The record and a constant.
+  bool is_address(const ir::Instruction& made) const;
+
+  const ir::Function& f_;
+  const RatesOfFunction& rates_;
+  bool is_kernel_;
+};
+
+/// Copies what some values depend on into a function of its own.
+class Slice {
+ public:
+  /// `splits`: of the calls whose callees are split.
+  Slice(const ir::Function& from, const RatesOfFunction& rates, const std::map<ir::InstructionId, const Split*>& splits,
+        ir::Function& to);
+
+  ir::ValueId copy(const Item& item) { return item.value != ir::none ? copy(item.value) : copy_result(item); }
+  void yield(ir::ValueId value, std::string name);
+
+  std::vector<size_t> needs;  ///< the parameters of the other function that this one has, in their order
+
+ private:
+  ir::ValueId copy(ir::ValueId value);
+  /// A result of the draw function of a call's callee.
+  ir::ValueId copy_result(const Item& item);
+  ir::ValueId add_parameter(ir::ValueId value);
+  ir::ValueId new_value(ir::ValueId of);
+  /// What an instruction reads, and what its blocks read and do not make.
+  std::vector<ir::ValueId> read_from_outside(ir::InstructionId id) const;
+  /// Copies an instruction whose operands are copied, and its blocks.
+  ir::InstructionId copy_instruction(ir::InstructionId id);
+  ir::BlockId copy_block(ir::BlockId id);
+
+  const ir::Function& from_;
+  const RatesOfFunction& rates_;
+  const std::map<ir::InstructionId, const Split*>& splits_;
+  ir::Function& to_;
+  std::map<ir::ValueId, ir::ValueId> values_;
+  std::map<ir::InstructionId, ir::ValueId> calls_;  ///< the first result
+};
+
+}  // namespace isoshade::passes
