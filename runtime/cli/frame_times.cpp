@@ -78,10 +78,21 @@ std::string json(const Measured& measured) {
     for (const StepTimes& frame : measured.frames) row["frames"].push_back(1e3 * frame[step]);
     steps[std::string(rows[s].name)] = std::move(row);
   }
+  ordered_json skips = ordered_json::array();
+  for (const render::Skipped& skipped : measured.skipped) {
+    ordered_json row{{"what", skipped.what}, {"why", skipped.reason}};
+    if (skipped.skip) row["skip"] = std::string(interface::name(*skipped.skip));
+    if (!skipped.of.empty()) row["of"] = skipped.of;
+    const std::pair<const char*, int64_t> saved[] = {
+        {"operations", skipped.operations}, {"pixels", skipped.pixels}, {"bytes", skipped.bytes}};
+    for (const auto& [name, count] : saved)
+      if (count != 0) row[name] = count;
+    skips.push_back(std::move(row));
+  }
   const ordered_json all{{"isoshade_frame_times", 1},       {"scene", measured.scene},   {"backend", measured.backend},
                          {"threads", measured.threads},     {"width", measured.width},   {"height", measured.height},
                          {"samples", measured.samples},     {"frames", measured.frames.size()},
-                         {"milliseconds", std::move(steps)}};
+                         {"milliseconds", std::move(steps)}, {"skipped", std::move(skips)}};
   return all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -111,6 +122,17 @@ std::string measured_schema() {
   ordered_json steps;
   for (const StepRow& row : rows)
     steps[std::string(row.name)] = {{"description", row.doc}, {"allOf", {{{"$ref", "#/definitions/step"}}}}};
+  ordered_json names = ordered_json::array();
+  for (const interface::SkipRow& row : interface::skip_rows) names.push_back(std::string(row.name));
+  ordered_json skipped = object(
+      {{"what", text("what was left out")},
+       {"why", text("why that changes no bit")},
+       {"skip", {{"enum", std::move(names)}, {"description", "what `--no-skip` takes; absent if the document itself asks for it"}}},
+       {"of", text("the object, light or effect that it belongs to")},
+       {"operations", whole("that each pixel is spared, or each draw if it has no pixels", 1)},
+       {"pixels", whole("that are not computed", 1)},
+       {"bytes", whole("that are not stored", 1)}},
+      {"skip", "of", "operations", "pixels", "bytes"});
   ordered_json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
                       {"title", "the times of frames, as `isoshade render --frames --stats-json` writes them"}};
   schema.update(object({{"isoshade_frame_times", {{"const", 1}, {"description", "the version of this format"}}},
@@ -121,7 +143,11 @@ std::string measured_schema() {
                         {"height", whole("of the picture, in pixels", 1)},
                         {"samples", whole("per pixel", 1)},
                         {"frames", whole("how many were rendered", 1)},
-                        {"milliseconds", object(std::move(steps))}}));
+                        {"milliseconds", object(std::move(steps))},
+                        {"skipped",
+                         {{"type", "array"},
+                          {"description", "what the first frame left out without changing a bit"},
+                          {"items", std::move(skipped)}}}}));
   schema["definitions"] = {{"step", std::move(step)}};
   return schema.dump(2) + "\n";
 }

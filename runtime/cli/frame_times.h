@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/render/stats.h"
+
 namespace isoshade::cli {
 
 // STEP(name, what it does for the schema)
@@ -43,6 +45,7 @@ struct Measured {
   std::string scene, backend;
   int threads = 1, width = 0, height = 0, samples = 1;
   std::vector<StepTimes> frames;  ///< in their order; at least one
+  std::vector<render::Skipped> skipped;  ///< of the first frame
 };
 
 /// A table in milliseconds: the first frame, and of the others median, quartiles and the distance between these.

@@ -181,6 +181,9 @@ class FrameSequence {
     measured_.width = target.width / side;
     measured_.height = target.height / side;
     measured_.samples = plan->samples;
+    if (frame == 0)
+      for (const auto* skipped : {&plan->stats.in_programs, &plan->stats.skips})
+        measured_.skipped.insert(measured_.skipped.end(), skipped->begin(), skipped->end());
     return arguments_.fail_on_nan && !stats.non_finite.none() ? different : success;
   }
 

@@ -369,6 +369,7 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   const bool effects = compile_effects();
   if (!compile_posts() || !effects) return false;
   has_motion_ = may_read_motion();
+  for (const driver::Effect& effect : plan_.effects) report_draw_values(effect, skipped_in_programs_);
   const double compile_seconds = clock.lap();
   backends::Frame& frame = plan_.frame;
   programs_without_motion_ = frame.programs.size();
@@ -433,6 +434,7 @@ void Planner::finish_stats(double seconds) {
   stats.posts = static_cast<int64_t>(plan_.posts.steps.size());
   stats.sample_posts = plan_.samples > 1 ? static_cast<int64_t>(plan_.posts.sample_steps) : 0;
   stats.plan_seconds = seconds;
+  stats.in_programs = skipped_in_programs_;
 }
 
 uint64_t next_revision() {

@@ -55,7 +55,8 @@ void Planner::add_lights(const scene::View& picture) {
                                             : std::vector<ShadowMap>{};
     if (light.shadow && maps.empty())
       plan_.stats.skips.push_back(
-          {interface::Skip::shadows, "shadow of " + light.name, is_black ? "the light is black" : "it darkens nothing that is seen"});
+          {interface::Skip::shadows, "shadow of " + light.name, is_black ? "the light is black" : "it darkens nothing that is seen",
+           light.name});
     note_largest_shadow(light, maps.size());
     if (!maps.empty()) {
       const size_t place = frame.views.size() + (has_opaque_view_ ? 1 : 0);

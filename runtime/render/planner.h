@@ -212,6 +212,7 @@ class Planner {
   uint64_t shadow_texels_ = 0, most_shadow_texels_ = 0;  ///< of all shadow maps; of those of one light
   bool has_opaque_view_ = false;
   std::vector<float> frame_now_, frame_earlier_;         ///< what will be Frame::frame, and what it was at the frame before
+  std::vector<Skipped> skipped_in_programs_;
   bool draws_read_frame_ = false;                        ///< what is the same for a draw may depend on it
   std::vector<float> lights_before_, frame_before_;  ///< arrays of the frame before, to compare with
   std::vector<const driver::Program*> programs_before_;

@@ -5,6 +5,56 @@
 
 namespace isoshade::render {
 
+namespace {
+
+/// `what` without the name.
+std::string without_name(const Skipped& skipped) {
+  const std::string end = " of " + skipped.of;
+  return skipped.of.empty() ? skipped.what : skipped.what.substr(0, skipped.what.size() - end.size());
+}
+
+std::string saved(const Skipped& sum) {
+  std::string text;
+  const auto add = [&](int64_t count, std::string_view unit) {
+    if (count != 0) text += fmt::format("{}{} {}", text.empty() ? " (saves " : ", ", count, unit);
+  };
+  add(sum.operations, "operations");
+  add(sum.pixels, "pixels");
+  add(sum.bytes, "bytes");
+  return text.empty() ? "" : text + ")";
+}
+
+/// A line for all that differ in their names alone.
+std::string text_of_skips(const std::vector<Skipped>& skips) {
+  constexpr size_t most_names = 4;
+  std::string text;
+  std::vector<bool> told(skips.size());
+  for (size_t i = 0; i < skips.size(); ++i) {
+    if (told[i]) continue;
+    Skipped sum = skips[i];
+    const std::string what = without_name(sum);
+    std::string names = sum.of;
+    size_t count = 1;
+    for (size_t j = i + 1; j < skips.size(); ++j) {
+      const Skipped& other = skips[j];
+      const bool is_alike = !sum.of.empty() && !other.of.empty() && other.skip == sum.skip && other.reason == sum.reason &&
+                            without_name(other) == what;
+      if (!is_alike) continue;
+      told[j] = true;
+      sum.operations += other.operations;
+      sum.pixels += other.pixels;
+      sum.bytes += other.bytes;
+      if (++count <= most_names) names += ", " + other.of;
+    }
+    if (count > most_names) names += ", ...";
+    const std::string object = count == 1 ? sum.what : fmt::format("{} of {} ({})", what, count, names);
+    text += fmt::format("skipped:  {}: {}{}\n", object, sum.reason, saved(sum));
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string text(const PlanStats& stats) {
   const std::string textures = stats.textures == 0
                                    ? ""
@@ -31,8 +81,7 @@ std::string text(const PlanStats& stats) {
   if (stats.posts > 0)
     text += fmt::format("posts:    {}{}\n", stats.posts,
                         stats.sample_posts > 0 ? fmt::format(", {} for each sample", stats.sample_posts) : "");
-  for (const Skipped& skip : stats.skips) text += fmt::format("skipped:  {}: {}\n", skip.what, skip.reason);
-  return text;
+  return text + text_of_skips(stats.in_programs) + text_of_skips(stats.skips);
 }
 
 std::string text(const DrawStats& stats) {

@@ -18,6 +18,11 @@ struct Skipped {
   std::optional<interface::Skip> skip;  ///< none: the document asks for it, and it cannot be switched off
   std::string what;    ///< "12 of 50 copies of balls"
   std::string reason;  ///< "outside of the view"
+  std::string of = {};  ///< the object, light or effect with whose name `what` ends; what is alike is told together
+  // What that saved, where it is known.
+  int64_t operations = 0;  ///< of each pixel, or of each draw if it has no pixels
+  int64_t pixels = 0;      ///< of the frame
+  int64_t bytes = 0;       ///< of memory
 };
 
 struct PlanStats {
@@ -38,7 +43,8 @@ struct PlanStats {
   int64_t posts = 0;  ///< that are run
   int64_t sample_posts = 0;  ///< of them, those that are run for each sample
   double compile_seconds = 0, plan_seconds = 0;
-  std::vector<Skipped> skips;
+  std::vector<Skipped> skips;       ///< of this frame
+  std::vector<Skipped> in_programs;  ///< of the programs, when they were compiled
 };
 
 struct DrawStats {
