@@ -43,9 +43,7 @@ class Hoister {
   uint32_t tidy() {
     std::vector<uint32_t> entries{kernel_};
     renumber(module_);
-    dce(module_, entries);
-    drop_parameters(module_, entries);
-    dce(module_, entries);
+    drop_unread(module_, entries);
     for (const auto& [name, wanted] : wanted_names_) {
       const uint32_t function = module_.find(name);
       if (function != none && module_.find(wanted) == none) module_.functions[function].name = wanted;
@@ -318,10 +316,11 @@ class Hoister {
 }  // namespace
 
 std::optional<DrawValues> hoist(Module& module, uint32_t& kernel, const DrawRate& rate) {
-  drop_parameters(module, std::array{kernel});  // a result may not depend on all of them
-  Hoister hoister(module, kernel, rate);
+  std::vector<uint32_t> entries{kernel};
+  drop_unread(module, entries);  // a result may not depend on all arguments
+  Hoister hoister(module, entries[0], rate);
   std::optional<DrawValues> values = hoister.run();
-  if (values) kernel = hoister.tidy();
+  kernel = values ? hoister.tidy() : entries[0];
   return values;
 }
 

@@ -65,10 +65,6 @@ void cse(ir::Module& module);
 /// Needs: a valid module without dead calls (renumber). Leaves: only functions that are reached.
 void dce(ir::Module& module, std::vector<uint32_t>& entries);
 
-/// Drops parameters that their function does not read, and the arguments for them; not those of the entries.
-/// Needs: a valid module without dead instructions. Leaves: nothing dead.
-void drop_parameters(ir::Module& module, std::span<const uint32_t> entries);
-
 /// Replaces what the ranges of parameters decide, in functions of documents: comparisons with a known outcome by
 /// constants; min, max, clamp and saturate of values within the limits, and magnitudes of positive values, by the
 /// operand that they return. Bit-exact. Relies on parameters being in range (scenes are checked when loaded); takes
@@ -84,6 +80,13 @@ void decide(ir::Module& module, functions::Tier tier);
 /// functions that are no longer called (dce drops them). A module that would grow by more than 200,000
 /// instructions keeps its remaining calls.
 void specialize(ir::Module& module);
+
+/// Drops parameters that their function does not read, results that no caller reads, and what is dead then: constants in a
+/// function may leave nothing to do with what its callers compute for it. Entries keep theirs, and so
+/// do functions of the host and of the library, which others know.
+/// Needs: a valid module without dead code inside functions (renumber). Leaves: only functions that are reached, callees
+/// before callers (dce).
+void drop_unread(ir::Module& module, std::vector<uint32_t>& entries);
 
 /// Leaves drivers nothing to fold: they do it by rules of their own, even under `precise`. Mesa takes x * 0 for
 /// 0, x + 0 for x, int(float(i)) for i, and does not flush when it folds constants. They inline calls and unroll

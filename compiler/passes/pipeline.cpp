@@ -26,6 +26,7 @@ void run_hoist(ir::Module& m, Entries& entries, Tier) {
   if (!entries.draw_rate) return;
   entries.draw_values = hoist(m, entries.functions[0], *entries.draw_rate);
 }
+void run_drop_unread(ir::Module& m, Entries& entries, Tier) { drop_unread(m, entries.functions); }
 void run_dce(ir::Module& m, Entries& entries, Tier) { dce(m, entries.functions); }
 void run_hide(ir::Module& m, Entries& entries, Tier) {
   hide_foldables(m, entries.are_linked ? std::span<const uint32_t>() : entries.functions);
@@ -48,6 +49,8 @@ constexpr ModulePass optimisation_table[] = {
     {"renumber", run_renumber, "nothing dead is hoisted"},
     {"hoist", run_hoist, "bodies show what is the same for a draw, and what is constant is no longer there"},
     {"specialize", run_specialize, "only bodies can take constants in"},
+    {"renumber", run_renumber, "drops what specialize has folded away"},
+    {"drop_unread", run_drop_unread, "constants leave parameters unread, and hiding would read them"},
     {"hide_foldables", run_hide, "after the last fold, which could bring the shapes back"},
     {"cse", run_cse, "bodies compute things twice, and hidden shapes share their bits"},
     {"renumber", run_renumber, "what is printed is in canonical order"},

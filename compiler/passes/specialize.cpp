@@ -11,6 +11,7 @@
 
 #include "compiler/functions/library.h"
 #include "compiler/ir/laws.h"
+#include "compiler/passes/bind.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/name_table.h"
 
@@ -22,8 +23,7 @@ namespace {
 /// The limit is far more than any device compiles in a shader.
 constexpr size_t max_cloned_instructions = 200'000;
 
-/// The words of a constant argument; nothing if it is not constant.
-using Words = std::optional<std::vector<uint32_t>>;
+using Words = KnownWords;
 
 class Specializer {
  public:
@@ -135,7 +135,7 @@ class Specializer {
     ir::Function clone = module_.functions[callee];
     clone.name = free_name(name_of(clone, arguments));
     clone.library.clear();
-    bind(clone, arguments);
+    bind_parameters(clone, arguments);
     cloned_instructions_ += clone.instructions.size();
     module_.functions.push_back(std::move(clone));
     arithmetic_.push_back(arithmetic_[callee]);  // until it is folded
@@ -187,55 +187,6 @@ class Specializer {
     std::string free = name;
     while (!names_.add(free).is_new) free = name + "_" + std::to_string(++numbers_[name]);
     return free;
-  }
-
-  /// Makes parameters constants: each keeps its value's id, which an instruction at the head now defines.
-  static void bind(ir::Function& function, const std::vector<Words>& arguments) {
-    std::vector<ir::Parameter> parameters;
-    std::vector<ir::ValueId> values;
-    std::vector<ir::InstructionId> head;
-    for (size_t i = 0; i < arguments.size(); ++i) {
-      const ir::ValueId value = function.blocks[0].parameters[i];
-      if (!arguments[i]) {
-        parameters.push_back(function.parameters[i]);
-        values.push_back(value);
-      } else {
-        define(function, value, *arguments[i], head);
-      }
-    }
-    function.parameters = std::move(parameters);
-    function.blocks[0].parameters = std::move(values);
-    auto& instructions = function.blocks[0].instructions;
-    instructions.insert(instructions.begin(), head.begin(), head.end());
-  }
-
-  static void define(ir::Function& function, ir::ValueId value, const std::vector<uint32_t>& words,
-                     std::vector<ir::InstructionId>& head) {
-    const auto append = [&](const ir::Instruction& instruction) {
-      function.instructions.push_back(instruction);
-      head.push_back(static_cast<ir::InstructionId>(function.instructions.size() - 1));
-    };
-    ir::Instruction constant;
-    constant.op = ir::Opcode::constant;
-    if (words.size() == 1) {
-      constant.imm = words[0];
-      constant.first_result = value;
-      return append(constant);
-    }
-    ir::Instruction construct;
-    construct.op = ir::Opcode::construct;
-    construct.first_operand = static_cast<uint32_t>(function.operands.size());
-    construct.operand_count = static_cast<uint32_t>(words.size());
-    construct.first_result = value;
-    for (uint32_t word : words) {
-      function.values.push_back({ir::float_type, 0});
-      constant.imm = word;
-      constant.first_result = static_cast<ir::ValueId>(function.values.size() - 1);
-      append(constant);
-    }
-    for (size_t i = 0; i < words.size(); ++i)
-      function.operands.push_back(static_cast<ir::ValueId>(function.values.size() - words.size() + i));
-    append(construct);
   }
 
   ir::Module& module_;

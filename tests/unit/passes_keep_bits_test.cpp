@@ -133,6 +133,57 @@ TEST(PassesKeepEveryBit, CutLong) {
   EXPECT_GT(parts, 2000u);
 }
 
+/// Adds a parameter that is not read to each function but `main`, and a call's argument for it: its first one or a constant.
+void add_unread_parameters(Module& module) {
+  const auto is_main = [](const ir::Function& f) { return f.name == "main"; };
+  for (ir::Function& f : module.functions) {
+    if (f.is_declaration() || is_main(f)) continue;
+    f.parameters.push_back({"unread", ir::float_type, "", false});
+    f.values.push_back({ir::float_type, 0});
+    f.blocks[0].parameters.push_back(static_cast<ir::ValueId>(f.values.size() - 1));
+  }
+  for (ir::Function& f : module.functions)
+    for (ir::Block& block : f.blocks)
+      for (size_t i = 0; i < block.instructions.size(); ++i) {
+        const ir::InstructionId id = block.instructions[i];
+        if (f.instructions[id].op != ir::Opcode::call || module.functions[f.instructions[id].imm].is_declaration()) continue;
+        ir::Instruction constant;
+        constant.op = ir::Opcode::constant;
+        constant.first_result = static_cast<ir::ValueId>(f.values.size());
+        f.values.push_back({ir::float_type, 0});
+        f.instructions.push_back(constant);
+        block.instructions.insert(block.instructions.begin() + static_cast<std::ptrdiff_t>(i++),
+                                  static_cast<ir::InstructionId>(f.instructions.size() - 1));
+        ir::Instruction& call = f.instructions[id];
+        const auto first = static_cast<uint32_t>(f.operands.size());
+        for (uint32_t k = 0; k < call.operand_count; ++k) f.operands.push_back(f.operands[call.first_operand + k]);
+        f.operands.push_back(constant.first_result);
+        call.first_operand = first;
+        ++call.operand_count;
+      }
+}
+
+TEST(PassesKeepEveryBit, DropUnread) {
+  size_t functions = 0, returned = 0, kept = 0;
+  expect_same_bits(1500, false, [&](Module& m, uint64_t seed) {
+    cut_long(m, 2 + seed % 8);
+    add_unread_parameters(m);
+    renumber(m);
+    std::vector<uint32_t> entries{m.find("main")};
+    dce(m, entries);
+    for (const ir::Function& f : m.functions) returned += f.results.size();
+    drop_unread(m, entries);
+    for (const ir::Function& f : m.functions) {
+      functions += 1;
+      kept += f.results.size();
+      for (const ir::Parameter& parameter : f.parameters) EXPECT_NE(parameter.name, "unread");
+    }
+    EXPECT_EQ(m.functions[entries[0]].name, "main");
+  });
+  EXPECT_GT(functions, 3000u);
+  EXPECT_LE(kept, returned);
+}
+
 size_t count_wide_products(const Module& module) {
   size_t count = 0;
   for (const ir::Function& function : module.functions)
@@ -194,11 +245,12 @@ TEST(PassesKeepEveryBit, AnySequence) {
     RandomModule random(seed + 77);
     for (int i = 0; i < 8; ++i) {
       Entries entries{m.find("main")};
-      switch (random.below(5)) {
+      switch (random.below(6)) {
         case 0: renumber(m); break;
         case 1: cse(m); break;
         case 2: fold(m); break;
         case 3: hide_foldables(m, {}); break;
+        case 4: renumber(m), drop_unread(m, entries.functions); break;
         default: renumber(m), dce(m, entries.functions);
       }
       ASSERT_EQ(ir::validate(m), "");
