@@ -78,6 +78,7 @@ std::vector<Field> input_fields(const check::TypedGraph& typed) {
     fields.back().min = input.min;
     fields.back().max = input.max;
     fields.back().names = input.names;
+    fields.back().dynamic = input.dynamic;
   }
   return fields;
 }
@@ -165,6 +166,13 @@ void name_words(ir::Module& module, const ParameterBlock& block, size_t first) {
 /// The words of a program's values, behind those that other programs have in the same record.
 uint32_t draw_words(const Program& program) { return program.draw == nullptr ? 0 : program.draw->words; }
 
+/// What a part of a pass needs before there is a kernel around it.
+void prepare(lower::Lowered& lowered, const check::TypedGraph& typed, size_t pass, const Effect& effect,
+             const CompileOptions& options) {
+  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
+  fix_parameters(lowered.module, lowered.interface, effect.parameters, options.fixed, &typed.graph.passes[pass].repeat);
+}
+
 Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                        const CompileOptions& options, uint32_t room) {
   if (typed.position_of(pass) == nullptr && !options.dump) {
@@ -181,7 +189,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
     return program;
   }
   lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::position});
-  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
+  prepare(lowered, typed, pass, effect, options);
   const uint32_t kernel = lower::add_moving_vertex_kernel(
       lowered.module, lowered.interface, layout_of(effect), typed.graph.passes[pass].position_space);
   program.module = std::move(lowered.module);
@@ -194,7 +202,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                       const CompileOptions& options, uint32_t room, bool blended = false) {
   lower::Lowered lowered = lower_with_buffers(typed, {pass});
-  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
+  prepare(lowered, typed, pass, effect, options);
   lower::LightKinds lights = options.lights;
   lights.shadows &= typed.graph.passes[pass].receives_shadow;
   const interface::Blend blend = typed.graph.passes[pass].state.blend;
@@ -219,7 +227,7 @@ std::optional<Program> cutout_program(const check::TypedGraph& typed, size_t pas
                                       const CompileOptions& options, uint32_t room) {
   if (!lower::has_part(typed, pass, lower::PassPart::coverage)) return std::nullopt;
   lower::Lowered lowered = lower_with_buffers(typed, {pass, lower::PassPart::coverage});
-  name_words(lowered.module, effect.parameters, lower::object_word::parameters);
+  prepare(lowered, typed, pass, effect, options);
   const uint32_t kernel = lower::add_cutout_kernel(lowered.module, lowered.interface, layout_of(effect));
   Program program{lower::Stage::cutout, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {}};
   program.bindings = std::move(lowered.interface.bindings);
@@ -240,30 +248,38 @@ std::shared_ptr<const check::TypedGraph> check_document(const support::Source& s
   return read_graph(source, std::nullopt, options, diagnostics);
 }
 
-std::optional<Effect> compile_effect(const support::Source& source, const CompileOptions& options,
-                                     Diagnostics& diagnostics) {
+std::optional<Effect> check_effect(const support::Source& source, const CompileOptions& options,
+                                   Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
   Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}, false,
-                environment_reads(*typed)};
+                environment_reads(*typed), typed};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    uint32_t room = first_draw_word(effect);
-    Program vertex = vertex_program(*typed, i, effect, options, room);
-    room += draw_words(vertex);
-    std::optional<Program> cutout = cutout_program(*typed, i, effect, options, room);
-    if (cutout) room += draw_words(*cutout);
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
                              pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow,
-                             pass.casts_blended_shadow, pass.receives_shadow, pass.repeat, std::move(vertex),
-                             pixel_program(*typed, i, effect, options, room), {}, std::move(cutout)});
-    EffectPass& made = effect.passes.back();
+                             pass.casts_blended_shadow, pass.receives_shadow, pass.repeat, {}, {}, {}, {}});
+  }
+  return effect;
+}
+
+void make_programs(Effect& effect, const CompileOptions& options) {
+  const check::TypedGraph& typed = *effect.typed;
+  effect.fixed = options.fixed;
+  for (size_t i = 0; i < effect.passes.size(); ++i) {
+    EffectPass& made = effect.passes[i];
+    uint32_t room = first_draw_word(effect);
+    made.vertex = vertex_program(typed, i, effect, options, room);
+    room += draw_words(made.vertex);
+    made.cutout = cutout_program(typed, i, effect, options, room);
+    if (made.cutout) room += draw_words(*made.cutout);
+    made.pixel = pixel_program(typed, i, effect, options, room);
     effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
                              (made.cutout && reads_previous(*made.cutout));
     made.receives_shadow &= std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
       return std::holds_alternative<interface::source::LightCount>(binding.source);
     });
-    if (pass.state.blend != interface::Blend::none) made.blend = pixel_program(*typed, i, effect, options, room, true);
+    if (made.state.blend != interface::Blend::none) made.blend = pixel_program(typed, i, effect, options, room, true);
     room += std::max(draw_words(made.pixel), made.blend ? draw_words(*made.blend) : 0);
     effect.draw_words = std::max(effect.draw_words, room - first_draw_word(effect));
     if (!made.blend) continue;
@@ -271,47 +287,61 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
       return std::holds_alternative<interface::source::PixelOfImage>(binding.source);
     });
   }
+}
+
+std::optional<Effect> compile_effect(const support::Source& source, const CompileOptions& options,
+                                     Diagnostics& diagnostics) {
+  auto effect = check_effect(source, options, diagnostics);
+  if (effect) make_programs(*effect, options);
   return effect;
 }
 
-std::optional<Post> compile_post(const support::Source& source, const CompileOptions& options,
-                                 Diagnostics& diagnostics) {
+std::optional<Post> check_post(const support::Source& source, const CompileOptions& options,
+                               Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::post, options, diagnostics);
   if (typed == nullptr) return std::nullopt;
-  Post post{typed->graph.name,
-            typed->document,
-            {parameters_of(*typed), {}, {}},
-            {},
-            {},
-            {},
-            false,
-            false,
-            {},
-            typed->graph.enabled,
-            {}};
+  Post post;
+  post.name = typed->graph.name;
+  post.document = typed->document;
+  post.parameters = {parameters_of(*typed), {}, {}};
+  post.enabled = typed->graph.enabled;
+  post.typed = typed;
   if (options.lights.environment.value_or(true)) post.environment = environment_reads(*typed);
   for (const graph::InputImage& image : typed->graph.images) {
     if (image.name == graph::motion_image_name) post.motion = post.images.size();
     post.images.push_back(image.name);
   }
-  lower::Lowered lowered = lower_with_buffers(*typed);
+  for (const lower::TapSum& sum : lower::tap_sums(*typed)) {
+    post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
+    post.parameters.taps.back().value = {static_cast<float>(sum.taps)};
+  }
+  return post;
+}
+
+void make_program(Post& post, const CompileOptions& options) {
+  const check::TypedGraph& typed = *post.typed;
+  lower::Lowered lowered = lower_with_buffers(typed);
   const interface::Interface& interface = lowered.interface;
+  post.reads.clear();
   for (size_t i = 0; i <= post.images.size(); ++i)
     post.reads.push_back(interface.find(interface::Host::image, lower::post_image(i)) != ir::none);
   post.reads_depth = interface.find(interface::Host::depth, lower::depth_image) != ir::none;
   post.is_pointwise = lower::is_pointwise(lowered);
-  const std::vector<lower::TapSum> sums = lower::tap_sums(*typed);
-  for (const lower::TapSum& sum : sums) {
-    post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
-    post.parameters.taps.back().value = {static_cast<float>(sum.taps)};
-  }
+  post.fixed = options.fixed;
+  fix_parameters(lowered.module, lowered.interface, post.parameters, options.fixed);
   name_words(lowered.module, post.parameters, 0);
-  const uint32_t kernel =
-      lower::add_post_kernel(lowered.module, interface, layout_of(post.parameters, sums, 0), options.lights);
+  const uint32_t kernel = lower::add_post_kernel(lowered.module, interface,
+                                                 layout_of(post.parameters, lower::tap_sums(typed), 0), options.lights);
   post.program = {lower::Stage::post, post.name, post.document, std::move(lowered.module), 0, {}, {},
                   options.tier};
   post.program.bindings = std::move(lowered.interface.bindings);
-  finish(post.program, kernel, options, typed->graph.source, static_cast<uint32_t>(post.parameters.word_count()));
+  finish(post.program, kernel, options, typed.graph.source, static_cast<uint32_t>(post.parameters.word_count()));
+}
+
+std::optional<Post> compile_post(const support::Source& source, const CompileOptions& options,
+                                 Diagnostics& diagnostics) {
+  auto post = check_post(source, options, diagnostics);
+  if (post) make_program(*post, options);
   return post;
 }
 
@@ -367,6 +397,13 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   if (options.tier != functions::Tier::standard) pure.tier = functions::tier_name(options.tier);
 
   lower::LoweredShader lowered = lower::lower_shader(*typed);
+  if (graph.kind != graph::DocumentKind::function) shader.parameters = {parameters_of(*typed), images_of(*typed), {}};
+  const bool is_effect = graph.kind == graph::DocumentKind::effect;
+  for (lower::ShaderEntry& entry : lowered.entries) {
+    const interface::Repeat* repeat = is_effect ? &graph.passes[entry.pass].repeat : nullptr;
+    fix_parameters(lowered.module, entry.interface, shader.parameters, options.fixed, repeat);
+  }
+  shader.fixed = options.fixed;
   passes::Entries entries{};
   entries.are_linked = true;
   for (const lower::ShaderEntry& entry : lowered.entries) {
@@ -383,6 +420,9 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   passes::run(passes::optimisations(), lowered.module, entries, options.tier, dump_pass);
   if (shader_options.division == Division::exact)
     passes::run(passes::division_lowering(), lowered.module, entries, options.tier, dump_pass);
+  // What only other values of the fixed parameters read is nothing to ask for.
+  for (size_t i = 0; i < lowered.entries.size() && !options.fixed.empty(); ++i)
+    drop_unread(lowered.module.functions[entries[i]], lowered.entries[i].interface);
   pure.module = std::move(lowered.module);
 
   for (size_t i = 0; i < lowered.entries.size(); ++i) {
@@ -420,7 +460,6 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
     shader.parameters.images = images_of(*typed);
     return shader;
   }
-  shader.parameters = {parameters_of(*typed), images_of(*typed), {}};
   shader.enabled = graph.enabled;
   for (const graph::InputImage& image : graph.images) shader.images.push_back(image.name);
   emit::Names names(emit::Scope::field);

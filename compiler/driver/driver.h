@@ -12,6 +12,7 @@
 
 #include "compiler/check/library.h"
 #include "compiler/driver/environment_reads.h"
+#include "compiler/driver/fixed.h"
 #include "compiler/driver/parameter_block.h"
 #include "compiler/driver/program.h"
 #include "compiler/graph/graph.h"
@@ -32,6 +33,7 @@ struct CompileOptions {
   /// pixels.
   functions::Tier tier = functions::Tier::standard;
   interface::Skips skips;  ///< what programs and frames may leave out
+  FixedWords fixed;        ///< of the record of the effect or post; the programs are for these values alone
   Dump dump;               ///< may be empty
 };
 
@@ -62,6 +64,8 @@ struct Effect {
   /// Behind the parameters, the object's record has the columns that led to world space at the frame before.
   bool reads_previous = false;
   EnvironmentReads environment;
+  std::shared_ptr<const check::TypedGraph> typed = nullptr;
+  FixedWords fixed = {};  ///< what its programs are compiled for
   /// Behind all of that each record has what is the same all over a draw (Program::draw), at most so many words. Where
   /// there are any, there are always words for the columns before them.
   uint32_t draw_words = 0;
@@ -81,6 +85,8 @@ struct Post {
   EnvironmentReads environment;   ///< none if the scene has no environment
   std::optional<size_t> enabled;  ///< index of a parameter field; the post is skipped if it is 0
   Program program;
+  std::shared_ptr<const check::TypedGraph> typed = nullptr;
+  FixedWords fixed = {};  ///< what its program is compiled for
 };
 
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
@@ -89,6 +95,16 @@ std::optional<graph::DocumentKind> kind_of(const support::Source& source, suppor
 std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source,
                                                         const CompileOptions& options,
                                                         support::Diagnostics& diagnostics);
+
+/// The parts of an effect document, and of a post document, that need no programs: a scene tells by the parameters which
+/// values are fixed. Until there are programs, nothing is known of what these read.
+std::optional<Effect> check_effect(const support::Source& source, const CompileOptions& options,
+                                   support::Diagnostics& diagnostics);
+std::optional<Post> check_post(const support::Source& source, const CompileOptions& options,
+                               support::Diagnostics& diagnostics);
+/// Make the programs of what was checked.
+void make_programs(Effect& effect, const CompileOptions& options);
+void make_program(Post& post, const CompileOptions& options);
 
 /// `source` is an effect document.
 std::optional<Effect> compile_effect(const support::Source& source, const CompileOptions& options,

@@ -29,6 +29,7 @@ struct Field {
   std::vector<float> value;             ///< the default, `words` long; empty for eval columns
   std::optional<float> min, max;        ///< of each component
   std::vector<std::string> names = {};  ///< of the values 0, 1, ... of an integer ("enum"); empty if it has none
+  bool dynamic = false;                 ///< of a parameter: programs are never compiled for one value of it
 };
 
 struct Program {

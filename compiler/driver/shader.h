@@ -37,6 +37,7 @@ struct Shader {
   std::vector<Field> inputs, outputs;  ///< of a function
   std::shared_ptr<const check::TypedGraph> typed;
   functions::Tier tier = functions::Tier::standard;
+  FixedWords fixed = {};  ///< what it is compiled for
 };
 
 struct ShaderOptions {

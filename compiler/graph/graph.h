@@ -128,6 +128,7 @@ struct Input {
   Type type = Type::floating;
   bool any = false;                ///< generic: each call infers float, a vector or a colour (functions only)
   bool unit = false;               ///< a vector of length 1 (functions only)
+  bool dynamic = false;            ///< programs are never compiled for one value of it (parameters only)
   std::optional<Literal> value;    ///< the default; parameters always have one; fits the type and the range
   std::optional<float> min, max;   ///< of each component
   std::vector<std::string> names;  ///< of the values 0, 1, ... of an integer ("enum"); empty if it has none

@@ -118,6 +118,7 @@ void GraphBuilder::read_input(const Member& member, bool is_parameter) {
   const bool is_vector =
       input.type == Type::vector2 || input.type == Type::vector3 || input.type == Type::vector4;
   if (!is_parameter && is_vector) input.unit = reader.boolean("unit", false);
+  if (is_parameter) input.dynamic = reader.boolean("dynamic", false);
   const Json* value = reader.value("value", is_parameter ? Need::required : Need::optional);
   if (value != nullptr) {
     input.value = parse_literal(document_, *value, "value", diagnostics_);

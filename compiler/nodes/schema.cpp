@@ -148,6 +148,9 @@ std::vector<SchemaKey> input_keys(bool is_parameter) {
                               {"value", reference("literal"), is_parameter},
                               {"doc", string_schema()}};
   if (!is_parameter) keys.push_back({"unit", described(boolean_schema(), "a vector of length 1")});
+  if (is_parameter)
+    keys.push_back({"dynamic", described(boolean_schema(), "whether it changes often: then no program is compiled for one "
+                                                           "value of it")});
   return keys;
 }
 

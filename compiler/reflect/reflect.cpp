@@ -94,6 +94,7 @@ class Reflector {
     made.max = input.max;
     made.names = if_any(input.names);
     if (input.unit) made.unit = true;
+    if (input.dynamic) made.dynamic = true;
     return made;
   }
 
@@ -149,7 +150,42 @@ class Reflector {
     }
   }
 
+  /// The value for which a parameter is fixed, as a document would give it.
+  Optional<Value> fixed_value(size_t number) const {
+    const driver::ParameterBlock& block = shader_.parameters;
+    if (shader_.kind == graph::DocumentKind::function || shader_.fixed.empty()) return {};
+    const graph::Type type = driver::type_of(block.fields[number]);
+    graph::Literal literal;
+    if (type == graph::Type::filename) {
+      const auto is_without = [&](size_t i) {
+        return block.images[i].slot.parameter != block.fields[number].name || shader_.fixed[block.word_of_image(i)];
+      };
+      bool has_slot = false, all = true;
+      for (size_t i = 0; i < block.images.size(); ++i) {
+        has_slot |= block.images[i].slot.parameter == block.fields[number].name;
+        all &= is_without(i);
+      }
+      if (!has_slot || !all) return {};
+      literal.kind = graph::Literal::Kind::string;
+      return Value{type, literal};
+    }
+    if (!driver::is_fixed(shader_.fixed, block, number)) return {};
+    std::vector<float> words;
+    for (int i = 0; i < block.fields[number].words; ++i)
+      words.push_back(*shader_.fixed[block.word_of(number) + static_cast<size_t>(i)]);
+    literal.kind = type == graph::Type::boolean ? graph::Literal::Kind::boolean
+                   : words.size() == 1          ? graph::Literal::Kind::number
+                                                : graph::Literal::Kind::numbers;
+    literal.boolean = words[0] != 0;
+    literal.integral = type == graph::Type::integer;
+    literal.number = words[0];
+    literal.integer = literal.integral ? static_cast<int64_t>(words[0]) : 0;
+    if (words.size() > 1) literal.numbers = std::move(words);
+    return Value{type, literal};
+  }
+
   void add_parameters() {
+    for (size_t i = 0; i < made_.parameters.size(); ++i) made_.parameters[i].fixed = fixed_value(i);
     if (pure_.parameters.empty()) return;
     Struct& made = add_struct(StructRole::parameters, emit::parameters_record, pure_.parameters);
     const std::vector<interface::Binding> bindings = lower::parameter_bindings(graph_);
