@@ -123,6 +123,11 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->default_str("fetch");
   compile_app->add_option("--prefix", compile.prefix,
                           "What names begin with, the namespace in C++; the document's name if not given");
+  compile_app
+      ->add_option("--set", compile.settings,
+                   "Compile for one value of a parameter of an effect or post: PARAMETER=VALUE. The code for other values is "
+                   "left out; the struct of parameters keeps its fields, which nothing reads")
+      ->take_all();
   compile_app->add_flag("--check", compile.check, "Add what `isoshade check` finds to the reflection; may take seconds");
   compile_app->add_option("--division", compile.division, "Division in the GLSL: native or exact")
       ->check(division_names)

@@ -62,6 +62,7 @@ struct CompileArguments {
   std::string prefix;
   std::string division = "native";
   bool check = false;  ///< the reflection says what is proved
+  std::vector<std::string> settings;  ///< PARAMETER=VALUE: what the programs are for
   functions::Tier precision = functions::Tier::standard;
   std::string depfile;         ///< receives the names of all files that were read; empty: none
   bool without_lanes = false;  ///< the program has the headers of isoshade/lanes

@@ -105,6 +105,8 @@ int render_sheet(const SheetArguments& arguments, const Common& common, support:
       render::PlanOptions options;
       options.width = layout->picture.width;
       options.height = layout->picture.height;
+      // One program draws all pictures.
+      for (const VariedParameter& axis : axes) options.changing.insert(axis.name.substr(axis.name.rfind('.') + 1));
       options.compiler.library = &library;
       options.compiler.tier = arguments.precision;
       const auto plan = render::plan_frame(*scene, options, diagnostics);

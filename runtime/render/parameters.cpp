@@ -304,6 +304,20 @@ float ParameterValues::most(size_t word) const {
   return most.value_or(common_[word]);
 }
 
+driver::FixedWords ParameterValues::common() const {
+  driver::FixedWords words;
+  for (const float word : common_) words.emplace_back(scene::canonical(word));
+  for (const Varying& varying : varying_)
+    for (int i = 0; i < std::max(graph::float_count(varying.type), 1); ++i)
+      words[varying.first_word + static_cast<size_t>(i)].reset();
+  for (size_t i = 0; i < images_.size(); ++i) {
+    std::optional<float>& word = words[first_image_word_ + i];
+    word.reset();
+    if (images_[i].along_axis.empty() && images_[i].texture < 0) word = -1.0f;
+  }
+  return words;
+}
+
 std::vector<float> ParameterValues::words(const scene::Instance& instance,
                                           const std::function<int(int)>& record_of) const {
   std::vector<float> words = common_;

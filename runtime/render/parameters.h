@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/driver/fixed.h"
 #include "compiler/driver/parameter_block.h"
 #include "runtime/render/textures.h"
 #include "runtime/scene/model.h"
@@ -49,6 +50,9 @@ class ParameterValues {
 
   /// The greatest number that a word of the record has in any copy; of no image.
   float most(size_t word) const;
+
+  /// The words that are the same in all copies; of an image only that there is none.
+  driver::FixedWords common() const;
 
   int64_t word_count() const { return static_cast<int64_t>(common_.size()); }
 

@@ -6,7 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "compiler/ir/printer.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/visible.h"
 #include "runtime/environment/environment.h"
@@ -25,26 +24,6 @@ using support::quote;
 
 namespace {
 
-lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
-  lower::LightKinds kinds{false, false, false, {}};
-  for (const scene::Light& light : lights) {
-    kinds.directional |= light.kind == scene::LightKind::directional;
-    kinds.point |= light.kind == scene::LightKind::point;
-    kinds.spot |= light.kind == scene::LightKind::spot;
-    kinds.shadows |= light.shadow.has_value();
-  }
-  return kinds;
-}
-
-bool draw_reads_frame(const driver::Program& program) {
-  const auto reads_frame = [](const ir::Function& function) {
-    return std::ranges::any_of(function.instructions, [](const ir::Instruction& made) {
-      return made.op == ir::Opcode::load && made.imm == static_cast<uint32_t>(lower::FrameBuffer::frame);
-    });
-  };
-  return program.draw != nullptr && std::ranges::any_of(program.draw->module.functions, reads_frame);
-}
-
 struct Size {
   int width, height;
 };
@@ -53,49 +32,6 @@ Size size_of(const Scene& scene, const PlanOptions& options) {
 }
 
 }  // namespace
-
-driver::CompileOptions Planner::compile_options() const {
-  driver::CompileOptions options = options_.compiler;
-  options.lights = kinds_of(scene_->lights);
-  options.lights.environment = scene_->environment.has_value();
-  return options;
-}
-
-bool Planner::compile_effects() {
-  driver::CompileOptions options = compile_options();
-  const bool shadows = options.lights.shadows;
-  std::map<std::pair<std::string, bool>, size_t> known;
-  bool good = true;
-  for (const Object& object : scene_->objects) {
-    options.lights.shadows = shadows && object.receives_shadow;
-    const auto [found, is_new] =
-        known.try_emplace({object.effect, options.lights.shadows}, plan_.effects.size());
-    effect_of_object_.push_back(found->second);
-    if (!is_new) continue;
-    const bool is_reported = !good && known.contains({object.effect, !options.lights.shadows});
-    const support::Source source = is_reported ? nullptr : read_document(object.effect, object.effect_where);
-    auto effect = source != nullptr ? driver::compile_effect(source, options, *diagnostics_) : std::nullopt;
-    if (!effect && !is_reported && !diagnostics_->full() && !diagnostics_->all().empty()) {
-      diagnostics_->all().back().note(object.effect_where, "the effect of " + quote(object.name));
-    }
-    good = good && effect.has_value();
-    plan_.effects.push_back(effect ? *std::move(effect) : driver::Effect{});
-  }
-  if (!good) return false;
-  // Only now, because the effects no longer move.
-  for (const driver::Effect& effect : plan_.effects) {
-    std::vector<PassPrograms>& programs = programs_of_effect_.emplace_back();
-    for (const driver::EffectPass& pass : effect.passes) {
-      const uint32_t vertex = add_program(pass.vertex);
-      const uint32_t cutout = pass.cutout ? add_program(*pass.cutout) : backends::Frame::no_program;
-      const uint32_t pixel = add_program(pass.pixel, cutout);
-      programs.push_back({vertex, pixel, pass.blend ? add_program(*pass.blend, cutout) : pixel});
-      draws_read_frame_ |= draw_reads_frame(pass.vertex) || draw_reads_frame(pass.pixel) ||
-                           (pass.blend && draw_reads_frame(*pass.blend)) || (pass.cutout && draw_reads_frame(*pass.cutout));
-    }
-  }
-  return true;
-}
 
 /// Whether the text at `where` may name the file. Files that the user names have no `where`, or one in an argument.
 bool Planner::may_read(const std::string& path, const support::Span& where) {
@@ -108,43 +44,6 @@ support::Source Planner::read_document(const std::string& path, const support::S
   const check::Library* library = options_.compiler.library;
   return graph::read_document(path, library != nullptr ? library->files() : graph::FileRule{}, *diagnostics_,
                               where);
-}
-
-bool Planner::compile_posts() {
-  const driver::CompileOptions options = compile_options();
-  std::map<std::string, size_t> known;
-  std::vector<size_t> document_of_post;
-  bool good = true;
-  for (const scene::Post& post : scene_->posts) {
-    const auto [found, is_new] = known.try_emplace(post.effect, plan_.post_documents.size());
-    document_of_post.push_back(found->second);
-    if (!is_new) continue;
-    const support::Source source = read_document(post.effect, post.effect_where);
-    auto compiled =
-        source != nullptr ? driver::compile_post(source, options, *diagnostics_) : std::nullopt;
-    if (!compiled && !diagnostics_->full() && !diagnostics_->all().empty())
-      diagnostics_->all().back().note(post.effect_where, "the effect of post " + quote(post.name));
-    good = good && compiled.has_value();
-    plan_.post_documents.push_back(compiled ? *std::move(compiled) : driver::Post{});
-  }
-  // Only now, because the documents no longer move.
-  for (const size_t document : document_of_post) posts_.push_back(&plan_.post_documents[document]);
-  return good;
-}
-
-/// Equal programs share an index: most effects have the same vertex program.
-uint32_t Planner::add_program(const driver::Program& program, uint32_t cutout) {
-  std::string text = std::to_string(static_cast<int>(program.stage)) + "\n" + std::to_string(cutout) + "\n" +
-                     std::to_string(program.entry) + "\n" + ir::print(program.module);
-  const auto next = static_cast<uint32_t>(plan_.frame.programs.size());
-  const auto [found, is_new] = program_by_text_.try_emplace(std::move(text), next);
-  std::vector<uint32_t>& cutouts = plan_.frame.cutouts;
-  if (is_new) plan_.frame.programs.push_back(&program);
-  if (is_new && (cutout != backends::Frame::no_program || !cutouts.empty())) {
-    cutouts.resize(plan_.frame.programs.size(), backends::Frame::no_program);
-    cutouts.back() = cutout;
-  }
-  return found->second;
 }
 
 std::optional<size_t> Planner::find_mesh(size_t o) {
@@ -302,6 +201,8 @@ bool Planner::update_objects(const PlanKeys& keys) {
         return false;
       parameters_[o] = *std::move(now);
       parameters_before_[o] = *std::move(earlier);
+      const lanes::FpGuard guard;
+      if (!keeps_fixed(effect.parameters, effect.fixed, given_by_object(o, effect.parameters))) return false;
     }
     if (!count_object(o, counts)) return false;
   }
@@ -366,14 +267,19 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   begin(scene, diagnostics);
   const auto [width, height] = size_of(scene, options_);
   if (!check_samples(scene, width, height, diagnostics)) return false;
-  const bool effects = compile_effects();
+  const bool effects = check_effects();
   if (!compile_posts() || !effects) return false;
   has_motion_ = may_read_motion();
+  double compile_seconds = clock.lap();
+  if (!make_objects()) return false;
+  const double object_seconds = clock.lap();
+  compile_effects();
   for (const driver::Effect& effect : plan_.effects) report_draw_values(effect, skipped_in_programs_);
-  const double compile_seconds = clock.lap();
+  report_fixed();
+  compile_seconds += clock.lap();
   backends::Frame& frame = plan_.frame;
   programs_without_motion_ = frame.programs.size();
-  if (!make_objects() || !textures_.store(frame, diagnostics)) return false;
+  if (!textures_.store(frame, diagnostics)) return false;
   texels_of_textures_ = frame.texels.size();
   words_of_textures_ = frame.textures.size();
   frame.revisions.vertices = next_revision();
@@ -384,7 +290,7 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   place_all();
   if (!make_views(width, height)) return false;
   plan_.stats.compile_seconds = compile_seconds;
-  finish_stats(clock.lap());
+  finish_stats(object_seconds + clock.lap());
   return true;
 }
 
@@ -396,7 +302,7 @@ bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
   const auto [width, height] = size_of(scene, options_);
   if (!check_samples(scene, width, height, diagnostics)) return false;
   const bool is_placed = keys.objects == keys_.objects && keys.meshes == keys_.meshes;
-  if (!is_placed && !update_objects(keys)) return false;
+  if ((!is_placed && !update_objects(keys)) || !posts_keep_fixed()) return false;
   const bool is_lit = keys.environment == keys_.environment &&
                       (!scene.environment || has_blurred_maps_ == reads_blurred_maps());
   if (!is_lit && !add_environment()) return false;
@@ -442,7 +348,7 @@ uint64_t next_revision() {
   return ++last;
 }
 
-FramePlanner::FramePlanner(const PlanOptions& options) : options_(options) {
+FramePlanner::FramePlanner(const PlanOptions& options) : options_(options), compiled_(std::make_unique<Compiled>()) {
   if (options_.workers == nullptr) options_.workers = &own_workers_.emplace(0);
 }
 
@@ -456,8 +362,9 @@ const Plan* FramePlanner::plan(const Scene& scene, Diagnostics& diagnostics) {
       diagnostics = std::move(attempt);
       return &planner_->made();
     }
+    options_.changing.insert(planner_->changed().begin(), planner_->changed().end());
   }
-  planner_ = std::make_unique<Planner>(options_, *options_.workers);
+  planner_ = std::make_unique<Planner>(options_, *options_.workers, *compiled_);
   if (planner_->plan(scene, diagnostics)) return &planner_->made();
   planner_.reset();
   return nullptr;

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct PlanOptions {
   int height = 0;
   std::string cache;                ///< the folder for maps of environments; empty: the usual one
   bool disabled = false;            ///< draw the passes that a parameter disables, too; for programs that change it later
-  driver::CompileOptions compiler;  ///< `lights` is set by the scene; `skips` are those of the whole frame
+  std::set<std::string> changing;   ///< parameters, of any object or post, that later scenes give other values
+  driver::CompileOptions compiler;  ///< `lights` and `fixed` are set by the scene; `skips` are those of the whole frame
   threads::Workers* workers = nullptr;  ///< that may help; null: one for each core
 };
 
@@ -75,10 +77,12 @@ std::optional<Plan> plan_frame(const scene::Scene& scene, const PlanOptions& opt
                                support::Diagnostics& diagnostics);
 
 class Planner;
+class Compiled;
 
 /// Plans one scene after the other, such as the frames of an animation, and keeps what the next one has in common with
 /// the last: effects, meshes, textures, maps of environments, values of parameters, and records. Each plan is what
-/// plan_frame() makes of its scene; arrays that have not changed keep their revisions. Files are read once: what is
+/// plan_frame() makes of its scene; arrays that have not changed keep their revisions. A parameter for one value
+/// of which programs were compiled, and which then has another one, becomes one of PlanOptions::changing. Files are read once: what is
 /// written to them later has no effect.
 class FramePlanner {
  public:
@@ -92,7 +96,8 @@ class FramePlanner {
   friend std::optional<Plan> plan_frame(const scene::Scene&, const PlanOptions&, support::Diagnostics&);
   PlanOptions options_;
   std::optional<threads::Workers> own_workers_;
-  std::unique_ptr<Planner> planner_;  ///< of the last scene, if it could be planned
+  std::unique_ptr<Compiled> compiled_;  ///< in its scenes so far
+  std::unique_ptr<Planner> planner_;    ///< of the last scene, if it could be planned
 };
 
 }  // namespace isoshade::render

@@ -106,7 +106,7 @@ class Key {
 /// Without the environment, which is a part of its own, and the values of posts.
 std::string key_of_programs(const scene::Scene& scene) {
   const auto& [name, source, width, height, samples, samples_where, time, frames_per_second, camera, lights, environment,
-               background, objects, sort, posts, output, before] = scene;
+               background, objects, sort, posts, output, animated, before] = scene;
   Key key;
   key.add(environment.has_value()).add(lights.size());
   for (const scene::Light& light : lights) key.add(light.kind).add(light.shadow.has_value());
@@ -115,6 +115,9 @@ std::string key_of_programs(const scene::Scene& scene) {
     key.add(object.effect).add(object.effect_where).add(object.receives_shadow);
   key.add(posts.size());
   for (const scene::Post& post : posts) key.add(post.effect).add(post.effect_where).add(post.inputs);
+  // Programs are compiled for values that do not move.
+  key.add(animated.size());
+  for (const scene::AnimatedParameter& parameter : animated) key.add(parameter.owner).add(parameter.parameter);
   return key.take();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a plan is made, for the files of this folder that make it: plan.cpp compiles and collects, plan_place.cpp writes
-// the records of all copies, plan_views.cpp lists what each view draws, plan_lights.cpp places the shadow maps.
+// the records of all copies, plan_compile.cpp makes the programs, plan_views.cpp lists what each view draws, plan_lights.cpp places the shadow maps.
 #pragma once
 
 #include <map>
@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/render/compiled.h"
 #include "runtime/render/draw_evaluator.h"
+#include "runtime/render/fixed_values.h"
 #include "runtime/render/parameters.h"
 #include "runtime/render/plan.h"
 #include "runtime/render/plan_keys.h"
@@ -21,9 +23,10 @@ namespace isoshade::render {
 
 class Planner {
  public:
-  Planner(const PlanOptions& options, threads::Workers& workers)
+  Planner(const PlanOptions& options, threads::Workers& workers, Compiled& compiled)
       : options_(options),
         workers_(workers),
+        compiled_(compiled),
         textures_(options.compiler.library != nullptr ? &options.compiler.library->files() : nullptr, workers),
         meshes_(plan_.meshes, plan_.frame.vertices, workers) {}
 
@@ -32,6 +35,8 @@ class Planner {
   /// Plans the next scene and keeps what stays. False, perhaps with diagnostics, if another planner must begin anew.
   bool plan_next(const scene::Scene& scene, support::Diagnostics& diagnostics);
   Plan& made() { return plan_; }
+  /// The parameters whose values the next scene changed although programs were compiled for them.
+  const std::set<std::string>& changed() const { return changed_; }
 
  private:
   bool skips(interface::Skip skip) const { return options_.compiler.skips.has(skip); }
@@ -41,17 +46,12 @@ class Planner {
     uint32_t vertex, pixel, blend;  // in Frame::programs
   };
   void begin(const scene::Scene& scene, support::Diagnostics& diagnostics);
-  bool compile_effects();
-  bool compile_posts();
-  /// What the programs are compiled for.
-  driver::CompileOptions compile_options() const;
+  bool check_effects();
   /// Whether any program may read other maps of the environment than the sharp one (driver::EnvironmentReads).
   bool reads_blurred_maps() const;
   /// Adds the maps of the environment behind the textures. False after an error.
   bool add_environment();
   support::Source read_document(const std::string& path, const support::Span& where);
-  /// `cutout`: of a pixel program, the index of the one that belongs to it.
-  uint32_t add_program(const driver::Program& program, uint32_t cutout = backends::Frame::no_program);
   bool may_read(const std::string& path, const support::Span& where);
   bool make_objects();
   /// Makes what has changed since the last scene. False if textures or programs may have changed, and after an error.
@@ -81,6 +81,25 @@ class Planner {
   /// Makes frame_now_ and frame_earlier_; whether they are as they were.
   bool update_frame_words();
   void finish_stats(double seconds);
+
+  // The programs, for the values that the scene fixes (plan_compile.cpp).
+  /// Makes the programs of the effects, some of which become several that are compiled for different values.
+  void compile_effects();
+  bool compile_posts();
+  /// What the programs are compiled for.
+  driver::CompileOptions compile_options() const;
+  /// `cutout`: of a pixel program, the index of the one that belongs to it.
+  uint32_t add_program(const driver::Program& program, uint32_t cutout = backends::Frame::no_program);
+  bool fixes_parameters() const;
+  /// Without those words whose values may change from scene to scene.
+  driver::FixedWords given_by(std::string_view owner, const driver::ParameterBlock& block, driver::FixedWords words) const;
+  /// The words that an object, or a post, gives for all of its records; none if nothing is fixed.
+  driver::FixedWords given_by_object(size_t o, const driver::ParameterBlock& block) const;
+  driver::FixedWords given_by_post(size_t p, const driver::ParameterBlock& block) const;
+  /// Whether programs that are compiled for fixed values suit those that are given now. Otherwise notes what has changed.
+  bool keeps_fixed(const driver::ParameterBlock& block, const driver::FixedWords& fixed, const driver::FixedWords& given);
+  bool posts_keep_fixed();
+  void report_fixed();
 
   // The records of all copies (plan_place.cpp).
   /// One pass over a part of a copy. Its records stand one behind the other: of each repetition; where motion is drawn
@@ -184,6 +203,8 @@ class Planner {
 
   const PlanOptions& options_;
   threads::Workers& workers_;
+  Compiled& compiled_;
+  std::set<std::string> changed_;
   const scene::Scene* scene_ = nullptr;           ///< the one that is planned
   support::Diagnostics* diagnostics_ = nullptr;  ///< of the scene that is planned
   PlanKeys keys_;                                ///< of the scene that was planned last

@@ -46,9 +46,10 @@ std::vector<Skipped> unread_images(const std::vector<driver::Effect>& effects) {
       const bool read = std::ranges::any_of(effect.parameters.images, [&](const driver::Image& image) {
         return image.slot.parameter == field.name;
       });
-      if (field.type == graph::type_name(graph::Type::filename) && !read)
-        skips.push_back(
-            {{}, "the images of " + field.name + " of the effect " + effect.name, "no pass reads them"});
+      if (field.type != graph::type_name(graph::Type::filename) || read) continue;
+      // An effect that is compiled several times is one to its readers.
+      const std::string what = "the images of " + field.name + " of the effect " + effect.name;
+      if (std::ranges::find(skips, what, &Skipped::what) == skips.end()) skips.push_back({{}, what, "no pass reads them"});
     }
   }
   return skips;

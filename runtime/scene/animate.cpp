@@ -363,6 +363,24 @@ ReadAnimation parse_animation(const Document& document, const Member& member, Di
   return read;
 }
 
+std::vector<AnimatedParameter> animated_parameters(const Document& document) {
+  std::vector<AnimatedParameter> found;
+  const Json* animations = document.root.find(format::scene::animate.name);
+  if (animations == nullptr || animations->kind != Json::Kind::object) return found;
+  for (const Member& member : animations->members) {
+    // objects.NAME.parameters.PARAMETER, and so posts
+    std::vector<std::string> path(1);
+    for (const char c : member.key)
+      if (c == '.')
+        path.emplace_back();
+      else
+        path.back() += c;
+    const bool has_owner = path[0] == format::scene::objects.name || path[0] == format::scene::posts.name;
+    if (path.size() == 4 && has_owner && path[2] == format::object::parameters.name) found.push_back({path[1], path[3]});
+  }
+  return found;
+}
+
 bool animate(Document& document, double time, Diagnostics& diagnostics) {
   const Json* found = document.root.find(format::scene::animate.name);
   if (found == nullptr) return true;

@@ -2,7 +2,10 @@
 // "animate": values of a scene that move.
 #pragma once
 
+#include <vector>
+
 #include "compiler/graph/document.h"
+#include "runtime/scene/scene.h"
 
 namespace isoshade::scene {
 
@@ -11,5 +14,8 @@ namespace isoshade::scene {
 /// length 1. At the time of a key, the value is that of the key, bit for bit. Reports paths that lead to nothing or to
 /// what cannot move, values that the place does not take, and keys that are not in order; then returns false.
 bool animate(graph::Document& document, double time, support::Diagnostics& diagnostics);
+
+/// The parameters of objects and posts that the animations of a scene document change.
+std::vector<AnimatedParameter> animated_parameters(const graph::Document& document);
 
 }  // namespace isoshade::scene

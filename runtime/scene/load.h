@@ -39,6 +39,9 @@ class SceneDocument {
   graph::FileRule files_;
 };
 
+/// A setting `parameter=value` of a document that is no scene: the same values. Reports one that is malformed.
+std::optional<Parameter> parse_setting(const std::string& text, support::Diagnostics& diagnostics);
+
 /// Writes values into a scene document, one setting after the other:
 ///
 ///     object.parameter=value   a parameter of an object's effect, for all copies in its grid

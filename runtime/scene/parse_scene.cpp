@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "compiler/support/visible.h"
+#include "runtime/scene/animate.h"
 #include "runtime/scene/parse_parts.h"
 
 namespace isoshade::scene {
@@ -143,6 +144,7 @@ std::optional<Scene> parse_scene(const Document& document, Diagnostics& diagnost
     for (const Member& member : animations->members) parse_animation(document, member, diagnostics);
 
   Scene scene;
+  scene.animated = animated_parameters(document);
   scene.source = document.source;
   scene.name = reader.read(format::scene::scene);
   Names names(document, diagnostics);

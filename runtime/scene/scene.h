@@ -188,6 +188,12 @@ inline constexpr float default_frames_per_second = 24;
 inline constexpr std::array<int, 2> default_size{640, 360};
 inline constexpr std::array<float, 4> default_background{0, 0, 0, 1};
 
+/// A parameter of an object or a post that has other values at other times.
+struct AnimatedParameter {
+  std::string owner, parameter;
+  bool operator==(const AnimatedParameter&) const = default;
+};
+
 struct Scene {
   std::string name;
   support::Source source;
@@ -205,6 +211,7 @@ struct Scene {
   Sort sort = Sort::none;   ///< of what is blended
   std::vector<Post> posts;  ///< in the order in which they run
   Output output;
+  std::vector<AnimatedParameter> animated;
   /// The scene at the frame before, with the same objects, if that is another one than this scene at another `time`.
   std::shared_ptr<Scene> before;
 };

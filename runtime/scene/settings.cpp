@@ -47,7 +47,7 @@ std::optional<std::string> to_json(std::string_view text) {
   return std::nullopt;
 }
 
-std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics) {
+std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics, std::string_view example) {
   Setting setting{text, {}, {}, {}, {}};
   const size_t equals = text.find('=');
   const std::string target(text.substr(0, equals));
@@ -71,7 +71,7 @@ std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics) {
   diagnostics.report(Id::bad_setting, "--set " + quote(text) + " is not of the form name.parameter=value")
       .note(named && equals != std::string_view::npos
                 ? "the value is JSON, numbers with commas between them, or a plain word"
-                : "for example --set balls.roughness=0.3");
+                : "for example --set " + std::string(example));
   return std::nullopt;
 }
 
@@ -264,11 +264,26 @@ bool Editor::apply(Setting& setting) {
 
 }  // namespace
 
+std::optional<Parameter> parse_setting(const std::string& text, Diagnostics& diagnostics) {
+  const std::optional<Setting> setting = split(text, diagnostics, "roughness=0.3");
+  if (!setting) return std::nullopt;
+  if (!setting->name.empty()) {
+    diagnostics.report(Id::bad_setting, "--set " + quote(text) + " names something in a scene")
+        .suggest("--set " + support::visible(text.substr(setting->name.size() + 1)));
+    return std::nullopt;
+  }
+  const Document document{setting->source, setting->value};
+  const auto literal = graph::parse_literal(document, setting->value, setting->key, diagnostics);
+  if (!literal) return std::nullopt;
+  const auto key_end = static_cast<uint32_t>(setting->key.size());
+  return Parameter{std::string(setting->key), *literal, {setting->source, 0, key_end}, document.span(setting->value)};
+}
+
 bool apply_settings(Document& document, const std::vector<std::string>& settings,
                     const graph::FileRule& files, Diagnostics& diagnostics) {
   Editor editor(document, files, diagnostics);
   for (const std::string& text : settings) {
-    std::optional<Setting> setting = split(text, diagnostics);
+    std::optional<Setting> setting = split(text, diagnostics, "balls.roughness=0.3");
     if (!setting || !editor.apply(*setting)) return false;
   }
   return true;

@@ -65,6 +65,43 @@ TEST_F(Cli, PrefixNamesAllThatAShaderDefines) {
   EXPECT_NE(read(folder_ / "out" / "flat.glsl").find(" flat_shade(flat_"), std::string::npos);
 }
 
+TEST_F(Cli, CompileSetLeavesOutWhatOtherValuesNeed) {
+  const std::string effect = file("glow.json", R"json({"isoshade": 1, "effect": "glow", "parameters": {
+    "strength": {"type": "float", "value": 1, "min": 0, "max": 4}, "tint": {"type": "color3", "value": [1, 1, 1]},
+    "mode": {"type": "integer", "enum": ["flat", "noisy"], "value": "noisy"}, "map": {"type": "filename", "value": ""}},
+    "nodes": {"noise": {"type": "noise3d", "to": "float"}, "picture": {"type": "image", "file": {"link": "map"}, "default": [1, 1, 1]},
+      "color": {"type": "expression", "code": "tint * picture * (strength > 0 ? (mode == 1 ? noise : 1) * strength : 0)",
+                "tint": "tint", "picture": "picture", "noise": "noise", "mode": "mode", "strength": "strength"}},
+    "passes": [{"name": "base", "color": "color"}]})json");
+  const auto compiled = [&](const std::string& options) {
+    const Outcome outcome = run("compile " + effect + " -o " + file("out") + " -q --target glsl,cpp " + options);
+    return outcome.exit == 0 ? read(folder_ / "out" / "glow.glsl") : outcome.text;
+  };
+  const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+  const std::string all = compiled("");
+  EXPECT_TRUE(has(all, "noise3d") && has(all, "parameters.strength") && has(all, "isoshade_texel(") && has(all, "parameters.mode")) << all;
+  const std::string flat = compiled("--set mode=flat --set 'map=\"\"'");
+  EXPECT_TRUE(has(flat, "parameters.strength") && has(flat, "int mode;")) << flat;
+  EXPECT_FALSE(has(flat, "noise3d") || has(flat, "isoshade_texel(") || has(flat, "parameters.mode")) << flat;
+  const std::string reflection = read(folder_ / "out" / "glow.json");
+  EXPECT_TRUE(has(reflection, "\"fixed\": 0") && has(reflection, "\"fixed\": \"\"")) << reflection;
+  EXPECT_TRUE(has(compiled("--set tint=0.25,0.5,0.75 --set strength=2 --set strength=3"), "3.0"));
+  EXPECT_TRUE(has(read(folder_ / "out" / "glow.json"), "\"fixed\": [0.25, 0.5, 0.75]")) << read(folder_ / "out" / "glow.json");
+  const std::string off = compiled("--set strength=0");
+  EXPECT_TRUE(has(off, "parameters.tint") && !has(off, "noise3d") && !has(off, "parameters.strength") && !has(off, "parameters.mode")) << off;
+  for (const char* wrapper : {"forward --target glsl,spirv", "isoshade --target glsl,cpp,spirv"})
+    EXPECT_EQ(run("compile " + effect + " -q -o " + file("wrapped") + " --set mode=flat --wrapper " + wrapper).exit, 0) << wrapper;
+  EXPECT_FALSE(has(read(folder_ / "wrapped" / "glow.base.pixel.frag"), "noise3d"));
+
+  EXPECT_TRUE(has(compiled("--set strenght=0"), "\"glow\" has no parameter \"strenght\"") && has(compiled("--set strenght=0"), "\"strength\"?"));
+  EXPECT_TRUE(has(compiled("--set strength=9"), "is at most 4"));
+  EXPECT_TRUE(has(compiled("--set mode=nosy"), "did you mean"));
+  EXPECT_TRUE(has(compiled("--set strength"), "is not of the form"));
+  EXPECT_TRUE(has(compiled("--set glow.strength=1"), "--set strength=1"));
+  EXPECT_TRUE(has(compiled("--set map=a.png"), "no image can be compiled into a program"));
+  EXPECT_TRUE(has(run("compile " + ggx + " -o " + file("out") + " --set alpha=1").text, "parameters of effects and posts"));
+}
+
 TEST_F(Cli, CompiledTextsAreTheSameInEveryWorkingDirectory) {
   const std::string graph = fs::canonical(graphs + "/materials/textured.json").string();
   std::vector<std::string> texts;

@@ -94,7 +94,7 @@ TEST(Build, ReadsEveryPartOfAFunction) {
 TEST(Build, ReadsParametersAndPassesOfAnEffect) {
   const Graph graph = graph_of(R"({"isoshade": 1, "effect": "toon",
   "parameters": {"outline": {"type": "float", "value": 1e-2, "min": 0, "max": 1},
-                 "tint": {"type": "color3", "value": [1, 0, 0.5], "min": 0},
+                 "tint": {"type": "color3", "value": [1, 0, 0.5], "min": 0, "dynamic": true},
                  "map": {"type": "filename", "value": "a.png"},
                  "count": {"type": "integer", "value": 3, "max": 4},
                  "on": {"type": "boolean", "value": true}},
@@ -104,6 +104,8 @@ TEST(Build, ReadsParametersAndPassesOfAnEffect) {
               "position_space": "view", "enabled": "outline", "double_sided": "on", "cutout": "lit.a", "cutoff": 0.25}]})");
   ASSERT_EQ(graph.inputs.size(), 5u);
   EXPECT_EQ(graph.inputs[1].value->numbers.size(), 3u);
+  EXPECT_TRUE(graph.inputs[1].dynamic);
+  EXPECT_FALSE(graph.inputs[0].dynamic);
   EXPECT_EQ(graph.inputs[2].value->string, "a.png");
   EXPECT_EQ(graph.inputs[3].value->integer, 3);
   EXPECT_TRUE(graph.inputs[4].value->boolean);

@@ -205,7 +205,8 @@ class ChangedScene : public FramePlanner {
 };
 
 TEST_F(ChangedScene, IsPlannedAsIfAnewWhateverChanges) {
-  const render::PlanOptions small = options(64, 48);
+  render::PlanOptions small = options(64, 48);
+  small.compiler.skips.set(interface::Skip::parameters, false);  // one more reason to begin anew
   render::FramePlanner planner(small);
   using Arrays = std::vector<uint64_t backends::Revisions::*>;
   using R = backends::Revisions;
@@ -267,6 +268,47 @@ TEST_F(ChangedScene, IsPlannedAsIfAnewWithOtherMeshesAndPlaces) {
   expect("four samples", [](scene::Scene& s) { s.samples = 4; });
   expect("another image", [](scene::Scene& s) { s.objects[1].parameters = s.objects[0].parameters; });
   expect("images in another order", [](scene::Scene& s) { std::swap(s.objects[0].parameters, s.objects[1].parameters); });
+}
+
+TEST_F(ChangedScene, IsCompiledAnewOnceForEachFixedParameterThatChanges) {
+  const render::PlanOptions small = options(64, 48);
+  render::FramePlanner planner(small);
+  const render::Plan* plan = planner.plan(load({}), diagnostics_);
+  ASSERT_NE(plan, nullptr) << diagnostics_.text();
+  const auto is_fixed = [&](const char* name) {
+    return std::ranges::all_of(plan->effects, [&](const driver::Effect& effect) {
+      return driver::is_fixed(effect.fixed, effect.parameters, *effect.parameters.find(name));
+    });
+  };
+  EXPECT_TRUE(is_fixed("second"));
+  EXPECT_FALSE(is_fixed("tint")) << "it varies along a grid";
+  const uint64_t first = plan->frame.revisions.programs;
+  plan = planner.plan(turned(load({}), 1, 5), diagnostics_);
+  EXPECT_EQ(plan->frame.revisions.programs, first) << "a turntable compiles nothing";
+
+  plan = planner.plan(load({"ball.second=false"}), diagnostics_);
+  ASSERT_NE(plan, nullptr) << diagnostics_.text();
+  EXPECT_NE(plan->frame.revisions.programs, first);
+  EXPECT_FALSE(is_fixed("second"));
+  const uint64_t second = plan->frame.revisions.programs;
+  for (const char* setting : {"ball.second=true", "floor.second=false", "ball.second=false"}) {
+    plan = planner.plan(load({setting}), diagnostics_);
+    ASSERT_NE(plan, nullptr) << diagnostics_.text();
+    EXPECT_EQ(plan->frame.revisions.programs, second) << setting;
+  }
+}
+
+TEST_F(ChangedScene, HasVariantsForSwitchesThatDifferByObject) {
+  render::PlanOptions small = options(64, 48);
+  const auto effects = [&](const std::vector<std::string>& settings) {
+    const auto plan = render::plan_frame(load(settings), small, diagnostics_);
+    return plan ? plan->effects.size() : 0;
+  };
+  EXPECT_EQ(effects({}), 1u);
+  EXPECT_EQ(effects({"ball.second=false"}), 2u);
+  EXPECT_EQ(effects({"ball.tint=0,1,0"}), 1u) << "no switch";
+  small.disabled = true;
+  EXPECT_EQ(effects({"ball.second=false"}), 1u) << "a page changes parameters";
 }
 
 TEST_F(ChangedScene, ThatCannotBePlannedIsReportedOnceAndThenForgotten) {

@@ -49,6 +49,7 @@ class Parts : public ::testing::Test {
     EXPECT_TRUE(scene_) << diagnostics_.text();
     if (!scene_) return std::nullopt;
     options_.compiler.library = &library_;
+    options_.compiler.skips.set(interface::Skip::parameters, false);  // the tests count what is skipped
     options_.width = 8;
     options_.height = 2;
     return render::plan_frame(*scene_, options_, diagnostics_);

@@ -55,6 +55,7 @@ class PlanTest : public ::testing::Test {
     EXPECT_TRUE(scene_) << diagnostics_.text();
     if (!scene_) return std::nullopt;
     options_.compiler.library = &library_;
+    options_.compiler.skips.set(interface::Skip::parameters, false);  // the tests count what is skipped
     return render::plan_frame(*scene_, options_, diagnostics_);
   }
 

@@ -50,6 +50,7 @@ class PostsTest : public ::testing::Test {
     scene_ = document ? scene::parse_scene(*document, diagnostics_) : std::nullopt;
     if (!scene_) return std::nullopt;
     options_.compiler.library = &library_;
+    options_.compiler.skips.set(interface::Skip::parameters, false);  // the tests count what is skipped
     return render::plan_frame(*scene_, options_, diagnostics_);
   }
 
