@@ -46,7 +46,7 @@ void report_draw_values(const driver::Effect& effect, std::vector<Skipped>& skip
     if (values == nullptr) continue;
     const auto operations = static_cast<int64_t>(ir::expanded_operations(values->module, values->entry)[values->entry]);
     skips.push_back({interface::Skip::rates, "operations of pass " + pass.name + " of " + effect.name,
-                     "the same for all pixels of a draw", effect.name, operations});
+                     "the same for all pixels of a draw", {}, operations});
   }
 }
 
