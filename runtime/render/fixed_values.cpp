@@ -5,6 +5,8 @@
 #include <bit>
 #include <map>
 
+#include "compiler/ir/expansion.h"
+
 namespace isoshade::render {
 
 using driver::FixedWords;
@@ -53,10 +55,31 @@ Groups split(const Groups& groups, size_t word, std::span<const FixedWords> give
   return made;
 }
 
-Variant variant_of(std::vector<size_t> members, std::span<const FixedWords> given) {
-  Variant variant{given[members.front()], std::move(members)};
-  for (const size_t member : variant.members) keep_common(variant.fixed, given[member]);
-  return variant;
+/// Marks the words that a program reads.
+void mark_read(const driver::Program& program, const ParameterBlock& block, std::vector<bool>& words) {
+  for (const interface::Binding& binding : program.bindings) {
+    if (const auto* input = std::get_if<interface::source::Input>(&binding.source)) {
+      const size_t width = binding.parameter.type.width;
+      for (size_t i = 0; i < width; ++i) words[block.word_of(input->input) + input->column * width + i] = true;
+    } else if (const auto* image = std::get_if<interface::source::Image>(&binding.source)) {
+      words[block.word_of_image(image->slot)] = true;
+    }
+  }
+}
+
+uint64_t operations(const driver::Program& program) {
+  return ir::expanded_operations(program.module, program.entry)[program.entry];
+}
+
+/// Calls `use` for each program of an effect.
+template <class Use>
+void for_each_program(const driver::Effect& effect, const Use& use) {
+  for (const driver::EffectPass& pass : effect.passes) {
+    use(pass.vertex);
+    use(pass.pixel);
+    if (pass.blend) use(*pass.blend);
+    if (pass.cutout) use(*pass.cutout);
+  }
 }
 
 }  // namespace
@@ -67,35 +90,36 @@ void keep_common(FixedWords& words, const FixedWords& others) {
     if (bits_of(words[i]) != bits_of(others[i])) words[i].reset();
 }
 
-std::vector<Variant> variants_of(const ParameterBlock& block, std::span<const FixedWords> given) {
-  if (given.empty()) return {};
+Groups groups_of(const ParameterBlock& block, std::span<const FixedWords> given, const std::vector<bool>& reads) {
   Groups groups(1);
   for (size_t i = 0; i < given.size(); ++i) groups[0].push_back(i);
-  const bool is_fixed = std::ranges::none_of(given, &FixedWords::empty);
+  if (!std::ranges::none_of(given, &FixedWords::empty)) return groups;
   for (const Item& item : items_of(block)) {
-    if (!is_fixed || !item.is_switch) continue;
+    if (!item.is_switch || !reads[item.first]) continue;
     if (Groups more = split(groups, item.first, given); more.size() <= max_variants) groups = std::move(more);
   }
-  std::vector<Variant> variants;
-  for (std::vector<size_t>& group : groups) variants.push_back(variant_of(std::move(group), given));
-  return variants;
+  return groups;
 }
 
-std::vector<Variant> variants_of_posts(const ParameterBlock& block, std::span<const FixedWords> given) {
-  std::map<std::vector<std::optional<uint32_t>>, size_t> known;
-  Groups groups;
-  for (size_t i = 0; i < given.size(); ++i) {
-    std::vector<std::optional<uint32_t>> key;
-    for (const std::optional<float>& word : given[i]) key.push_back(bits_of(word));
-    const auto [found, is_new] = known.try_emplace(std::move(key), groups.size());
-    if (is_new) groups.emplace_back();
-    groups[found->second].push_back(i);
-  }
-  if (groups.size() > max_variants) return variants_of(block, given);
-  std::vector<Variant> variants;
-  for (std::vector<size_t>& group : groups) variants.push_back(variant_of(std::move(group), given));
-  return variants;
+std::vector<bool> read_words(const driver::Effect& effect) {
+  std::vector<bool> words(effect.parameters.word_count());
+  for_each_program(effect, [&](const driver::Program& program) { mark_read(program, effect.parameters, words); });
+  return words;
 }
+
+std::vector<bool> read_words(const driver::Post& post) {
+  std::vector<bool> words(post.parameters.word_count());
+  mark_read(post.program, post.parameters, words);
+  return words;
+}
+
+uint64_t operations(const driver::Effect& effect) {
+  uint64_t sum = 0;
+  for_each_program(effect, [&](const driver::Program& program) { sum += operations(program); });
+  return sum;
+}
+
+uint64_t operations(const driver::Post& post) { return operations(post.program); }
 
 std::vector<std::string> broken_by(const ParameterBlock& block, const FixedWords& fixed, const FixedWords& given) {
   std::vector<std::string> names;

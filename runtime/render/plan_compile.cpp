@@ -98,11 +98,16 @@ void Planner::compile_effects() {
   for (size_t e = 0; e < checked.size(); ++e) {
     std::vector<driver::FixedWords> given;
     for (const size_t o : objects[e]) given.push_back(given_by_object(o, checked[e].parameters));
-    for (Variant& variant : variants_of(checked[e].parameters, given)) {
+    options.lights.shadows = shadows && scene_->objects[objects[e].front()].receives_shadow;
+    const auto make = [&](driver::FixedWords fixed) {
+      driver::Effect made = checked[e];
+      options.fixed = std::move(fixed);
+      compiled_.make(made, options);
+      return made;
+    };
+    for (auto& variant : variants_of<driver::Effect>(checked[e].parameters, given, make)) {
       for (const size_t member : variant.members) effect_of_object_[objects[e][member]] = plan_.effects.size();
-      options.lights.shadows = shadows && scene_->objects[objects[e].front()].receives_shadow;
-      options.fixed = std::move(variant.fixed);
-      compiled_.make(plan_.effects.emplace_back(checked[e]), options);
+      plan_.effects.push_back(std::move(variant.document));
     }
   }
   // Only now, because the effects no longer move.
@@ -145,10 +150,15 @@ bool Planner::compile_posts() {
   for (size_t d = 0; d < checked.size(); ++d) {
     std::vector<driver::FixedWords> given;
     for (const size_t p : posts[d]) given.push_back(given_by_post(p, checked[d].parameters));
-    for (Variant& variant : variants_of_posts(checked[d].parameters, given)) {
+    const auto make = [&](driver::FixedWords fixed) {
+      driver::Post made = checked[d];
+      options.fixed = std::move(fixed);
+      compiled_.make(made, options);
+      return made;
+    };
+    for (auto& variant : variants_of<driver::Post>(checked[d].parameters, given, make)) {
       for (const size_t member : variant.members) document_of_post[posts[d][member]] = plan_.post_documents.size();
-      options.fixed = std::move(variant.fixed);
-      compiled_.make(plan_.post_documents.emplace_back(checked[d]), options);
+      plan_.post_documents.push_back(std::move(variant.document));
     }
   }
   // Only now, because the documents no longer move.

@@ -298,19 +298,6 @@ TEST_F(ChangedScene, IsCompiledAnewOnceForEachFixedParameterThatChanges) {
   }
 }
 
-TEST_F(ChangedScene, HasVariantsForSwitchesThatDifferByObject) {
-  render::PlanOptions small = options(64, 48);
-  const auto effects = [&](const std::vector<std::string>& settings) {
-    const auto plan = render::plan_frame(load(settings), small, diagnostics_);
-    return plan ? plan->effects.size() : 0;
-  };
-  EXPECT_EQ(effects({}), 1u);
-  EXPECT_EQ(effects({"ball.second=false"}), 2u);
-  EXPECT_EQ(effects({"ball.tint=0,1,0"}), 1u) << "no switch";
-  small.disabled = true;
-  EXPECT_EQ(effects({"ball.second=false"}), 1u) << "a page changes parameters";
-}
-
 TEST_F(ChangedScene, ThatCannotBePlannedIsReportedOnceAndThenForgotten) {
   const render::PlanOptions small = options(64, 48);
   render::FramePlanner planner(small);
