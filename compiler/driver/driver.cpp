@@ -417,7 +417,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   };
   if (options.dump) dump("lower", lowered.module);
   const passes::Dump dump_pass = options.dump ? passes::Dump(dump) : passes::Dump();
-  passes::run(passes::optimisations(), lowered.module, entries, options.tier, dump_pass);
+  passes::run(passes::optimisations(), lowered.module, entries, options.tier, dump_pass, false, options.skips);
   if (shader_options.division == Division::exact)
     passes::run(passes::division_lowering(), lowered.module, entries, options.tier, dump_pass);
   // What only other values of the fixed parameters read is nothing to ask for.

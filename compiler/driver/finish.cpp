@@ -57,7 +57,7 @@ void finish(Program& program, uint32_t kernel, const CompileOptions& options, su
   };
   if (options.dump) dump("lower", program.module);
   passes::run(passes::optimisations(), program.module, entries, program.tier,
-              options.dump ? passes::Dump(dump) : passes::Dump());
+              options.dump ? passes::Dump(dump) : passes::Dump(), false, options.skips);
   program.entry = entries[0];
   if (entries.draw_values) program.draw = std::make_shared<const passes::DrawValues>(*std::move(entries.draw_values));
 }

@@ -27,6 +27,8 @@ class Editor {
   void keep(ir::InstructionId instruction) { list_.push_back(instruction); }
   /// Visits the blocks of a kept instruction.
   void descend(ir::InstructionId instruction);
+  /// Visits one of them; each must be visited, in order.
+  void descend_into(ir::BlockId block) { visit_block(block); }
   /// Visits a block's instructions as if they stood here; its parameters must be replaced before.
   void inline_block(ir::BlockId block);
   /// Uses `with` from here on instead of `value`, whose name it takes over if it has none and is no

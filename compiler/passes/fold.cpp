@@ -107,6 +107,8 @@ class Folder {
   }
 
   std::optional<ValueId> folded(const Instruction& made) {
+    if (made.op == Opcode::select)
+      if (const auto truth = known_truth(edit_.operand(made, 0))) return edit_.operand(made, *truth ? 1 : 2);
     if (const auto same = evaluated(made)) return same;
     if (const auto same = chosen(made)) return same;
     return identity(edit_, made);
@@ -234,10 +236,14 @@ class Folder {
   }
 
   void branch(InstructionId id, const Instruction& made) {
-    if (const auto condition = edit_.known(edit_.operand(made, 0), 0))
-      return inline_block(made, made.blocks[*condition != 0 ? 0 : 1]);
+    const ValueId condition = edit_.operand(made, 0);
+    if (const auto truth = known_truth(condition)) return inline_block(made, made.blocks[*truth ? 0 : 1]);
     edit_.keep(id);
-    edit_.descend(id);
+    for (const bool taken : {true, false}) {
+      assumed_.emplace_back(condition, taken);
+      edit_.descend_into(made.blocks[taken ? 0 : 1]);
+      assumed_.pop_back();
+    }
     for (uint32_t k = 0; k < made.result_count; ++k) {
       const ValueId then = f_.blocks[made.blocks[0]].yields[k], other = f_.blocks[made.blocks[1]].yields[k];
       if (then == other) {
@@ -247,6 +253,14 @@ class Folder {
         edit_.replace(made.first_result + k, select(edit_.operand(made, 0), a, copy(other)));
       }
     }
+  }
+
+  /// What a condition is, if it is constant or that of a branch around.
+  std::optional<bool> known_truth(ValueId condition) const {
+    if (const auto bits = edit_.known(condition, 0)) return *bits != 0;
+    for (const auto& [assumed, truth] : assumed_)
+      if (assumed == condition) return truth;
+    return std::nullopt;
   }
 
   // A copy, in this block, of a known value of an inner block.
@@ -285,6 +299,7 @@ class Folder {
   Function& f_;
   Editor edit_;
   CallEvaluator& calls_;
+  std::vector<std::pair<ValueId, bool>> assumed_;  ///< conditions of the branches around, and the side
 };
 
 bool has_calls(const Function& function) {

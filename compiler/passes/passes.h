@@ -46,7 +46,8 @@ void renumber(ir::Module& module);
 ///   (identities.h);
 /// - ops on constants that one select chooses by a select of the results; a branch's result that is constant on
 ///   both sides by a select;
-/// - a branch with a constant condition by the side taken; results that both sides yield alike by that value; a
+/// - a branch with a constant condition by the side taken; inside the sides of a branch, choices on its condition;
+///   results that both sides yield alike by that value; a
 ///   loop that runs never or once by its initial values or its body.
 /// Works on the functions from index `first` on. Calls of library functions that have no body yet are evaluated
 /// with the bodies of the tier; without a tier they stay.
@@ -71,6 +72,15 @@ void dce(ir::Module& module, std::vector<uint32_t>& entries);
 /// NaN and the signs of zeros into account; ranges contain every float that the ops can give.
 /// Needs: bodies for all calls. Leaves: comparisons that are constants, for fold.
 void decide(ir::Module& module, functions::Tier tier);
+
+/// Sinks what only one outcome of a choice needs into a branch, which lanes and pixels skip where none needs it. Selects on
+/// one condition of which none needs another become one branch, if what their operands alone need is at least a number
+/// of operations that was measured to pay; branches take in, too, what only one side of them uses. Bit-exact: all is
+/// pure, and a select never looks at the operand that it does not choose. Bodies of the library stay: they were measured as
+/// they are. Returns how many branches were made.
+/// Needs: a valid module; constants folded, or costs are overestimated. Leaves: choices on the condition of a branch
+/// inside of its sides, for fold.
+size_t sink(ir::Module& module);
 
 /// Gives each call with constant arguments a clone of its callee in which the constants are folded. A driver
 /// inlines calls and then folds constants by rules of its own (see hide_foldables), so no constant may cross a

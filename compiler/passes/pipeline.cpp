@@ -14,6 +14,7 @@ namespace isoshade::passes {
 namespace {
 
 using functions::Tier;
+using interface::Skip;
 
 void run_derivatives(ir::Module& m, Entries&, Tier) { derivatives(m); }
 void run_renumber(ir::Module& m, Entries&, Tier) { renumber(m); }
@@ -21,6 +22,7 @@ void run_fold(ir::Module& m, Entries&, Tier tier) { fold(m, tier); }
 void run_cse(ir::Module& m, Entries&, Tier) { cse(m); }
 void run_expand(ir::Module& m, Entries&, Tier tier) { functions::expand(m, tier); }
 void run_decide(ir::Module& m, Entries&, Tier tier) { decide(m, tier); }
+void run_sink(ir::Module& m, Entries&, Tier) { sink(m); }
 void run_specialize(ir::Module& m, Entries&, Tier) { specialize(m); }
 void run_hoist(ir::Module& m, Entries& entries, Tier) {
   if (!entries.draw_rate) return;
@@ -44,10 +46,12 @@ constexpr ModulePass optimisation_table[] = {
     {"renumber", run_renumber, "drops what fold and cse replaced, and the calls in it"},
     {"dce", run_dce, "no body is made for what nobody calls"},
     {"expand", run_expand, "all that reasons about functions has seen them"},
-    {"decide", run_decide, "the bodies tell what ranges the ranges of their arguments make"},
+    {"decide", run_decide, "the bodies tell what ranges the ranges of their arguments make", Skip::ranges},
     {"fold", run_fold, "bodies are templates: they have constants to fold, and what was decided is constant"},
     {"renumber", run_renumber, "nothing dead is hoisted"},
     {"hoist", run_hoist, "bodies show what is the same for a draw, and what is constant is no longer there"},
+    {"sink", run_sink, "what can be folded would count as expensive", Skip::branches},
+    {"fold", run_fold, "inside a branch its condition is known", Skip::branches},
     {"specialize", run_specialize, "only bodies can take constants in"},
     {"renumber", run_renumber, "drops what specialize has folded away"},
     {"drop_unread", run_drop_unread, "constants leave parameters unread, and hiding would read them"},
@@ -88,8 +92,9 @@ std::span<const ModulePass> division_lowering() { return division_table; }
 std::span<const ModulePass> multiplication_lowering() { return multiplication_table; }
 
 void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, Tier tier, const Dump& dump,
-         bool check) {
+         bool check, const interface::Skips& skips) {
   for (const ModulePass& pass : passes) {
+    if (pass.skip && !skips.has(*pass.skip)) continue;
     pass.run(module, entries, tier);
     if (dump) dump(pass.name, module);
     if (!check && !always_check) continue;

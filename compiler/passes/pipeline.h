@@ -4,11 +4,13 @@
 
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "compiler/functions/tier.h"
+#include "compiler/interface/skips.h"
 #include "compiler/passes/hoist.h"
 #include "compiler/ir/module.h"
 
@@ -32,6 +34,7 @@ struct ModulePass {
   std::string_view name;
   void (*run)(ir::Module&, Entries&, functions::Tier);
   std::string_view reason;  ///< why it stands where it stands
+  std::optional<interface::Skip> skip = {};  ///< it is left out where this skip is off
 };
 
 /// From the lowered module to what is printed: no declarations, no dead code, nothing that a driver would fold.
@@ -44,9 +47,9 @@ std::span<const ModulePass> multiplication_lowering();
 /// Called after each pass with its name.
 using Dump = std::function<void(std::string_view pass, const ir::Module&)>;
 
-/// Runs the passes in order; library functions get the bodies of the tier. With `check` (always in debug builds), a
+/// Runs the passes in order, but for those of skips that are off; library functions get the bodies of the tier. With `check` (always in debug builds), a
 /// pass that leaves an invalid module is a bug.
 void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, functions::Tier tier,
-         const Dump& dump = {}, bool check = false);
+         const Dump& dump = {}, bool check = false, const interface::Skips& skips = {});
 
 }  // namespace isoshade::passes
