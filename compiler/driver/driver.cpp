@@ -486,13 +486,16 @@ emit::PureShader prepared(const Shader& shader, const emit::Target& target) {
 
 std::string text(const Shader& shader, const emit::Target& target) { return target.pure(prepared(shader, target)); }
 
-Program finish_eval(ir::Module module, uint32_t function, std::string name, functions::Tier tier) {
+Program finish_eval(ir::Module module, uint32_t function, std::string name, functions::Tier tier,
+                    const interface::Skips& skips) {
   Program program{lower::Stage::eval, std::move(name), "", std::move(module), 0, {}, {}, tier};
   for (const ir::Parameter& parameter : program.module.functions[function].parameters)
     program.inputs.push_back(field(parameter.name, graph_type(parameter.type)));
   for (const ir::Result& result : program.module.functions[function].results)
     program.results.push_back(field(result.name, graph_type(result.type)));
-  finish(program, lower::add_eval_kernel(program.module, function), {});
+  CompileOptions options;
+  options.skips = skips;
+  finish(program, lower::add_eval_kernel(program.module, function), options);
   return program;
 }
 

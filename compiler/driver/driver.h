@@ -129,6 +129,6 @@ const Program& backdrop_motion_program(bool reference);
 
 /// Makes an eval program of a function of a module created by frame_module().
 Program finish_eval(ir::Module module, uint32_t function, std::string name,
-                    functions::Tier tier = functions::Tier::standard);
+                    functions::Tier tier = functions::Tier::standard, const interface::Skips& skips = {});
 
 }  // namespace isoshade::driver

@@ -14,10 +14,6 @@ namespace {
 
 using namespace ir;
 
-/// What a branch must save at least: a test of all lanes and a move for each result cost about as much as these.
-constexpr uint64_t least_operations = 24;
-/// The same where the condition is the same for all lanes.
-constexpr uint64_t least_uniform_operations = 8;
 constexpr uint64_t operations_of_division = 4;
 
 /// Which side of a branch uses a value.
@@ -26,8 +22,8 @@ enum class Side : uint8_t { neither, then, other, dead };
 /// One block of a function at a time.
 class Sinker {
  public:
-  Sinker(Function& f, const std::vector<uint64_t>& of_functions)
-      : f_(f), of_functions_(of_functions), uniform_(uniform_values(f)) {}
+  Sinker(Function& f, const std::vector<uint64_t>& of_functions, const SinkLimits& limits)
+      : f_(f), of_functions_(of_functions), limits_(limits), uniform_(uniform_values(f)) {}
 
   size_t run() {
     visit(0, 1);
@@ -85,7 +81,7 @@ class Sinker {
   }
 
   uint64_t least(ValueId condition) const {
-    return condition < uniform_.size() && uniform_[condition] ? least_uniform_operations : least_operations;
+    return condition < uniform_.size() && uniform_[condition] ? limits_.uniform : limits_.varying;
   }
 
   void analyse(BlockId block) {
@@ -264,6 +260,7 @@ class Sinker {
 
   Function& f_;
   const std::vector<uint64_t>& of_functions_;
+  const SinkLimits limits_;
   std::vector<bool> uniform_;           ///< by value that the function had before
   std::vector<uint32_t> place_of_;      ///< by value: the place in the block of what makes it
   std::vector<std::vector<Use>> uses_;  ///< by place
@@ -273,7 +270,7 @@ class Sinker {
 
 }  // namespace
 
-size_t sink(Module& module) {
+size_t sink(Module& module, const SinkLimits& limits) {
   std::vector<uint32_t> all(module.functions.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<uint64_t> of_functions(module.functions.size());
@@ -287,7 +284,7 @@ size_t sink(Module& module) {
       if (instruction.op != Opcode::constant && instruction.op != Opcode::extract)
         of_functions[f] += expanded_operations(function, instruction, of_functions, operations_of_division);
     }
-    if (function.library.empty()) made += Sinker(function, of_functions).run();
+    if (function.library.empty()) made += Sinker(function, of_functions, limits).run();
   }
   return made;
 }

@@ -34,6 +34,7 @@ const std::map<std::string, void (*)(ir::Module&)> passes{
     {"decide", [](ir::Module& module) { decide(module, functions::Tier::standard); }},
     {"fold", [](ir::Module& module) { fold(module); }},
     {"hide_foldables", [](ir::Module& module) { hide_foldables(module, {}); }},
+    {"sink", [](ir::Module& module) { sink(module, {4, 2}); }},
     {"specialize",
      [](ir::Module& module) {
        specialize(module);

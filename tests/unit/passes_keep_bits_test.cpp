@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/functions/library.h"
+#include "compiler/ir/builder.h"
 #include "compiler/ir/interpreter.h"
 #include "compiler/ir/printer.h"
 #include "compiler/ir/validator.h"
@@ -117,6 +118,93 @@ TEST(PassesKeepEveryBit, Decide) {
                                                              << ir::print(after);
   }
   EXPECT_GT(changed, 200);
+}
+
+/// A tree of operations with many choices: most values are used once, and some by both sides.
+class RandomChoices {
+ public:
+  explicit RandomChoices(uint64_t seed) : random_(seed), builder_(declared(module_), 0) {}
+
+  Module make() {
+    for (size_t i = 0; i < 3; ++i) seen_.push_back(builder_.parameter(i));
+    for (int i = 0; i < 3; ++i) conditions_.push_back(builder_.op(ir::Opcode::flt, {any(seen_), any(seen_)}));
+    conditions_.push_back(builder_.parameter(3));
+    builder_.finish(std::array{grow(6), grow(5)});
+    return std::move(module_);
+  }
+
+ private:
+  static Module& declared(Module& module) {
+    module.buffers = {{"floats", ir::Scalar::floating}, {"ints", ir::Scalar::integer}};  // which outcomes() binds
+    ir::Function& main = module.functions.emplace_back();
+    main.name = "main";
+    for (const char* name : {"x", "y", "z"}) main.parameters.push_back({name, ir::float_type, "", false});
+    main.parameters.push_back({"c", ir::bool_type, "", true});
+    main.parameters.push_back({"n", ir::int_type, "", true});
+    main.results = {{"a", ir::float_type}, {"b", ir::float_type}};
+    return module;
+  }
+  ir::ValueId any(const std::vector<ir::ValueId>& of) { return of[random_.below(static_cast<uint32_t>(of.size()))]; }
+
+  ir::ValueId grow(int depth) {
+    if (depth == 0 || random_.below(8) == 0) return any(seen_);
+    const ir::ValueId made = made_of(depth - 1);
+    if (!inside_ && random_.below(4) == 0) seen_.push_back(made);
+    return made;
+  }
+  ir::ValueId made_of(int depth) {
+    constexpr std::array ops{ir::Opcode::fadd, ir::Opcode::fsub, ir::Opcode::fmul, ir::Opcode::fdiv};
+    const uint32_t kind = random_.below(10);
+    if (kind < 4) return builder_.op(ir::Opcode::select, {any(conditions_), grow(depth), grow(depth)});
+    if (kind == 4) return nested([&] { return branch(depth); });
+    if (kind == 5) return nested([&] { return loop(depth); });
+    return builder_.op(ops[random_.below(4)], {grow(depth), grow(depth)});
+  }
+  template <class Make>
+  ir::ValueId nested(Make make) {
+    const bool outer = std::exchange(inside_, true);
+    const ir::ValueId made = make();
+    inside_ = outer;
+    return made;
+  }
+  ir::ValueId branch(int depth) {
+    const auto side = [&] { return std::vector{grow(depth)}; };
+    return builder_.branch(any(conditions_), side, side)[0];
+  }
+  ir::ValueId loop(int depth) {
+    const std::array initial{grow(depth)};
+    const ir::ValueId count = builder_.op(ir::Opcode::iand, {builder_.parameter(4), builder_.constant(3)});
+    return builder_.loop(count, initial, [&](ir::ValueId, std::span<const ir::ValueId> carried) {
+      return std::vector{builder_.op(ir::Opcode::select, {any(conditions_), grow(depth), carried[0]})};
+    })[0];
+  }
+
+  RandomModule random_;
+  Module module_;
+  ir::Builder builder_;
+  std::vector<ir::ValueId> seen_, conditions_;
+  bool inside_ = false;  ///< of a block whose values are not seen outside
+};
+
+TEST(PassesKeepEveryBit, SinkAndFold) {
+  size_t made = 0;
+  for (uint64_t seed = 0; seed < 1500; ++seed) {
+    const Module before = RandomChoices(seed).make();
+    ASSERT_EQ(ir::validate(before), "") << ir::print(before);
+    Module after = before;
+    made += sink(after, {1 + seed % 5, 1 + seed % 3});
+    ASSERT_EQ(ir::validate(after), "") << "seed " << seed << "\n" << ir::print(before);
+    if (seed % 2 == 0) fold(after);
+    if (seed % 4 == 0) renumber(after);
+    ASSERT_EQ(ir::validate(after), "") << "seed " << seed << "\n" << ir::print(before);
+    ASSERT_EQ(outcomes(before, seed), outcomes(after, seed)) << "seed " << seed << "\n" << ir::print(before)
+                                                             << "\nbecame\n\n" << ir::print(after);
+  }
+  EXPECT_GT(made, 3000u);
+}
+
+TEST(PassesKeepEveryBit, Sink) {
+  expect_same_bits(1500, false, [](Module& m, uint64_t seed) { sink(m, {1 + seed % 4, 1}); });
 }
 
 TEST(PassesKeepEveryBit, HideFoldables) {
@@ -247,6 +335,7 @@ TEST(PassesKeepEveryBit, AnySequence) {
       Entries entries{m.find("main")};
       switch (random.below(6)) {
         case 0: renumber(m); break;
+        case 4: sink(m, {2, 1}); break;
         case 1: cse(m); break;
         case 2: fold(m); break;
         case 3: hide_foldables(m, {}); break;
@@ -261,7 +350,10 @@ TEST(PassesKeepEveryBit, AnySequence) {
 TEST(PassesKeepEveryBit, BothPipelines) {
   expect_same_bits(1000, true, [](Module& m, uint64_t seed) {
     Entries entries{m.find("main")};
-    run(optimisations(), m, entries, tier_of(seed), {}, true);
+    interface::Skips skips;
+    skips.set(interface::Skip::branches, seed % 2 == 0);
+    skips.set(interface::Skip::ranges, seed % 3 == 0);
+    run(optimisations(), m, entries, tier_of(seed), {}, true, skips);
     EXPECT_EQ(m.functions[entries[0]].name, "main");
     run(division_lowering(), m, entries, tier_of(seed), {}, true);
     for (const ir::Function& function : m.functions)
