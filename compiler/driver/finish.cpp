@@ -51,7 +51,7 @@ void finish(Program& program, uint32_t kernel, const CompileOptions& options, su
   program.source = std::move(source);
   if (options.reference && !lower::decides_visibility(program.stage)) return passes::derivatives(program.module);
   passes::Entries entries{kernel};
-  if (room && options.skips.has(interface::Skip::rates)) entries.draw_rate = draw_rate(program.stage, *room);
+  if (room) entries.draw_rate = draw_rate(program.stage, *room);
   const auto dump = [&](std::string_view pass, const ir::Module& after) {
     options.dump(pass, [&] { return dump_module(after); });
   };

@@ -2,6 +2,9 @@
 #include "compiler/passes/passes.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
 #include <utility>
 
 #include "compiler/ir/float_bits.h"
@@ -66,15 +69,41 @@ class Decider {
     if (made.op == Opcode::call) return called(made, walker_.row_of(made.imm));
     if (made.op == Opcode::fabs) return magnitude(made);
     if (!is_primitive(made.op)) return std::nullopt;
-    const KnownRange& truth = frame_.values[made.first_result][0];
-    const bool is_truth = f_.type(made.first_result) == bool_type;
-    if (!is_truth || !truth.is_point()) return std::nullopt;
-    return edit_.constant(bool_type, truth.lo != 0 ? 1 : 0);
+    if (made.op == Opcode::fadd || made.op == Opcode::fsub)
+      if (const Result same = without_zero(made)) return same;
+    return only_value(made);
+  }
+
+  /// The constant if a result can have no other value. A zero must have a known sign.
+  Result only_value(const Instruction& made) {
+    const Type type = f_.type(made.first_result);
+    std::array<uint32_t, 4> words{};
+    for (uint32_t c = 0; c < type.width; ++c) {
+      const KnownRange& range = of(made.first_result, c);
+      if (!range.is_point() || (type.is_float() && static_cast<double>(static_cast<float>(range.lo)) != range.lo))
+        return std::nullopt;
+      if (type.is_float() && range.is_zero() && range.may_be_minus_zero) return std::nullopt;
+      words[c] = type.is_float() ? std::bit_cast<uint32_t>(static_cast<float>(range.lo) + 0.0f)
+                                 : static_cast<uint32_t>(static_cast<int64_t>(range.lo));
+    }
+    return edit_.constant(type, std::span(words).first(type.width));
+  }
+
+  // x + 0 and x - 0 are x, whatever the sign of the zero, if x is no -0.
+  Result without_zero(const Instruction& made) const {
+    const ValueId x = edit_.operand(made, 0), y = edit_.operand(made, 1);
+    const auto leaves = [&](ValueId value, ValueId zero) {
+      return may_replace(made, value) && each(made, [&](uint32_t c) {
+               return of(value, c).is_never_minus_zero() && of(zero, c).is_zero();
+             });
+    };
+    if (leaves(x, y)) return x;
+    return made.op == Opcode::fadd && leaves(y, x) ? Result(y) : std::nullopt;
   }
 
   Result magnitude(const Instruction& made) {
     const ValueId x = edit_.operand(made, 0);
-    const bool positive = each(made, [&](uint32_t c) { return of(x, c) && of(x, c).lo > 0; });
+    const bool positive = each(made, [&](uint32_t c) { return of(x, c).is_plus(); });
     return positive ? Result(x) : std::nullopt;
   }
 
@@ -123,7 +152,7 @@ class Decider {
     const auto all = [&](auto holds) {
       return each(made, [&](uint32_t c) { return of(x, c) && holds(of(x, c)); });
     };
-    const bool above = all([](const KnownRange& b) { return b.lo > 0; });
+    const bool above = all([](const KnownRange& b) { return b.is_plus(); });
     const bool beneath = all([](const KnownRange& b) { return b.hi <= 1; });
     if (above && beneath) return x;
     if (!is_scalar(made) || (!above && !beneath)) return std::nullopt;

@@ -23,13 +23,38 @@ KnownRange any_of(Scalar scalar) {
 
 KnownRange either(const KnownRange& a, const KnownRange& b) {
   if (!a || !b) return {};
-  return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+  return {std::min(a.lo, b.lo), std::max(a.hi, b.hi), !a.is_never_minus_zero() || !b.is_never_minus_zero(),
+          std::min(a.gap, b.gap)};
 }
 
 KnownRange constant(Scalar scalar, uint32_t bits) {
   const bool is_float = scalar == Scalar::floating;
   const auto value = is_float ? static_cast<double>(std::bit_cast<float>(bits)) : static_cast<int32_t>(bits);
-  return std::isfinite(value) ? KnownRange{value, value} : KnownRange{};
+  if (!std::isfinite(value)) return {};
+  return {value, value, std::signbit(value), value == 0 ? HUGE_VAL : std::abs(value)};
+}
+
+/// What is known of the sign of a float that is 0, and of how near to 0 others are.
+void find_zeros(KnownRange& out, Opcode op, const KnownRange& a, const KnownRange& b, bool same) {
+  // A sum of which one operand is at least this is a multiple of 2^-126: it is never flushed, which could make it -0.
+  constexpr double least_of_normal_sums = 0x1p-100;
+  const auto certain_signs_agree = [&] { return same || (a.is_plus() && b.is_plus()) || (a.hi < 0 && b.hi < 0); };
+  switch (op) {
+    case Opcode::fadd:
+      out.may_be_minus_zero = (!a.is_never_minus_zero() && !b.is_never_minus_zero()) ||
+                              (std::max(a.gap, b.gap) < least_of_normal_sums && !(a.is_plus() && b.is_plus()));
+      // If x is not 0, x + y is a multiple of half the distance of floats at x, or at least half of x; else it is y.
+      out.gap = std::max({0x1p-126, std::min(a.gap * 0x1p-25, a.may_be_zero() ? b.gap : HUGE_VAL),
+                          std::min(b.gap * 0x1p-25, b.may_be_zero() ? a.gap : HUGE_VAL)});
+      return;
+    case Opcode::fmul:
+    case Opcode::fdiv: out.may_be_minus_zero = !certain_signs_agree(); return;
+    case Opcode::fsqrt:
+    case Opcode::floor: out.may_be_minus_zero = !a.is_plus(); return;
+    case Opcode::fabs: out.may_be_minus_zero = false; return;
+    case Opcode::itof: out.may_be_minus_zero = false; return;
+    default: return;
+  }
 }
 
 /// The range of an op's result, by its range rule, where those of its operands are known.
@@ -127,8 +152,11 @@ bool RangeWalker::decides(const RangeFrame& frame, const ir::Instruction& made) 
   if (made.op == Opcode::call)
     return library_of(made.imm).chooses && std::ranges::all_of(frame.function->operands_of(made), is_known);
   if (made.op == Opcode::fabs) return is_known(made.first_result);
-  return ir::is_primitive(made.op) && frame.function->type(made.first_result) == ir::bool_type &&
-         frame.values[made.first_result][0].is_point();
+  if (made.op == Opcode::fadd || made.op == Opcode::fsub)
+    for (const ir::ValueId operand : frame.function->operands_of(made))
+      if (frame.values[operand][0].is_zero()) return true;
+  if (made.op == Opcode::select) return frame.values[frame.function->operands_of(made)[0]][0].is_point();
+  return ir::is_primitive(made.op) && frame.values[made.first_result][0].is_point();
 }
 
 void RangeWalker::instruction(RangeFrame& frame, const ir::Instruction& made,
@@ -139,7 +167,7 @@ void RangeWalker::instruction(RangeFrame& frame, const ir::Instruction& made,
   KnownRanges& out = frame.values[made.first_result];
   switch (made.op) {
     case Opcode::constant: out.fill(constant(type.scalar, made.imm)); return;
-    case Opcode::hidden_zero: out.fill({0, 0}); return;
+    case Opcode::hidden_zero: out.fill({0, 0, false}); return;
     case Opcode::construct:
       for (size_t c = 0; c < in.size(); ++c) out[c] = frame.values[in[c]][0];
       return;
@@ -175,8 +203,11 @@ KnownRanges RangeWalker::primitive(const RangeFrame& frame, const ir::Instructio
     const KnownRange &a = of(0, c), &b = of(in.size() > 1 ? 1 : 0, c);
     if (row.rule == ir::Rule::choose)
       out[c] = a.is_point() ? of(a.lo != 0 ? 1 : 2, c) : either(of(1, c), of(2, c));
-    else if (a && b)
-      out[c] = by_range_rule(row.range, a, b, in.size() > 1 && in[0] == in[1], type.scalar);
+    else if (a && b) {
+      const bool same = in.size() > 1 && in[0] == in[1];
+      out[c] = by_range_rule(row.range, a, b, same, type.scalar);
+      if (out[c] && type.is_float()) find_zeros(out[c], made.op, a, b, same);
+    }
   }
   return out;
 }
@@ -187,19 +218,22 @@ KnownRanges RangeWalker::chosen(const RangeFrame& frame, const ir::Instruction& 
   const ir::Function& f = *frame.function;
   const auto in = f.operands_of(made);
   KnownRanges out;
-  const auto lesser = [](const KnownRange& a, const KnownRange& b) {
-    return a && b ? KnownRange{std::min(a.lo, b.lo), std::min(a.hi, b.hi)} : KnownRange{};
+  const auto may_give_minus_zero = [](const KnownRange& a, const KnownRange& b) {
+    return !a.is_never_minus_zero() || !b.is_never_minus_zero();
   };
-  const auto greater = [](const KnownRange& a, const KnownRange& b) {
-    return a && b ? KnownRange{std::max(a.lo, b.lo), std::max(a.hi, b.hi)} : KnownRange{};
+  const auto lesser = [&](const KnownRange& a, const KnownRange& b) {
+    return a && b ? KnownRange{std::min(a.lo, b.lo), std::min(a.hi, b.hi), may_give_minus_zero(a, b)} : KnownRange{};
+  };
+  const auto greater = [&](const KnownRange& a, const KnownRange& b) {
+    return a && b ? KnownRange{std::max(a.lo, b.lo), std::max(a.hi, b.hi), may_give_minus_zero(a, b)} : KnownRange{};
   };
   for (uint32_t c = 0; c < f.type(made.first_result).width; ++c) {
     const auto of = [&](size_t operand) -> const KnownRange& {
       return frame.values[in[operand]][f.type(in[operand]).width == 1 ? 0 : c];
     };
     if (row == "saturate")
-      out[c] = of(0) ? KnownRange{std::clamp(of(0).lo, 0.0, 1.0), std::clamp(of(0).hi, 0.0, 1.0)}
-                     : KnownRange{0, 1};
+      out[c] = of(0) ? KnownRange{std::clamp(of(0).lo, 0.0, 1.0), std::clamp(of(0).hi, 0.0, 1.0), false}
+                     : KnownRange{0, 1, false};
     else if (row == "min")
       out[c] = lesser(of(0), of(1));
     else if (row == "max")

@@ -16,8 +16,18 @@ namespace isoshade::passes {
 /// The range of a component. By default it is unknown: then the component may be NaN or infinite, too.
 struct KnownRange {
   double lo = 1, hi = 0;
+  /// A float that is 0 may be -0.
+  bool may_be_minus_zero = true;
+  /// No float but 0 has a smaller magnitude.
+  double gap = 0x1p-126;
+
   explicit operator bool() const { return lo <= hi; }
   bool is_point() const { return lo == hi; }
+  bool is_zero() const { return lo == 0 && hi == 0; }
+  bool may_be_zero() const { return lo <= 0 && hi >= 0; }
+  bool is_never_minus_zero() const { return *this && (!may_be_zero() || !may_be_minus_zero); }
+  /// Whether the sign bit is known to be 0.
+  bool is_plus() const { return *this && lo >= 0 && is_never_minus_zero(); }
 };
 /// By component of a value.
 using KnownRanges = std::array<KnownRange, 4>;

@@ -11,8 +11,8 @@
 
 #include "compiler/functions/tier.h"
 #include "compiler/interface/skips.h"
-#include "compiler/passes/hoist.h"
 #include "compiler/ir/module.h"
+#include "compiler/passes/hoist.h"
 
 namespace isoshade::passes {
 
@@ -47,8 +47,8 @@ std::span<const ModulePass> multiplication_lowering();
 /// Called after each pass with its name.
 using Dump = std::function<void(std::string_view pass, const ir::Module&)>;
 
-/// Runs the passes in order, but for those of skips that are off; library functions get the bodies of the tier. With `check` (always in debug builds), a
-/// pass that leaves an invalid module is a bug.
+/// Runs the passes in order, but for those of skips that are off; library functions get the bodies of the tier. With
+/// `check` (always in debug builds), a pass that leaves an invalid module is a bug.
 void run(std::span<const ModulePass> passes, ir::Module& module, Entries& entries, functions::Tier tier,
          const Dump& dump = {}, bool check = false, const interface::Skips& skips = {});
 

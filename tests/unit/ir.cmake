@@ -13,6 +13,7 @@ isoshade_test(ir_test
 isoshade_test(passes_test
   SOURCES
     unit/passes_cut_long_test.cpp
+    unit/passes_decide_test.cpp
     unit/passes_golden_test.cpp
     unit/passes_hoist_test.cpp
     unit/passes_keep_bits_test.cpp
