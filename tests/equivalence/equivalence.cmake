@@ -16,6 +16,7 @@ function(equivalence_test name timeout)
 endfunction()
 
 equivalence_test(scenes_test 900)
+equivalence_test(branches_test 300)
 equivalence_test(tiers_test 900)
 equivalence_test(posts_test 300)
 equivalence_test(textures_test 300)
