@@ -15,6 +15,7 @@
 #include "compiler/lower/screen.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/pipeline.h"
+#include "compiler/prove/lights.h"
 #include "compiler/support/visible.h"
 #include "compiler/targets/cpp/cpp.h"
 
@@ -201,7 +202,7 @@ Program vertex_program(const check::TypedGraph& typed, size_t pass, const Effect
 /// The pixel program, or if it is `blended` the one of Stage::blend.
 Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect& effect,
                       const CompileOptions& options, uint32_t room, bool blended = false) {
-  lower::Lowered lowered = lower_with_buffers(typed, {pass});
+  lower::Lowered lowered = lower_with_buffers(typed, {.pass = pass, .light_lists = options.lights.lists});
   prepare(lowered, typed, pass, effect, options);
   lower::LightKinds lights = options.lights;
   lights.shadows &= typed.graph.passes[pass].receives_shadow;
@@ -256,9 +257,11 @@ std::optional<Effect> check_effect(const support::Source& source, const CompileO
                 environment_reads(*typed), typed};
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
+    const bool lists_lights = options.lights.lists && prove::judge_black_lights(*typed, i, options.tier).add_nothing;
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
-                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i), pass.casts_shadow,
-                             pass.casts_blended_shadow, pass.receives_shadow, pass.repeat, {}, {}, {}, {}});
+                             pass.double_sided, pass.blended, lists_lights, cutoff_parameter(*typed, i),
+                             pass.casts_shadow, pass.casts_blended_shadow, false, pass.receives_shadow, pass.repeat, {}, {},
+                             {}, {}});
   }
   return effect;
 }
@@ -268,18 +271,21 @@ void make_programs(Effect& effect, const CompileOptions& options) {
   effect.fixed = options.fixed;
   for (size_t i = 0; i < effect.passes.size(); ++i) {
     EffectPass& made = effect.passes[i];
+    CompileOptions of_pass = options;
+    of_pass.lights.lists &= made.black_lights_add_nothing;
     uint32_t room = first_draw_word(effect);
     made.vertex = vertex_program(typed, i, effect, options, room);
     room += draw_words(made.vertex);
     made.cutout = cutout_program(typed, i, effect, options, room);
     if (made.cutout) room += draw_words(*made.cutout);
-    made.pixel = pixel_program(typed, i, effect, options, room);
+    made.pixel = pixel_program(typed, i, effect, of_pass, room);
     effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
                              (made.cutout && reads_previous(*made.cutout));
-    made.receives_shadow &= std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
+    made.sums_lights = std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
       return std::holds_alternative<interface::source::LightCount>(binding.source);
     });
-    if (made.state.blend != interface::Blend::none) made.blend = pixel_program(typed, i, effect, options, room, true);
+    made.receives_shadow &= made.sums_lights;
+    if (made.state.blend != interface::Blend::none) made.blend = pixel_program(typed, i, effect, of_pass, room, true);
     room += std::max(draw_words(made.pixel), made.blend ? draw_words(*made.blend) : 0);
     effect.draw_words = std::max(effect.draw_words, room - first_draw_word(effect));
     if (!made.blend) continue;

@@ -90,6 +90,8 @@ Binding bind_light_count() {
   return {source::LightCount{}, {"light_count", ir::int_type, "", true}, light_count};
 }
 
+Binding bind_first_light() { return {source::FirstLight{}, {"first_light", ir::int_type, "", true}, distance}; }
+
 Binding bind_has_environment() {
   return {source::HasEnvironment{}, {"has_environment", ir::bool_type, "frame", true}, boolean};
 }

@@ -149,6 +149,8 @@ struct Image {
   uint32_t slot;  ///< in ImageSlots::slots
 };
 struct LightCount {};
+/// Where the lights of an object are listed; only in kernels, see LowerOptions.
+struct FirstLight {};
 /// Whether there is an environment.
 struct HasEnvironment {};
 struct ScreenValue {
@@ -175,7 +177,7 @@ struct TapCount {
 
 using Source =
     std::variant<source::Attribute, source::MatrixColumn, source::Time, source::PassRepetition, source::Input, source::Image,
-                 source::LightCount, source::HasEnvironment, source::ScreenValue, source::PixelOfImage, source::OffsetInPixel,
+                 source::LightCount, source::FirstLight, source::HasEnvironment, source::ScreenValue, source::PixelOfImage, source::OffsetInPixel,
                  source::SizeOfImage, source::TapCount>;
 
 /// Functions for std::visit, one an alternative: what forgets one does not compile.
@@ -201,6 +203,7 @@ Binding bind_time();
 /// `assumed`: of the pass; in a function, which any pass may call, assume::pass_index or pass_count.
 Binding bind_repetition(Repetition what, Assumption assumed);
 Binding bind_light_count();
+Binding bind_first_light();
 Binding bind_has_environment();
 /// `slot_name`: ImageSlot::name.
 Binding bind_image(uint32_t slot, std::string slot_name);

@@ -89,6 +89,7 @@ Place place_of(const Binding& binding, bool in_function) {
             return in_function ? Place(place::Argument{}) : Place(place::Parameter{});
           },
           [](const source::LightCount&) { return Place(place::Host{HostCall::light_count}); },
+          [](const source::FirstLight&) -> Place { support::bug("only kernels list lights"); },
           [](const source::HasEnvironment&) { return Place(place::Host{HostCall::has_environment}); },
           [](const source::ScreenValue& s) { return place_of(s.value); },
           [](const source::PixelOfImage&) { return Place(place::Point{}); },

@@ -279,6 +279,7 @@ ir::ValueId Body::argument(const interface::Binding& binding, const Node& node,
           },
           [&](const source::Image& s) { return environment_.image_slots[image_slots[s.slot]]; },
           [&](const source::LightCount&) { return environment_.light_count; },
+          [&](const source::FirstLight&) { return environment_.first_light; },
           [&](const source::HasEnvironment&) { return environment_.has_environment; },
           [&](const source::ScreenValue&) { return only_posts(); },
           [&](const source::PixelOfImage&) { return only_posts(); },
@@ -379,8 +380,10 @@ void Body::make_sum(uint32_t index) {
       tap_ = first == 0 ? turn : b_.op(ir::Opcode::iadd, {turn, b_.constant(first)});
     }
     if (asks_light) {
-      const std::array arguments{turn, environment_.surface[shown_position.index()]};
       b_.set_origin(add_origin("light", index));
+      const ir::ValueId first = environment_.first_light;
+      const ir::ValueId light = first == ir::none ? turn : b_.op(ir::Opcode::iadd, {first, turn});
+      const std::array arguments{light, environment_.surface[shown_position.index()]};
       light_ = b_.call(environment_.interface.find(interface::Host::light), arguments);
     }
     for (const uint32_t i : inside) make(i);
@@ -388,7 +391,14 @@ void Body::make_sum(uint32_t index) {
     const ir::ValueId added = read(summand).id();
     return std::vector{b_.op(ir::Opcode::fadd, {carried[0], added})};
   };
-  results_of(node)[0] = b_.loop(turns_of(index), initial.ids(), body).front();
+  ir::ValueId sum = b_.loop(turns_of(index), initial.ids(), body).front();
+  if (node.row->is<nodes::SumLights>()) {
+    // A negative sum too small for a float becomes -0, and a light that adds 0 would make that +0. So that it does not
+    // matter whether such a light is there, no sum is -0.
+    b_.set_origin(origin_of(index));
+    sum = b_.op(ir::Opcode::fadd, {sum, initial.id()});
+  }
+  results_of(node)[0] = sum;
 }
 
 ir::ValueId Body::turns_of(uint32_t sum) {

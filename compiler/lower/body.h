@@ -62,6 +62,7 @@ struct Environment {
   ir::ValueId time = ir::none;
   std::array<ir::ValueId, interface::repetition_count> repetition{ir::none, ir::none};
   ir::ValueId light_count = ir::none;
+  ir::ValueId first_light = ir::none;  ///< none: they are not listed
   ir::ValueId has_environment = ir::none;
   const ImageSlots* images = nullptr;
   std::vector<ir::ValueId> image_slots;  ///< of the slots: the texture, negative for none

@@ -149,7 +149,7 @@ std::vector<Binding> bind_input(const TypedGraph& graph, uint32_t index,
 
 class ModuleLowering {
  public:
-  explicit ModuleLowering(NodesOfOrigins* nodes) : nodes_(nodes) {}
+  explicit ModuleLowering(NodesOfOrigins* nodes, bool light_lists = false) : nodes_(nodes), light_lists_(light_lists) {}
 
   // Each adds the function of a document and what it calls. Its interface lists what the whole module asks its host for.
   interface::Interface add_function_document(const TypedGraph& graph);
@@ -187,6 +187,7 @@ class ModuleLowering {
   ir::Module module_;
   interface::Interface host_;  ///< only Interface::host: what the functions so far ask for
   NodesOfOrigins* nodes_;
+  const bool light_lists_;
   std::unordered_map<const TypedGraph*, Callee> functions_;
   ImageSlotTable images_;
   std::unordered_set<std::string> names_;
@@ -338,6 +339,7 @@ void ModuleLowering::add_images_and_lights(const TypedGraph& graph, const Needs&
   for (uint32_t i = 0; i < reads.size(); ++i)
     if (reads[i]) bindings.push_back(interface::bind_image(i, images.slots[i].name));
   if (needs.lights) bindings.push_back(interface::bind_light_count());
+  if (needs.lights && light_lists_) bindings.push_back(interface::bind_first_light());
 }
 
 /// What an effect's or a post's parameters are bound to, as far as they are needed.
@@ -401,7 +403,7 @@ std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
 }
 
 Lowered lower(const TypedGraph& graph, const LowerOptions& options) {
-  ModuleLowering lowering(options.nodes);
+  ModuleLowering lowering(options.nodes, options.light_lists);
   interface::Interface made;
   switch (graph.graph.kind) {
     case DocumentKind::function: made = lowering.add_function_document(graph); break;

@@ -32,6 +32,7 @@ struct LowerOptions {
   size_t pass = 0;  ///< of an effect
   PassPart part = PassPart::color;
   NodesOfOrigins* nodes = nullptr;  ///< if given, filled
+  bool light_lists = false;         ///< lights are asked for by their places in a list, see first_light below
 };
 
 /// The module of a function document or of one pass of an effect: the functions that it uses, one a document,
@@ -56,6 +57,7 @@ struct LowerOptions {
 ///   parameters.NAME  uniform; of the effect, in its order
 ///   images.NAME      int, uniform: a texture (sampling.h), or negative for none; of image_slots()
 ///   light_count      int, uniform: where there is a sum over lights
+///   first_light      int, uniform, with LowerOptions::light_lists: the index of the first of them, 0 without
 /// What a light gives comes from light_at(index: int uniform, position: vec3) -> (direction: vec3, color:
 /// vec3), which is declared without a body where it is needed (see add_pixel_kernel). So are environment_at and
 /// irradiance_at (environment.h).

@@ -62,6 +62,7 @@ Environment::Environment(ir::Builder& b, const check::TypedGraph& graph,
                      image_slots[s.slot] = id;
                    },
                    [&](const source::LightCount&) { light_count = id; },
+                   [&](const source::FirstLight&) { first_light = id; },
                    [&](const source::HasEnvironment&) { has_environment = id; },
                    [&](const source::ScreenValue& s) { screen.values[static_cast<size_t>(s.value)] = id; },
                    [&](const source::PixelOfImage& s) {

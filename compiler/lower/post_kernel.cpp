@@ -70,6 +70,7 @@ class ScreenPoint {
             [&](const source::Image&) { return only_effects(); },
             [&](const source::PassRepetition&) { return only_effects(); },
             [&](const source::LightCount&) { return only_effects(); },
+            [&](const source::FirstLight&) { return only_effects(); },
             [&](const source::Time&) { return k_.load(FrameBuffer::frame, k_.constant(frame_word::time)).value; },
             [&](const source::HasEnvironment&) { return has_environment(k_, has_environment_); },
             [&](const source::Input& s) { return field(column_word(record_, s, type)); },

@@ -77,13 +77,13 @@ Vec4 to_clip(Kernel& k, Int matrix, Vec3 position) {
 class SurfaceArguments {
  public:
   SurfaceArguments(Kernel& k, SurfacePoint& surface, Int object, const interface::RecordLayout& record,
-                   ir::ValueId light_count, std::optional<bool> has_environment = false)
+                   ir::ValueId light_count, LightKinds lights = {.environment = false})
       : k_(k),
         surface_(surface),
         object_(object),
         record_(record),
         light_count_(light_count),
-        has_environment_(has_environment) {}
+        lights_(lights) {}
 
   std::vector<ir::ValueId> of(const interface::Interface& interface) {
     std::vector<ir::ValueId> values;
@@ -110,8 +110,9 @@ class SurfaceArguments {
             },
             [&](const source::Input& s) { return field(column_word(record_, s, parameter.type)); },
             [&](const source::Image& s) { return field(record_.images[s.slot]); },
-            [&](const source::LightCount&) { return light_count_; },
-            [&](const source::HasEnvironment&) { return has_environment(k_, has_environment_); },
+            [&](const source::LightCount&) { return lights_.lists ? field(object_word::light_count) : light_count_; },
+            [&](const source::FirstLight&) { return field(object_word::first_light); },
+            [&](const source::HasEnvironment&) { return has_environment(k_, lights_.environment); },
             [&](const source::ScreenValue&) { return screen(); },
             [&](const source::PixelOfImage&) { return screen(); },
             [&](const source::OffsetInPixel&) { return screen(); },
@@ -128,7 +129,7 @@ class SurfaceArguments {
   Int object_;
   const interface::RecordLayout& record_;
   ir::ValueId light_count_;
-  std::optional<bool> has_environment_;
+  LightKinds lights_;
   std::function<ir::ValueId(const interface::Binding&)> screen_;  ///< made when it is first asked for
 };
 
@@ -140,11 +141,13 @@ Float distance_falloff(Kernel& k, Int record, Float squared_distance) {
   return (window * window) / max(squared_distance, Float(1e-8f));
 }
 
-/// light_at(index, position)
+/// light_at(index, position); the index is that of a light, or of its place in a list.
 void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
   if (kinds.shadows) add_shadow_at(module);
   Kernel k(module, function);
-  k.b.finish(light_values(k, k.integer(0) * Int(light_word::stride), k.vector3(1), kinds));
+  const Int index = k.integer(0);
+  const Int record = kinds.lists ? to_int(k.load(FrameBuffer::lights, index)) : index * Int(light_word::stride);
+  k.b.finish(light_values(k, record, k.vector3(1), kinds));
 }
 
 }  // namespace
@@ -321,11 +324,11 @@ namespace {
 
 /// What a pixel shows, in a kernel whose first parameters are x, y, the triangle, the object and the number of lights.
 ir::ValueId color_of_pixel(Kernel& k, const interface::Interface& interface, const interface::RecordLayout& record,
-                           std::optional<bool> has_environment) {
+                           LightKinds lights) {
   const Int object = k.integer(3);
   SurfacePoint surface(k, object, attributes_of_pixel(k, k.integer(0), k.integer(1), k.integer(2)),
                        seen_at_pixel(k, k.integer(0), k.integer(1), k.integer(2)), record.previous);
-  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4), has_environment);
+  SurfaceArguments arguments(k, surface, object, record, k.b.parameter(4), lights);
   return k.b.call(interface.entry, arguments.of(interface))[0];
 }
 
@@ -362,7 +365,7 @@ uint32_t add_pixel_kernel(ir::Module& module, const interface::Interface& interf
                           const interface::RecordLayout& record, LightKinds lights) {
   define_for_pixels(module, interface, lights);
   Kernel k(module, "pixel", pixel_parameters(), {{"color", ir::vector_type(4)}});
-  k.b.finish(std::array{color_of_pixel(k, interface, record, lights.environment)});
+  k.b.finish(std::array{color_of_pixel(k, interface, record, lights)});
   return k.index;
 }
 
@@ -372,7 +375,7 @@ uint32_t add_blend_kernel(ir::Module& module, const interface::Interface& interf
   std::vector<ir::Parameter> parameters = pixel_parameters();
   parameters.push_back({"backdrop", ir::vector_type(4), "", false});
   Kernel k(module, "blend", std::move(parameters), {{"color", ir::vector_type(4)}, {"depth", ir::float_type}});
-  const Vec4 source = k.named("source", Vec4(k.b, color_of_pixel(k, interface, record, lights.environment)));
+  const Vec4 source = k.named("source", Vec4(k.b, color_of_pixel(k, interface, record, lights)));
   const Vec4 color = k.named("color", blended(blend, source, k.vector4(5)));
   k.b.finish(std::array{color.value, depth_of_pixel(k).value});
   return k.index;

@@ -49,6 +49,7 @@ struct LightKinds {
   bool point = true;
   bool spot = true;
   bool shadows = false;  ///< whether any has a shadow that the surface receives
+  bool lists = false;    ///< each object lists its lights: object_word::first_light; only of passes that are lowered so
   std::optional<bool> environment = {};  ///< whether there is one, if that is known
 };
 

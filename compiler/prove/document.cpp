@@ -20,7 +20,19 @@ constexpr double beyond_texels = 1 + 0x1p-20;
 /// What the mip levels of a texture are at most, in 1/65536.
 constexpr double most_level = 13 * 65536;
 
-/// What a host answers, by the results of its function; nothing where the body says it.
+/// Whether it reads how far things have moved.
+bool is_motion(const TypedGraph& graph, const interface::HostFunction& host) {
+  if (host.host != interface::Host::image || host.image < lower::post_image(1)) return false;
+  const size_t image = host.image - lower::post_image(1);
+  return image < graph.graph.images.size() && graph.graph.images[image].name == graph::motion_image_name;
+}
+Given motion_answer() {
+  constexpr auto farthest = static_cast<double>(lower::farthest_motion);
+  return {"motion", -farthest, farthest};
+}
+
+}  // namespace
+
 std::vector<Given> answer_of(interface::Host host) {
   const auto texel = [](Answer answer, double beyond) {
     Given color{"texel", interface::assume::color.lo, interface::assume::color.hi * beyond};
@@ -53,17 +65,6 @@ std::vector<Given> answer_of(interface::Host host) {
   return {};
 }
 
-/// Whether it reads how far things have moved.
-bool is_motion(const TypedGraph& graph, const interface::HostFunction& host) {
-  if (host.host != interface::Host::image || host.image < lower::post_image(1)) return false;
-  const size_t image = host.image - lower::post_image(1);
-  return image < graph.graph.images.size() && graph.graph.images[image].name == graph::motion_image_name;
-}
-Given motion_answer() {
-  constexpr auto farthest = static_cast<double>(lower::farthest_motion);
-  return {"motion", -farthest, farthest};
-}
-
 Given given_of(const TypedGraph& graph, const interface::Binding& binding) {
   const ir::Parameter& parameter = binding.parameter;
   const interface::Assumption& assumed = binding.assumed;
@@ -78,8 +79,6 @@ Given given_of(const TypedGraph& graph, const interface::Binding& binding) {
   if (parameter.type == ir::int_type) given.hi = std::min(given.hi, 0x1p31 - 1);
   return given;
 }
-
-}  // namespace
 
 std::optional<std::vector<Subject>> subjects_of(const TypedGraph& graph, support::Diagnostics& diagnostics,
                                                 functions::Tier tier) {

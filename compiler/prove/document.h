@@ -41,6 +41,11 @@ struct NotProved {
 /// The same without a report; nothing is shown.
 NotProved count(const Subject& subject, const Proof& proof);
 
+/// What is assumed of what the document's function takes from outside, and of what a host answers: of each result of its
+/// function, or nothing where the body tells.
+Given given_of(const check::TypedGraph& graph, const interface::Binding& binding);
+std::vector<Given> answer_of(interface::Host host);
+
 /// The effort for each subject of a document: they share the error analysis time of one function.
 Effort effort_for(const std::vector<Subject>& subjects);
 

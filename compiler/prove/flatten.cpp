@@ -417,4 +417,33 @@ std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const
   return tape;
 }
 
+std::optional<Tape> make_tape_of_terms(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
+                                       const std::function<std::vector<Given>(uint32_t)>& outside,
+                                       functions::Tier tier) {
+  Tape tape;
+  tape.tier = tier;
+  tape.module = module;
+  Pool pool(tape);
+  if (!flatten(pool, function, given, outside)) return std::nullopt;
+  std::vector<bool> found(tape.operations.size());
+  std::vector<uint32_t> open;
+  const auto find = [&](uint32_t operation) {
+    if (!found[operation]) open.push_back(operation);
+    found[operation] = true;
+  };
+  for (const Tape::Output& output : tape.outputs) find(output.operation);
+  tape.outputs.clear();
+  while (!open.empty()) {
+    const uint32_t operation = open.back();
+    open.pop_back();
+    // What a loop carries from turn to turn is unknown, and is no part of a sum.
+    if (pool[operation].kind == Kind::unknown) return std::nullopt;
+    if (pool[operation].kind == Kind::sum)
+      tape.outputs.push_back({"term " + std::to_string(tape.outputs.size()), pool.operands(operation)[0]});
+    for (const uint32_t operand : pool.operands(operation)) find(operand);
+  }
+  put_in_order(pool);
+  return tape;
+}
+
 }  // namespace isoshade::prove
