@@ -184,6 +184,10 @@ class Backend {
   /// What ran on a device with a clock of its own; empty without one.
   virtual std::vector<DeviceStep> device_steps() const { return {}; }
 
+  /// Who has drawn what is in `layers`; null if nobody says so.
+  const void* drawer() const { return drawer_; }
+  void set_drawer(const void* drawer) { drawer_ = drawer; }
+
   // The images of a frame lie in one array, `layers`, where programs read them. It lives on from frame to frame.
 
   /// Makes the array this long before a frame is drawn; what was in it is lost. Reports arrays beyond the backend's limit.
@@ -215,6 +219,7 @@ class Backend {
 
  private:
   threads::Workers workers_;
+  const void* drawer_ = nullptr;
 };
 
 }  // namespace isoshade::backends

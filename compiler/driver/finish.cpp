@@ -26,6 +26,7 @@ std::optional<passes::DrawRate> draw_rate(Stage stage, uint32_t first) {
   rate.integers = number(FrameBuffer::object_integers);
   rate.first = first;
   rate.buffers = {number(FrameBuffer::objects), number(FrameBuffer::textures), number(FrameBuffer::frame)};
+  rate.late_words = {lower::object_word::first_light, lower::object_word::light_count};
   switch (stage) {
     case Stage::vertex: rate.parameter = 1; break;
     case Stage::cutout: rate.parameter = 3; break;
@@ -35,6 +36,7 @@ std::optional<passes::DrawRate> draw_rate(Stage stage, uint32_t first) {
       // Where the images lie is up to the backend.
       namespace word = lower::image_word;
       rate.buffers.push_back(number(FrameBuffer::view));
+      rate.late_words.clear();
       rate.records = {number(FrameBuffer::layer_records), word::stride, {word::width, word::height}};
       break;
     case Stage::setup:

@@ -17,7 +17,7 @@ std::vector<Row> light_rows() {
        Color3,
        Light::color},
       {"sum_lights",
-       "The sum of `in` over the lights of the scene, in scene order, starting from 0.",
+       "The sum of `in` over the lights of the scene, in scene order, starting from 0; never -0.",
        {{"in", AnyFloat, "the contribution of one light"}},
        AnyFloat,
        SumLights{}},

@@ -78,9 +78,17 @@ const RatesOfFunction& Rates::of(uint32_t function, const std::vector<bool>& par
   return known_.emplace(key, std::move(made)).first->second;
 }
 
+bool Rates::is_late(const Function& f, const std::vector<InstructionId>& made_by, InstructionId address) const {
+  if (address == none || f.instructions[address].op != Opcode::iadd) return false;
+  return std::ranges::any_of(f.operands_of(f.instructions[address]), [&](ValueId value) {
+    const bool is_constant = made_by[value] != none && f.instructions[made_by[value]].op == Opcode::constant;
+    return is_constant && std::ranges::count(rate_.late_words, f.instructions[made_by[value]].imm) != 0;
+  });
+}
+
 bool Rates::is_same_load(const Function& f, const std::vector<InstructionId>& made_by, const Instruction& load) const {
-  if (std::ranges::count(rate_.buffers, load.imm) != 0) return true;
   const InstructionId index = made_by[f.operands_of(load)[0]];
+  if (std::ranges::count(rate_.buffers, load.imm) != 0) return load.imm != rate_.floats || !is_late(f, made_by, index);
   if (!rate_.records || rate_.records->buffer != load.imm || index == none) return false;
   const Instruction& word = f.instructions[index];
   return word.op == Opcode::constant && std::ranges::count(rate_.records->words, word.imm % rate_.records->stride) != 0;

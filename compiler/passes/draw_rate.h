@@ -30,6 +30,7 @@ class Rates {
 
  private:
   friend class RateWalk;
+  bool is_late(const ir::Function& f, const std::vector<ir::InstructionId>& made_by, ir::InstructionId address) const;
   bool is_same_load(const ir::Function& f, const std::vector<ir::InstructionId>& made_by, const ir::Instruction& load) const;
 
   const ir::Module& module_;

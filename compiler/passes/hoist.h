@@ -22,6 +22,7 @@ struct DrawRate {
     std::vector<uint32_t> words;
   };
   std::optional<Records> records;
+  std::vector<uint32_t> late_words;  ///< of the draw's record: written only when the values have been computed
   uint32_t floats = 0, integers = 0;  ///< the buffer of the records; the same memory as integers
   uint32_t first = 0;                 ///< the word of the record from which on values may be stored
 };

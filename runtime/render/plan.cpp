@@ -33,6 +33,24 @@ Size size_of(const Scene& scene, const PlanOptions& options) {
 
 }  // namespace
 
+/// Finds whether any program reads the time.
+bool Planner::find_time() {
+  const auto reads = [](const driver::Program& program) {
+    return std::ranges::any_of(program.bindings, [](const interface::Binding& binding) {
+      return std::holds_alternative<interface::source::Time>(binding.source);
+    });
+  };
+  const auto effect_reads = [&](const driver::Effect& effect) {
+    return std::ranges::any_of(effect.passes, [&](const driver::EffectPass& pass) {
+      return reads(pass.vertex) || reads(pass.pixel) || (pass.blend && reads(*pass.blend)) ||
+             (pass.cutout && reads(*pass.cutout));
+    });
+  };
+  plan_.views_read_time = std::ranges::any_of(plan_.effects, effect_reads);
+  return plan_.views_read_time ||
+         std::ranges::any_of(plan_.post_documents, [&](const driver::Post& post) { return reads(post.program); });
+}
+
 /// Whether the text at `where` may name the file. Files that the user names have no `where`, or one in an argument.
 bool Planner::may_read(const std::string& path, const support::Span& where) {
   const check::Library* library = options_.compiler.library;
@@ -260,6 +278,7 @@ void Planner::begin(const Scene& scene, Diagnostics& diagnostics) {
   scene_ = &scene;
   diagnostics_ = &diagnostics;
   plan_.stats = {};
+  plan_.skips = options_.compiler.skips;
 }
 
 bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
@@ -276,6 +295,7 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   compile_effects();
   for (const driver::Effect& effect : plan_.effects) report_draw_values(effect, skipped_in_programs_);
   report_fixed();
+  reads_time_ = find_time();
   compile_seconds += clock.lap();
   backends::Frame& frame = plan_.frame;
   programs_without_motion_ = frame.programs.size();
@@ -319,9 +339,11 @@ bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
 bool Planner::update_frame_words() {
   const lanes::FpGuard guard;
   const std::vector<float> now = std::exchange(frame_now_, frame_words(*scene_, environment_));
+  const bool reads_time = reads_time_ || !skips(interface::Skip::frames);
+  if (!reads_time) frame_now_[lower::frame_word::time] = 0;
   const std::vector<float> earlier = std::exchange(frame_earlier_, frame_now_);
   const double time = static_cast<double>(scene_->time) - 1 / static_cast<double>(scene_->frames_per_second);
-  frame_earlier_[lower::frame_word::time] =
+  if (reads_time) frame_earlier_[lower::frame_word::time] =
       scene::canonical(scene_->before != nullptr ? scene_->before->time : static_cast<float>(time));
   return now == frame_now_ && (earlier == frame_earlier_ || !has_motion_);
 }

@@ -61,6 +61,8 @@ struct Plan {
   std::vector<RecordOrigin> origins;  ///< of the records of frame.objects but for those of motion, in their order
   std::optional<MotionPlan> motion;  ///< if a post reads it
   PostChain posts;
+  interface::Skips skips;  ///< those of the options
+  bool views_read_time = false;  ///< a program of a view may; posts may read it, too
   PlanStats stats;
 
   Plan() = default;

@@ -9,6 +9,7 @@
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/visible.h"
 #include "runtime/lanes/lanes.h"
+#include "runtime/render/light_reach.h"
 #include "runtime/render/planner.h"
 
 namespace isoshade::render {
@@ -26,6 +27,7 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
     kinds.point |= light.kind == scene::LightKind::point;
     kinds.spot |= light.kind == scene::LightKind::spot;
     kinds.shadows |= light.shadow.has_value();
+    kinds.lists |= may_be_left_out(light);
   }
   return kinds;
 }
@@ -45,7 +47,7 @@ std::string Compiled::key_of(const check::TypedGraph& typed, const driver::Compi
   const lower::LightKinds& lights = options.lights;
   std::string key;
   for (const bool bit : {options.reference, lights.directional, lights.point, lights.spot, lights.shadows,
-                         lights.environment.has_value(), lights.environment.value_or(false)})
+                         lights.lists, lights.environment.has_value(), lights.environment.value_or(false)})
     key += bit ? '1' : '0';
   key += std::to_string(static_cast<int>(options.tier));
   for (const std::optional<float>& word : options.fixed)
@@ -62,6 +64,7 @@ std::string Compiled::key_of(const check::TypedGraph& typed, const driver::Compi
 driver::CompileOptions Planner::compile_options() const {
   driver::CompileOptions options = options_.compiler;
   options.lights = kinds_of(scene_->lights);
+  options.lights.lists &= skips(interface::Skip::lights);
   options.lights.environment = scene_->environment.has_value();
   return options;
 }

@@ -5,6 +5,8 @@
 #include <span>
 #include <type_traits>
 
+#include "runtime/render/light_reach.h"
+
 namespace isoshade::render {
 namespace {
 
@@ -109,7 +111,7 @@ std::string key_of_programs(const scene::Scene& scene) {
                background, objects, sort, posts, output, animated, before] = scene;
   Key key;
   key.add(environment.has_value()).add(lights.size());
-  for (const scene::Light& light : lights) key.add(light.kind).add(light.shadow.has_value());
+  for (const scene::Light& light : lights) key.add(light.kind).add(light.shadow.has_value()).add(may_be_left_out(light));
   key.add(objects.size());
   for (const scene::Object& object : objects)
     key.add(object.effect).add(object.effect_where).add(object.receives_shadow);

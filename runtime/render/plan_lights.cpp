@@ -50,13 +50,14 @@ void Planner::add_lights(const scene::View& picture) {
   for (const scene::Light& light : scene_->lights) {
     auto record = scene::light_record(light);
     const bool is_black = light.intensity == 0 || light.color == glm::vec3(0);
-    const std::vector<ShadowMap> maps = light.shadow && !is_black
+    const bool is_left_out = is_black && skips(interface::Skip::shadows);
+    const std::vector<ShadowMap> maps = light.shadow && !is_left_out
                                             ? shadow_maps(light, placed_.hulls, picture, workers_)
                                             : std::vector<ShadowMap>{};
     if (light.shadow && maps.empty())
       plan_.stats.skips.push_back(
-          {interface::Skip::shadows, "shadow of " + light.name, is_black ? "the light is black" : "it darkens nothing that is seen",
-           light.name});
+          {interface::Skip::shadows, "shadow of " + light.name,
+           is_left_out ? "the light is black" : "it darkens nothing that is seen", light.name});
     note_largest_shadow(light, maps.size());
     if (!maps.empty()) {
       const size_t place = frame.views.size() + (has_opaque_view_ ? 1 : 0);

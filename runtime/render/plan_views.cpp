@@ -223,11 +223,11 @@ void Planner::append_blended(Seen& all) {
   }
 }
 
-namespace {
-
 bool same_bits(std::span<const float> a, std::span<const float> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
+
+namespace {
 
 bool is_same(const backends::Draw& a, const backends::Draw& b) {
   const auto& [vertex_program, pixel_program, object, projected, first_vertex, vertex_count, indices, state, mirrored, cutout,
@@ -286,6 +286,7 @@ bool Planner::make_views(int width, int height) {
   const lanes::FpGuard guard;
   frame.frame = frame_now_;
   add_views(width, height);
+  list_lights();
   begin_motion(width, height);
   Seen all;
   all.views.resize(cameras_.size());

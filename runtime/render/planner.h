@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a plan is made, for the files of this folder that make it: plan.cpp compiles and collects, plan_place.cpp writes
-// the records of all copies, plan_compile.cpp makes the programs, plan_views.cpp lists what each view draws, plan_lights.cpp places the shadow maps.
+// the records of all copies, plan_compile.cpp makes the programs, plan_views.cpp lists what each view draws,
+// plan_lights.cpp places the shadow maps, plan_light_lists.cpp lists the lights of each copy.
 #pragma once
 
 #include <map>
@@ -47,6 +48,7 @@ class Planner {
   };
   void begin(const scene::Scene& scene, support::Diagnostics& diagnostics);
   bool check_effects();
+  bool find_time();
   /// Whether any program may read other maps of the environment than the sharp one (driver::EnvironmentReads).
   bool reads_blurred_maps() const;
   /// Adds the maps of the environment behind the textures. False after an error.
@@ -189,6 +191,25 @@ class Planner {
   void note_largest_shadow(const scene::Light& light, size_t maps);
   void look_at_hulls(const scene::View& picture);
 
+  // The lights of each copy (plan_light_lists.cpp).
+  /// By the number of the light.
+  struct LightsOfCopy {
+    std::vector<bool> reaching, shining;
+  };
+  /// What was made of the lights and the objects.
+  struct LightLists {
+    std::vector<float> lights = {};  ///< their records
+    uint64_t objects = 0;            ///< Revisions::objects
+    bool is_eye_ordinary = false;
+    std::vector<float> words = {};  ///< what stands behind the records
+    std::vector<Skipped> skips = {};
+    int64_t left_out = 0;
+  };
+  /// Appends the lists behind the records of the lights, and writes to each record of an object where its own is.
+  void list_lights();
+  LightsOfCopy lights_of(const PlacedCopy& copy) const;
+  bool is_ordinary(const PlacedCopy& copy) const;
+
   // How far things have moved (plan_motion.cpp), if a post reads that.
   bool may_read_motion() const;
   void begin_motion(int width, int height);
@@ -227,6 +248,7 @@ class Planner {
   size_t programs_without_motion_ = 0;
   std::map<uint32_t, uint32_t> motion_programs_;  ///< by the program of the cut-out
   bool has_motion_ = false;                       ///< a post may read it
+  bool reads_time_ = false;                       ///< a program may; otherwise frames differ by nothing but their time
 
   std::vector<scene::View> cameras_;                     ///< of each view of the frame
   size_t shadow_maps_ = 0;                               ///< the views that begin the frame
@@ -236,6 +258,10 @@ class Planner {
   std::vector<Skipped> skipped_in_programs_;
   bool draws_read_frame_ = false;                        ///< what is the same for a draw may depend on it
   std::vector<float> lights_before_, frame_before_;  ///< arrays of the frame before, to compare with
+  LightLists light_lists_;                           ///< of the frame before
+  std::optional<bool> has_ordinary_texels_;          ///< of textures; they stay
+  std::vector<bool> has_ordinary_mesh_;              ///< by mesh
+  uint64_t vertices_of_ordinary_ = 0;                ///< Revisions::vertices of these
   std::vector<const driver::Program*> programs_before_;
   std::vector<uint32_t> cutouts_before_;
   glm::mat4 projection_before_{1};
@@ -243,6 +269,8 @@ class Planner {
 
 /// A number that no array has had so far.
 uint64_t next_revision();
+
+bool same_bits(std::span<const float> a, std::span<const float> b);
 
 /// How many copies are worth a task.
 inline constexpr size_t copies_of_part = 64;

@@ -63,16 +63,18 @@ class FrameRenderer {
     }
   }
 
-  /// With `search`, looks after each step for pixels that are not finite; the layout must be that of steps apart.
-  bool run(bool search) {
-    if (!backend_.reserve(layout_.floats, diagnostics_)) return false;
+  /// Draws the views that are not kept, and what comes behind them. With `search`, looks after each step for pixels that
+  /// are not finite; the layout must be that of steps apart, and no view is kept.
+  bool run(bool search, const std::vector<bool>& is_kept) {
+    const bool keeps = std::ranges::count(is_kept, true) > 0;
+    if (!keeps && !backend_.reserve(layout_.floats, diagnostics_)) return false;
     for (size_t v = 0; v < frame_.views.size(); ++v) {
       const std::span<const float> words(frame_.views[v].words);
       backend_.write(layout_.views[v].camera, words.first(lower::view_word::camera_words));
     }
     memory_.vertices_.clear();
     for (size_t v = 0; v < frame_.views.size(); ++v)
-      if (!draw_view(v, search)) return false;
+      if (!is_kept[v] && !draw_view(v, search)) return false;
     if (plan_.motion && !draw_motion(*plan_.motion)) return false;
     for (const StepGroup& group : layout_.groups) {
       if (!run_posts(group)) return false;
@@ -357,16 +359,30 @@ bool Renderer::draw(const Plan& plan, DrawStats& stats, support::Diagnostics& di
   const std::vector<backends::DeviceStep> device_before = backend_.device_steps();
   const FrameLayout* used = &layout;
   std::optional<FrameLayout> apart;
-  if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false)) return false;
+  const bool may_keep = plan.skips.has(interface::Skip::frames) && backend_.drawer() == this;
+  const std::vector<bool> is_kept = may_keep ? drawn_.views_of(plan, layout) : std::vector<bool>(plan.frame.views.size());
+  stats.views = static_cast<int64_t>(plan.frame.views.size());
+  stats.kept_views = std::ranges::count(is_kept, true);
+  stats.is_kept = stats.kept_views == stats.views && drawn_.has_posts_of(plan, layout);
+  if (stats.is_kept) {
+    stats.device = device_before;
+    for (backends::DeviceStep& step : stats.device) step.seconds = 0;
+    return true;
+  }
+  drawn_ = {};
+  backend_.set_drawer(this);
+  if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false, is_kept)) return false;
   stats.device = backend_.device_steps();
   for (size_t i = 0; i < stats.device.size(); ++i) stats.device[i].seconds -= device_before[i].seconds;
   if (!backend_.is_finite()) {
     used = &apart.emplace(plan, true);
     DrawStats searched;
     if (!check_images(plan, *used, diagnostics) ||
-        !FrameRenderer(plan, *used, *this, searched, diagnostics).run(true))
+        !FrameRenderer(plan, *used, *this, searched, diagnostics).run(true, std::vector<bool>(plan.frame.views.size())))
       return false;
     stats.non_finite = std::move(searched.non_finite);
+  } else {
+    drawn_ = DrawnFrame(plan, layout);
   }
   color_ = used->images[static_cast<size_t>(plan.posts.result)];
   depth_ = used->views.back().depth;

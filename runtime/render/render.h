@@ -6,6 +6,7 @@
 
 #include "runtime/raster/clip.h"
 #include "runtime/render/draw_evaluator.h"
+#include "runtime/render/kept.h"
 #include "runtime/render/plan.h"
 #include "runtime/scene/image_file.h"
 
@@ -19,7 +20,8 @@ class Renderer {
 
   /// Draws the views in their order (vertex programs, clipping and snapping, pixel programs), then runs the posts over the
   /// picture. Every backend takes the same steps on the same numbers. If a pixel is not finite, the frame is drawn once
-  /// more, step by step, to find what made it so. Reports errors of the device.
+  /// more, step by step, to find what made it so. What has not changed since the last frame is not drawn again
+  /// (Skip::frames), unless another renderer has drawn with the backend since then. Reports errors of the device.
   bool draw(const Plan& plan, DrawStats& stats, support::Diagnostics& diagnostics);
   /// The picture that was drawn last; valid until the backend is used again. A device of its own gives it back only now.
   scene::ImageView image();
@@ -32,6 +34,7 @@ class Renderer {
   support::Array<int32_t> triangles_;
   raster::Clipper clipper_;
   DrawEvaluator evaluator_;  ///< for posts
+  DrawnFrame drawn_;  ///< the frame that was drawn last
   backends::Slot color_, depth_;  ///< of the picture that was drawn last
 };
 

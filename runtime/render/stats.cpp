@@ -81,6 +81,7 @@ std::string text(const PlanStats& stats) {
   if (stats.posts > 0)
     text += fmt::format("posts:    {}{}\n", stats.posts,
                         stats.sample_posts > 0 ? fmt::format(", {} for each sample", stats.sample_posts) : "");
+  if (stats.left_out_lights > 0) text += fmt::format("lights:   {} left out of sums\n", stats.left_out_lights);
   return text + text_of_skips(stats.in_programs) + text_of_skips(stats.skips);
 }
 
@@ -94,6 +95,9 @@ std::string text(const DrawStats& stats) {
       stats.made_vertices, 1e3 * stats.draw_seconds);
   if (stats.samples > 1)
     text += fmt::format("samples:  {} a pixel\n", stats.samples);
+  if (stats.kept_views > 0)
+    text += fmt::format("kept:     {} of {} views{}\n", stats.kept_views, stats.views,
+                        stats.is_kept ? ", and the whole frame" : "");
   if (stats.kept_images > 0)
     text += fmt::format("posts:    {:.1f} ms; {} run with what is before them; at most {} images at a time\n",
                         1e3 * stats.post_seconds, stats.fused_posts, stats.kept_images);

@@ -40,6 +40,7 @@ struct PlanStats {
   double environment_seconds = 0;   ///< to compute or find its maps
   int64_t texture_bytes = 0;              ///< that they take
   int64_t lights = 0;
+  int64_t left_out_lights = 0;  ///< summed over what is drawn: lights that it does not sum up
   int64_t posts = 0;  ///< that are run
   int64_t sample_posts = 0;  ///< of them, those that are run for each sample
   double compile_seconds = 0, plan_seconds = 0;
@@ -51,6 +52,9 @@ struct DrawStats {
   int64_t triangles = 0;      ///< left by clipping and culling
   int64_t made_vertices = 0;  ///< by clipping
   int samples = 1;            ///< a pixel
+  int64_t views = 0;          ///< of the frame: shadow maps, the picture
+  int64_t kept_views = 0;     ///< that show what they showed in the last frame, and were not drawn again
+  bool is_kept = false;       ///< nothing has changed since the last frame, and nothing was drawn
   int64_t kept_images = 0;    ///< the most images that the post chain kept at a time, with the new one
   int64_t fused_posts = 0;    ///< posts that were run right after what is before them, pixel by pixel
   NonFiniteReport non_finite;

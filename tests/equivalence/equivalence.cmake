@@ -32,6 +32,8 @@ equivalence_test(motion_test 600)
 target_link_libraries(motion_test PRIVATE isoshade_reference)
 equivalence_test(parameters_test 600)
 equivalence_test(views_test 300)
+equivalence_test(skips_test 300)
+equivalence_test(random_scenes_test 7200)
 equivalence_test(pure_test 900)
 target_sources(pure_test PRIVATE equivalence/pure_host.cpp equivalence/pure_subject.cpp)
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether light arrives at a box.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "compiler/lower/frame_layout.h"
+#include "runtime/scene/scene.h"
+
+namespace isoshade::render {
+
+using LightRecord = std::span<const float, lower::light_word::stride>;
+
+/// A box in world space along the axes. In double: it decides what is drawn, never how.
+struct ReachBox {
+  double low[3], high[3];
+};
+/// Around everything between the corners. It is wider by more than what rounding moves points that are interpolated between
+/// them.
+ReachBox box_around(std::span<const glm::vec3> corners);
+
+/// Whether a light may be left out for some object.
+bool may_be_left_out(const scene::Light& light);
+
+bool is_black(LightRecord light);
+/// False if the colour that arrives (lower::light_values) is 0 at every point of the box.
+bool reaches(LightRecord light, const ReachBox& box);
+
+}  // namespace isoshade::render
