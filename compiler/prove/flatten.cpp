@@ -425,22 +425,35 @@ std::optional<Tape> make_tape_of_terms(const ir::Module& module, uint32_t functi
   tape.module = module;
   Pool pool(tape);
   if (!flatten(pool, function, given, outside)) return std::nullopt;
-  std::vector<bool> found(tape.operations.size());
-  std::vector<uint32_t> open;
-  const auto find = [&](uint32_t operation) {
-    if (!found[operation]) open.push_back(operation);
-    found[operation] = true;
+  /// Everything that some operations are made of, and they themselves.
+  const auto parts_of = [&](std::vector<uint32_t> open) {
+    std::vector<bool> found(tape.operations.size());
+    std::vector<uint32_t> parts;
+    while (!open.empty()) {
+      const uint32_t operation = open.back();
+      open.pop_back();
+      if (found[operation]) continue;
+      found[operation] = true;
+      parts.push_back(operation);
+      open.insert(open.end(), pool.operands(operation).begin(), pool.operands(operation).end());
+    }
+    return parts;
   };
-  for (const Tape::Output& output : tape.outputs) find(output.operation);
+  const auto is_sum = [&](uint32_t operation) { return pool[operation].kind == Kind::sum; };
+  const auto differentiates_sum = [&](uint32_t operation) {
+    // Derivatives of anything but inputs have answers of unknown error.
+    const Operation& asked = pool[operation];
+    if (asked.kind != Kind::asked || asked.index != static_cast<uint32_t>(Answer::unknown)) return false;
+    return std::ranges::any_of(parts_of({operation}), is_sum);
+  };
+  std::vector<uint32_t> results;
+  for (const Tape::Output& output : tape.outputs) results.push_back(output.operation);
   tape.outputs.clear();
-  while (!open.empty()) {
-    const uint32_t operation = open.back();
-    open.pop_back();
+  for (const uint32_t operation : parts_of(results)) {
     // What a loop carries from turn to turn is unknown, and is no part of a sum.
-    if (pool[operation].kind == Kind::unknown) return std::nullopt;
-    if (pool[operation].kind == Kind::sum)
+    if (pool[operation].kind == Kind::unknown || differentiates_sum(operation)) return std::nullopt;
+    if (is_sum(operation))
       tape.outputs.push_back({"term " + std::to_string(tape.outputs.size()), pool.operands(operation)[0]});
-    for (const uint32_t operand : pool.operands(operation)) find(operand);
   }
   put_in_order(pool);
   return tape;

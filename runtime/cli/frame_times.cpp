@@ -62,6 +62,10 @@ std::string text(const Measured& measured) {
                    spread->upper - spread->lower);
     text += "\n";
   }
+  if (measured.kept_views > 0)
+    text += line("kept      %lld of %zu frames, and %lld of %lld views, as they were\n",
+                 static_cast<long long>(measured.kept_frames), measured.frames.size(),
+                 static_cast<long long>(measured.kept_views), static_cast<long long>(measured.views));
   return text;
 }
 
@@ -92,6 +96,7 @@ std::string json(const Measured& measured) {
   const ordered_json all{{"isoshade_frame_times", 1},       {"scene", measured.scene},   {"backend", measured.backend},
                          {"threads", measured.threads},     {"width", measured.width},   {"height", measured.height},
                          {"samples", measured.samples},     {"frames", measured.frames.size()},
+                         {"kept_frames", measured.kept_frames}, {"views", measured.views}, {"kept_views", measured.kept_views},
                          {"milliseconds", std::move(steps)}, {"skipped", std::move(skips)}};
   return all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
@@ -143,6 +148,9 @@ std::string measured_schema() {
                         {"height", whole("of the picture, in pixels", 1)},
                         {"samples", whole("per pixel", 1)},
                         {"frames", whole("how many were rendered", 1)},
+                        {"kept_frames", whole("frames that were as the one before, and not drawn", 0)},
+                        {"views", whole("pictures and shadow maps of all frames", 1)},
+                        {"kept_views", whole("of these, those that were not drawn again", 0)},
                         {"milliseconds", object(std::move(steps))},
                         {"skipped",
                          {{"type", "array"},

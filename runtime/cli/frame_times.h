@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ class StepTimes {
 struct Measured {
   std::string scene, backend;
   int threads = 1, width = 0, height = 0, samples = 1;
+  int64_t kept_frames = 0;        ///< were as the one before, and not drawn
+  int64_t views = 0, kept_views = 0;  ///< of all frames: shadow maps and pictures, and those that were not drawn
   std::vector<StepTimes> frames;  ///< in their order; at least one
   std::vector<render::Skipped> skipped;  ///< of the first frame
 };

@@ -184,6 +184,9 @@ class FrameSequence {
     if (frame == 0)
       for (const auto* skipped : {&plan->stats.in_programs, &plan->stats.skips})
         measured_.skipped.insert(measured_.skipped.end(), skipped->begin(), skipped->end());
+    measured_.kept_frames += stats.is_kept ? 1 : 0;
+    measured_.views += stats.views;
+    measured_.kept_views += stats.kept_views;
     return arguments_.fail_on_nan && !stats.non_finite.none() ? different : success;
   }
 

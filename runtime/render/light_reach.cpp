@@ -33,21 +33,19 @@ bool is_outside_cone(LightRecord light, const ReachBox& box) {
 
 }  // namespace
 
-ReachBox box_around(std::span<const glm::vec3> corners) {
+ReachBox box_around(const glm::vec3& low, const glm::vec3& high, const glm::mat4& model) {
   ReachBox box;
-  double largest = 0;
   for (int i = 0; i < 3; ++i) {
-    box.low[i] = HUGE_VAL;
-    box.high[i] = -HUGE_VAL;
-    for (const glm::vec3& corner : corners) {
-      box.low[i] = std::min(box.low[i], double{corner[i]});
-      box.high[i] = std::max(box.high[i], double{corner[i]});
+    double least = model[3][i], most = least, magnitude = std::abs(least);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = double{model[axis][i]} * double{low[axis]}, b = double{model[axis][i]} * double{high[axis]};
+      least += std::min(a, b);
+      most += std::max(a, b);
+      magnitude += std::max(std::abs(a), std::abs(b));
     }
-    largest = std::max({largest, std::abs(box.low[i]), std::abs(box.high[i])});
-  }
-  for (int i = 0; i < 3; ++i) {
-    box.low[i] -= rounding * largest;
-    box.high[i] += rounding * largest;
+    // The terms of a coordinate may cancel each other, their roundings do not.
+    box.low[i] = least - rounding * magnitude;
+    box.high[i] = most + rounding * magnitude;
   }
   return box;
 }
@@ -65,6 +63,7 @@ bool is_black(LightRecord light) {
 bool reaches(LightRecord light, const ReachBox& box) {
   const auto kind = static_cast<scene::LightKind>(light[word::kind]);
   if (kind == scene::LightKind::directional) return true;
+  if (!std::ranges::all_of(light, [](float value) { return std::isfinite(value); })) return true;
   double distance2 = 0;
   for (size_t i = 0; i < 3; ++i) {
     const double at = light[word::position + i];

@@ -61,7 +61,7 @@ Planner::LightsOfCopy Planner::lights_of(const PlacedCopy& copy) const {
   const size_t count = scene_->lights.size();
   LightsOfCopy lights;
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[copy.object]];
-  const ReachBox box = box_around(corners_of(mesh.low, mesh.high, 0, copy.model));
+  const ReachBox box = box_around(mesh.low, mesh.high, copy.model);
   for (size_t i = 0; i < count; ++i) {
     constexpr int stride = lower::light_word::stride;
     const LightRecord record = std::span(plan_.frame.lights).subspan(i * stride).first<stride>();

@@ -153,6 +153,12 @@ TEST_F(LightsOf, EffectsWhoseFactorMayBeInfiniteStay) {
                             "term": {"type": "expression", "code": "c * w.x", "c": "c", "w": "w"})json"), 0);
 }
 
+TEST_F(LightsOf, EffectsThatDifferentiateTheSumStay) {
+  const std::string term = R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"},
+    "light": {"type": "sum_lights", "in": "term"}, "w": {"type": "fwidth", "in": "light"})json";
+  EXPECT_EQ(left_out_of(term, R"json({"type": "add", "in1": "light", "in2": "w"})json"), 0);
+}
+
 /// Draws frames one after the other with one renderer, with the skip and without, and counts what was kept.
 class Frames : public ::testing::Test {
  protected:

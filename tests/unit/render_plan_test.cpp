@@ -304,7 +304,7 @@ TEST_F(PlanTest, FrameHoldsCameraLightsAndBackground) {
   EXPECT_EQ(made->frame.light_count, 2);
   EXPECT_EQ(made->frame.lights.size(), 2u * lower::light_word::stride);
   EXPECT_EQ(made->frame.lights[lower::light_word::stride + lower::light_word::color], 5.0f);
-  EXPECT_EQ(made->frame.frame, (std::vector<float>{2.5f, -1}));  // no environment
+  EXPECT_EQ(made->frame.frame, (std::vector<float>{0, -1}));  // nothing reads the time, and there is no environment
   EXPECT_EQ(made->frame.picture().words.size(), static_cast<size_t>(lower::view_word::camera_words));
   const auto words = [&](int first, size_t count) {
     const float* const from = made->frame.picture().words.data() + first;
