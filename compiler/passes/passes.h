@@ -73,8 +73,8 @@ void dce(ir::Module& module, std::vector<uint32_t>& entries);
 /// Needs: bodies for all calls. Leaves: comparisons that are constants, for fold.
 void decide(ir::Module& module, functions::Tier tier);
 
-/// How many operations (ir/expansion.h) one side of a branch must save at least. A test of all lanes and a move for each
-/// result cost about as much as five; pixels that disagree on a condition save nothing.
+/// How many operations (ir/expansion.h) one side of a branch must save at least. They are well above the test of all lanes
+/// and the moves of results, because pixels that disagree on a condition save nothing.
 struct SinkLimits {
   uint64_t varying = 32;
   uint64_t uniform = 8;  ///< where the condition is the same for all pixels
@@ -83,7 +83,7 @@ struct SinkLimits {
 /// Sinks what only one outcome of a choice needs into a branch, which lanes and pixels skip where none needs it. Selects on
 /// one condition of which none needs another become one branch, if what one operand of each alone needs
 /// reaches the limits; branches take in, too, what only one side of them uses. Bit-exact: all is pure, and a select
-/// never looks at the operand that it does not choose. Bodies of the library stay: they were measured as they are.
+/// never looks at the operand that it does not choose. Bodies of the library stay: they are written without branches.
 /// Returns how many branches were made.
 /// Needs: a valid module; constants folded, or costs are overestimated. Leaves: choices on the condition of a branch
 /// inside of its sides, for fold.
