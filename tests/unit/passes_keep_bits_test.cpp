@@ -333,13 +333,13 @@ TEST(PassesKeepEveryBit, AnySequence) {
     RandomModule random(seed + 77);
     for (int i = 0; i < 8; ++i) {
       Entries entries{m.find("main")};
-      switch (random.below(6)) {
+      switch (random.below(7)) {
         case 0: renumber(m); break;
-        case 4: sink(m, {2, 1}); break;
         case 1: cse(m); break;
         case 2: fold(m); break;
         case 3: hide_foldables(m, {}); break;
         case 4: renumber(m), drop_unread(m, entries.functions); break;
+        case 5: sink(m, {2, 1}); break;
         default: renumber(m), dce(m, entries.functions);
       }
       ASSERT_EQ(ir::validate(m), "");
