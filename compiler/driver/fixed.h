@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of parameters that are known when programs are compiled: what follows from them is computed then, and what they
-// switch off is no part of the programs.
+// Values of parameters that are known when programs are compiled: what follows from them is computed then, and what
+// they switch off is no part of the programs.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace isoshade::driver {
 
-/// By word of a record (ParameterBlock): its value, if it is fixed, as records hold it. Empty: none is fixed. An image is
-/// fixed only to -1. The records have all words nonetheless.
+/// By word of a record (ParameterBlock): its value, if it is fixed, as records hold it. Empty: none is fixed. An image
+/// is fixed only to -1. The records have all words nonetheless.
 using FixedWords = std::vector<std::optional<float>>;
 
 /// Whether a record could have given these values.

@@ -25,12 +25,12 @@ struct Variant {
   std::vector<size_t> members;  ///< in what variants_of() was given
 };
 
-inline constexpr size_t max_variants = 4;  ///< of one effect or post document: each is compiled by itself
+inline constexpr size_t max_variants = 4;  ///< of one effect or post document
 
-/// Groups what gives values to one block: those that differ in switches (booleans, integers, and whether there is an image)
-/// are told apart, unless that makes more than max_variants. `reads`: whether the programs read a word.
-std::vector<std::vector<size_t>> groups_of(const driver::ParameterBlock& block, std::span<const driver::FixedWords> given,
-                                           const std::vector<bool>& reads);
+/// Groups what gives values to one block: those that differ in switches (booleans, integers, whether there is an image) are
+/// told apart, unless that makes more than max_variants. `reads`: whether the programs read a word.
+std::vector<std::vector<size_t>> groups_of(const driver::ParameterBlock& block,
+                                           std::span<const driver::FixedWords> given, const std::vector<bool>& reads);
 
 /// By word of the record: whether programs read it.
 std::vector<bool> read_words(const driver::Effect& effect);
@@ -39,8 +39,9 @@ std::vector<bool> read_words(const driver::Post& post);
 uint64_t operations(const driver::Effect& effect);
 uint64_t operations(const driver::Post& post);
 
-/// Makes programs for the values that are `given`: for those that all have in common, or several where that saves at least
-/// a quarter of the operations on average. Each is compiled by itself. `make(fixed)` compiles the document.
+/// Makes programs for the values that are `given`: for those that all have in common, or several where that saves a quarter
+/// of the operations on average. A compiler takes time for each of them, so together they have at most a quarter more than
+/// the programs for all. `make(fixed)` compiles the document.
 template <class Document, class Make>
 std::vector<Variant<Document>> variants_of(const driver::ParameterBlock& block, std::span<const driver::FixedWords> given,
                                            const Make& make) {
@@ -56,12 +57,16 @@ std::vector<Variant<Document>> variants_of(const driver::ParameterBlock& block, 
   const auto groups = groups_of(block, given, read_words(whole[0].document));
   if (groups.size() == 1) return whole;
   std::vector<Variant<Document>> variants;
-  uint64_t sum = 0;
+  uint64_t run = 0, compiled = 0;
   for (const std::vector<size_t>& group : groups) {
     variants.push_back(made_for(group));
-    sum += operations(variants.back().document) * group.size();
+    const uint64_t count = operations(variants.back().document);
+    compiled += count;
+    run += count * group.size();
   }
-  return 4 * sum <= 3 * operations(whole[0].document) * given.size() ? std::move(variants) : std::move(whole);
+  const uint64_t of_whole = operations(whole[0].document);
+  const bool saves = 4 * run <= 3 * of_whole * given.size() && 4 * compiled <= 5 * of_whole;
+  return saves ? std::move(variants) : std::move(whole);
 }
 
 /// The names of fields and images, one of whose words is fixed otherwise than `given` or not given at all.

@@ -83,9 +83,9 @@ class Compiled;
 
 /// Plans one scene after the other, such as the frames of an animation, and keeps what the next one has in common with
 /// the last: effects, meshes, textures, maps of environments, values of parameters, and records. Each plan is what
-/// plan_frame() makes of its scene; arrays that have not changed keep their revisions. A parameter for one value
-/// of which programs were compiled, and which then has another one, becomes one of PlanOptions::changing. Files are read once: what is
-/// written to them later has no effect.
+/// plan_frame() makes of its scene; arrays that have not changed keep their revisions. If a parameter changes for whose
+/// value programs were compiled, it becomes one of PlanOptions::changing, so that this happens once. Files are read once:
+/// what is written to them later has no effect.
 class FramePlanner {
  public:
   /// What the options point to must outlive the planner.

@@ -137,8 +137,8 @@ TEST_F(Parameters, ThatDifferByObjectAreReadOrMakeVariants) {
 
   folder_.write("switched.json", R"json({"isoshade": 1, "effect": "switched",
     "parameters": {"noisy": {"type": "boolean", "value": false}, "tint": {"type": "color3", "value": [0.5, 0.5, 0.5]}},
-    "nodes": {"noise": {"type": "fractal3d", "to": "float"},
-              "color": {"type": "expression", "code": "tint * (noisy ? noise : 1)", "tint": "tint", "noise": "noise", "noisy": "noisy"}},
+    "nodes": {"noise": {"type": "fractal3d", "to": "float"}, "cells": {"type": "worleynoise2d"},
+              "color": {"type": "expression", "code": "tint * (noisy ? noise : cells)", "tint": "tint", "noise": "noise", "cells": "cells", "noisy": "noisy"}},
     "passes": [{"name": "base", "color": "color"}]})json");
   const scene::Scene shown = scene(objects({ball("a", "switched.json", -1.5f, R"("parameters": {"tint": [0.8, 0.6, 0.4]})"),
                                             ball("b", "switched.json", 0, R"("parameters": {"noisy": true})"),
