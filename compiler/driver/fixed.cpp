@@ -4,7 +4,6 @@
 #include <bit>
 
 #include "compiler/passes/bind.h"
-#include "runtime/lanes/float_rules.h"
 
 namespace isoshade::driver {
 
