@@ -174,7 +174,8 @@ class ChangedScene : public FramePlanner {
       "parameters": {"map": {"type": "filename", "value": "a.png"}, "tint": {"type": "color3", "value": [1, 1, 1]},
                      "second": {"type": "boolean", "value": true}},
       "nodes": {"uv": {"type": "texcoord"}, "picture": {"type": "image", "file": {"link": "map"}, "texcoord": "uv"},
-                "color": {"type": "multiply", "in1": "picture", "in2": "tint"}},
+                "t": {"type": "time"}, "tinted": {"type": "multiply", "in1": "picture", "in2": "tint"},
+                "color": {"type": "multiply", "in1": "tinted", "in2": "t"}},
       "passes": [{"name": "base", "color": "color"}, {"name": "again", "enabled": "second", "color": "tint"}]})");
     for (const char* name : {"a.png", "b.png"}) {
       std::vector<uint8_t> bytes(4 * 16, name[0] == 'a' ? 90 : 200);
