@@ -46,7 +46,8 @@ struct EffectPass {
   std::optional<size_t> enabled;       ///< index of a parameter field; the pass is drawn if it is not 0
   std::optional<size_t> double_sided;  ///< index of a parameter field; no face is culled if it is not 0
   std::optional<size_t> blended;       ///< index of a parameter field; the pass is opaque if it is 0
-  bool black_lights_add_nothing = false;  ///< known if CompileOptions::lights.lists asks: then `pixel` and `blend` list theirs
+  /// See prove::BlackLights; only known where CompileOptions::lights asks for lists. Then `pixel` and `blend` read them.
+  bool black_lights_add_nothing = false;
   std::optional<size_t> cutoff;        ///< index of a parameter field; there is no cut-out if it is 0 or less
   bool casts_shadow = true, casts_blended_shadow = false;  ///< the second: where it is blended
   bool sums_lights = false;     ///< its color depends on lights

@@ -21,40 +21,40 @@ constexpr Effort effort{.proof = 1'000'000, .later = 0, .error = 0, .samples = 0
 
 /// Whether an input of a document is as assumed in every scene whose values are ordinary (BlackLights).
 bool is_ordinary(const interface::Binding& binding) {
-  return std::visit(
-      interface::Cases{
-          [](const source::Attribute& s) {
-            switch (s.value.attribute) {
-              case interface::Surface::position:
-              case interface::Surface::normal:
-              case interface::Surface::texcoord:
-              case interface::Surface::texcoord1:
-              case interface::Surface::view_direction:
-              case interface::Surface::tangent:
-              case interface::Surface::bitangent:
-              case interface::Surface::color:
-              case interface::Surface::outline_normal:
-              case interface::Surface::front_facing: return true;
-              case interface::Surface::shown_position:
-              case interface::Surface::previous_position:
-              case interface::Surface::pixel_size:
-              case interface::Surface::corner_normal1:
-              case interface::Surface::corner_normal2:
-              case interface::Surface::corner_normal3: return false;
-            }
-            return false;
-          },
-          [](const source::PassRepetition&) { return true; },
-          [](const source::Input&) { return true; },
-          [](const source::Image&) { return true; },
-          [](const source::LightCount&) { return true; },
-          [](const source::HasEnvironment&) { return true; },
-          [](const auto&) { return false; },
-      },
-      binding.source);
+  return std::visit(interface::Cases{
+                        [](const source::Attribute& s) {
+                          switch (s.value.attribute) {
+                            case interface::Surface::position:
+                            case interface::Surface::normal:
+                            case interface::Surface::texcoord:
+                            case interface::Surface::texcoord1:
+                            case interface::Surface::view_direction:
+                            case interface::Surface::tangent:
+                            case interface::Surface::bitangent:
+                            case interface::Surface::color:
+                            case interface::Surface::outline_normal:
+                            case interface::Surface::front_facing: return true;
+                            case interface::Surface::shown_position:
+                            case interface::Surface::previous_position:
+                            case interface::Surface::pixel_size:
+                            case interface::Surface::corner_normal1:
+                            case interface::Surface::corner_normal2:
+                            case interface::Surface::corner_normal3: return false;
+                          }
+                          return false;
+                        },
+                        [](const source::PassRepetition&) { return true; },
+                        [](const source::Input&) { return true; },
+                        [](const source::Image&) { return true; },
+                        [](const source::LightCount&) { return true; },
+                        [](const source::HasEnvironment&) { return true; },
+                        [](const auto&) { return false; },
+                    },
+                    binding.source);
 }
 
-/// What is asked of a host is as assumed: of its lights because they are black, of textures because texels are ordinary.
+/// What is asked of a host is as assumed: of its lights because they are black, of textures because texels are
+/// ordinary.
 bool is_ordinary(interface::Host host) {
   switch (host) {
     case interface::Host::light:
@@ -122,7 +122,8 @@ class Judge {
     if (tape->outputs.empty()) return {true, ""};
     const Proof proof = prove(*tape, effort);
     if (proof.vacuous || proof.unfinished || !proof.unproved.empty() || !proof.later.empty()) {
-      const uint32_t place = proof.unproved.empty() ? 0 : tape->operations[proof.unproved.front().operation].place;
+      const uint32_t place =
+          proof.unproved.empty() ? 0 : tape->operations[proof.unproved.front().operation].place;
       return {false, "\"" + tape->places[place].node + "\" may not be finite"};
     }
     for (const Bound& bound : proof.outputs)

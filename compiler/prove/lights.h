@@ -10,9 +10,9 @@
 namespace isoshade::prove {
 
 struct BlackLights {
-  /// A light whose colour is 0 adds +0 or -0 to every sum, so that a sum has the same bits without it (a sum begins with
-  /// +0 and is never -0). This relies on what the runtime sees to before it leaves a light out: the values that a scene gives lie
-  /// within what `isoshade check` assumes (Planner::is_ordinary).
+  /// A light whose colour is 0 adds +0 or -0 to every sum, so that a sum has the same bits without it (a sum is never
+  /// -0). This relies on what the runtime sees to before it leaves a light out: the values that a scene gives lie within
+  /// what `isoshade check` assumes (Planner::is_ordinary).
   bool add_nothing = false;
   std::string reason;  ///< why that is not known; empty if it is
 };

@@ -38,7 +38,8 @@ ReachBox box_around(const glm::vec3& low, const glm::vec3& high, const glm::mat4
   for (int i = 0; i < 3; ++i) {
     double least = model[3][i], most = least, magnitude = std::abs(least);
     for (int axis = 0; axis < 3; ++axis) {
-      const double a = double{model[axis][i]} * double{low[axis]}, b = double{model[axis][i]} * double{high[axis]};
+      const double a = double{model[axis][i]} * double{low[axis]},
+                   b = double{model[axis][i]} * double{high[axis]};
       least += std::min(a, b);
       most += std::max(a, b);
       magnitude += std::max(std::abs(a), std::abs(b));

@@ -17,14 +17,16 @@ using LightRecord = std::span<const float, lower::light_word::stride>;
 struct ReachBox {
   double low[3], high[3];
 };
-/// Around a box in object space. It is wider by more than what rounding moves points that are interpolated between vertices.
+/// Around a box in object space. It is wider by more than what rounding moves points that are interpolated between
+/// vertices.
 ReachBox box_around(const glm::vec3& low, const glm::vec3& high, const glm::mat4& model);
 
 /// Whether a light may be left out for some object.
 bool may_be_left_out(const scene::Light& light);
 
 bool is_black(LightRecord light);
-/// False if the colour that arrives (lower::light_values) is 0 at every point of the box. True if the light is not finite.
+/// False if the colour that arrives (lower::light_values) is 0 at every point of the box. True if the light is not
+/// finite.
 bool reaches(LightRecord light, const ReachBox& box);
 
 }  // namespace isoshade::render

@@ -43,7 +43,8 @@ bool has_ordinary_vertices(const StoredMesh& mesh, std::span<const float> vertic
 /// Whether all numbers that programs may read of a copy are as `isoshade check` assumes, see prove::BlackLights.
 bool Planner::is_ordinary(const PlacedCopy& copy) const {
   namespace word = lower::object_word;
-  const size_t passes = plan_.effects[effect_of_object_[copy.object]].passes.size() * parameters_[copy.object].size();
+  const size_t passes =
+      plan_.effects[effect_of_object_[copy.object]].passes.size() * parameters_[copy.object].size();
   const auto words = static_cast<size_t>(record_words(copy.object));
   for (size_t p = copy.first_pass; p < copy.first_pass + passes; ++p) {
     const PlacedPass& pass = placed_.passes[p];
@@ -83,8 +84,8 @@ void Planner::list_lights() {
   LightLists lists{.lights = frame.lights};
   const glm::vec3 eye = glm::abs(scene_->camera.position);
   lists.is_eye_ordinary = std::max({eye.x, eye.y, eye.z}) <= limit;
-  if (lists.is_eye_ordinary == light_lists_.is_eye_ordinary && light_lists_.objects == frame.revisions.objects &&
-      same_bits(lists.lights, light_lists_.lights)) {
+  if (lists.is_eye_ordinary == light_lists_.is_eye_ordinary &&
+      light_lists_.objects == frame.revisions.objects && same_bits(lists.lights, light_lists_.lights)) {
     frame.lights.insert(frame.lights.end(), light_lists_.words.begin(), light_lists_.words.end());
     plan_.stats.skips.insert(plan_.stats.skips.end(), light_lists_.skips.begin(), light_lists_.skips.end());
     plan_.stats.left_out_lights = light_lists_.left_out;
@@ -92,11 +93,13 @@ void Planner::list_lights() {
   }
 
   if (!has_ordinary_texels_)
-    has_ordinary_texels_ = lie_within(std::span(frame.texels).first(texels_of_textures_), assume::color.lo, assume::color.hi);
+    has_ordinary_texels_ =
+        lie_within(std::span(frame.texels).first(texels_of_textures_), assume::color.lo, assume::color.hi);
   if (vertices_of_ordinary_ != frame.revisions.vertices) {
     vertices_of_ordinary_ = frame.revisions.vertices;
     has_ordinary_mesh_.clear();
-    for (const StoredMesh& mesh : plan_.meshes) has_ordinary_mesh_.push_back(has_ordinary_vertices(mesh, frame.vertices));
+    for (const StoredMesh& mesh : plan_.meshes)
+      has_ordinary_mesh_.push_back(has_ordinary_vertices(mesh, frame.vertices));
   }
   const bool may_leave_out = lists.is_eye_ordinary && *has_ordinary_texels_;
   struct Part {
@@ -114,7 +117,8 @@ void Planner::list_lights() {
     const auto [found, is_new] = list_at.try_emplace(lights, first + lists.words.size());
     // A word of a record holds whole numbers up to here. There is always room for the list of all, which comes first.
     constexpr size_t most_words = size_t{1} << 24;
-    if (is_new && first + lists.words.size() + count > most_words) return list_at.erase(found), list_at.at(all);
+    if (is_new && first + lists.words.size() + count > most_words)
+      return list_at.erase(found), list_at.at(all);
     if (is_new)
       for (size_t i = 0; i < count; ++i)
         if (lights[i]) lists.words.push_back(static_cast<float>(i * lower::light_word::stride));
@@ -158,7 +162,8 @@ void Planner::list_lights() {
     if (left_out[o] == 0) continue;
     lists.left_out += left_out[o];
     lists.skips.push_back({interface::Skip::lights,
-                           std::to_string(left_out[o]) + " of " + std::to_string(asked[o]) + " lights of " + scene_->objects[o].name,
+                           std::to_string(left_out[o]) + " of " + std::to_string(asked[o]) + " lights of " +
+                               scene_->objects[o].name,
                            "they are black or do not reach it"});
   }
   lists.objects = frame.revisions.objects;

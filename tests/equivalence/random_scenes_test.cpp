@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes made at random of shipped effects and posts: the same bits with everything skipped that can be, and with nothing
-// skipped. With ISOSHADE_FULL set there are many more; ISOSHADE_SEEDS=first,last runs those of a report again.
+// Scenes made at random of shipped effects and posts: the same bits with everything skipped that can be, and with
+// nothing skipped. With ISOSHADE_FULL set there are many more; ISOSHADE_SEEDS=first,last runs those of a report again.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,8 @@ class RandomScene {
   std::string text() {
     std::string members = R"("camera": {"position": )" + vector(-6, 6, 1, 7, 5, 11) + R"(, "target": )" +
                           vector(-1, 1, -1, 1, -1, 1) + R"(, "fov": )" + number(25, 70) + "},\n";
-    members += R"("background": [0.1, 0.2, 0.3, 1], "lights": {)" + list(1 + below(12), [&](int i) { return light(i); }) + "},\n";
+    members += R"("background": [0.1, 0.2, 0.3, 1], "lights": {)" +
+               list(1 + below(12), [&](int i) { return light(i); }) + "},\n";
     members += "\"objects\": {" + list(1 + below(5), [&](int i) { return object(i); }) + "}";
     if (below(2) == 0) members += ",\n\"posts\": [" + list(1 + below(2), [&](int) { return post(); }) + "]";
     return isoshade::testing::scene_text(members);
@@ -28,7 +29,9 @@ class RandomScene {
 
  private:
   int below(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
-  double between(double low, double high) { return low + (high - low) * static_cast<double>(random_()) * 0x1p-32; }
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_()) * 0x1p-32;
+  }
   std::string number(double low, double high) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", between(low, high));
@@ -60,18 +63,23 @@ class RandomScene {
   }
 
   std::string object(int i) {
-    static constexpr const char* meshes[] = {
-        R"({"type": "sphere", "segments": 16, "rings": 8})", R"("box")", R"({"type": "plane", "size": [9, 6], "segments": 3})",
-        R"({"type": "torus", "radius": 0.8, "tube": 0.3})"};
-    static constexpr const char* effects[] = {"../materials/cook_torrance.json", "../effects/cartoon.json", "../materials/gltf_pbr.json",
-                                              "../effects/flat.json", "../effects/force_field.json", "../effects/smoke.json",
-                                              "../effects/cross_hatching.json", "../effects/tinted_glass.json"};
+    static constexpr const char* meshes[] = {R"({"type": "sphere", "segments": 16, "rings": 8})", R"("box")",
+                                             R"({"type": "plane", "size": [9, 6], "segments": 3})",
+                                             R"({"type": "torus", "radius": 0.8, "tube": 0.3})"};
+    static constexpr const char* effects[] = {
+        "../materials/cook_torrance.json", "../effects/cartoon.json",
+        "../materials/gltf_pbr.json",      "../effects/flat.json",
+        "../effects/force_field.json",     "../effects/smoke.json",
+        "../effects/cross_hatching.json",  "../effects/tinted_glass.json"};
     const std::string effect = effects[below(std::size(effects))];
     std::string text = "\"object" + std::to_string(i) + "\": {\"mesh\": " + meshes[below(std::size(meshes))];
     text += ", \"effect\": \"" + effect + "\", \"transform\": {\"translate\": " + vector(-4, 2, -1, 2, -4, 3);
-    text += ", \"rotate\": " + vector(-90, 90, -90, 90, -90, 90) + ", \"scale\": " + vector(0.3, 2, 0.3, 2, 0.3, 2) + "}";
+    text += ", \"rotate\": " + vector(-90, 90, -90, 90, -90, 90) +
+            ", \"scale\": " + vector(0.3, 2, 0.3, 2, 0.3, 2) + "}";
     text += ", \"parameters\": {" + parameters(effect) + "}";
-    if (below(3) == 0) text += ", \"repeat\": [{\"count\": " + std::to_string(2 + below(4)) + ", \"step\": " + vector(1, 3, 0, 1, 0, 1) + "}]";
+    if (below(3) == 0)
+      text += ", \"repeat\": [{\"count\": " + std::to_string(2 + below(4)) +
+              ", \"step\": " + vector(1, 3, 0, 1, 0, 1) + "}]";
     return text + "}";
   }
 
@@ -79,13 +87,17 @@ class RandomScene {
   std::string parameters(const std::string& effect) {
     std::string text;
     for (const driver::Field& field : fields_of(effect)) {
-      const bool is_number = field.type == "float" || field.type == "color3" || field.type == "vector2" || field.type == "vector3";
+      const bool is_number = field.type == "float" || field.type == "color3" || field.type == "vector2" ||
+                             field.type == "vector3";
       if (!is_number || below(2) == 0) continue;
       const auto value = [&](size_t i) {
         const double usual = field.value[i];
-        const double low = field.min ? double{*field.min} : usual - 1, high = field.max ? double{*field.max} : low + 2 * (usual - low) + 1;
+        const double low = field.min ? double{*field.min} : usual - 1,
+                     high = field.max ? double{*field.max} : low + 2 * (usual - low) + 1;
         // The ends are what programs treat apart.
-        return below(4) == 0 ? number(low, low) : below(6) == 0 ? number(high, high) : number(low, std::min(high, low + 2));
+        return below(4) == 0   ? number(low, low)
+               : below(6) == 0 ? number(high, high)
+                               : number(low, std::min(high, low + 2));
       };
       if (!text.empty()) text += ", ";
       text += "\"" + field.name + "\": ";
@@ -106,16 +118,19 @@ class RandomScene {
     check::Library library(ISOSHADE_GRAPHS "/library");
     driver::CompileOptions options;
     options.library = &library;
-    const auto made = driver::compile_effect(graph::read_source(ISOSHADE_GRAPHS "/scenes/" + effect, diagnostics), options, diagnostics);
+    const auto made = driver::compile_effect(
+        graph::read_source(ISOSHADE_GRAPHS "/scenes/" + effect, diagnostics), options, diagnostics);
     EXPECT_TRUE(made) << diagnostics.text();
     if (made) found->second = made->parameters.fields;
     return found->second;
   }
 
   std::string post() {
-    static constexpr const char* posts[] = {"../effects/distance_fog.json", "../effects/height_fog.json", "../effects/tonemap_aces.json"};
+    static constexpr const char* posts[] = {"../effects/distance_fog.json", "../effects/height_fog.json",
+                                            "../effects/tonemap_aces.json"};
     const int number = posts_++;
-    return "{\"name\": \"post" + std::to_string(number) + "\", \"effect\": \"" + posts[below(std::size(posts))] + "\"}";
+    return "{\"name\": \"post" + std::to_string(number) + "\", \"effect\": \"" +
+           posts[below(std::size(posts))] + "\"}";
   }
 
   std::mt19937 random_;
@@ -128,7 +143,8 @@ struct Seeds {
 
 Seeds seeds(uint64_t count, uint64_t full_count) {
   Seeds chosen{0, std::getenv("ISOSHADE_FULL") != nullptr ? full_count : count};
-  if (const char* given = std::getenv("ISOSHADE_SEEDS")) std::sscanf(given, "%lu,%lu", &chosen.first, &chosen.last);
+  if (const char* given = std::getenv("ISOSHADE_SEEDS"))
+    std::sscanf(given, "%lu,%lu", &chosen.first, &chosen.last);
   return chosen;
 }
 
@@ -139,7 +155,8 @@ TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
   int64_t left_out = 0;
   for (uint64_t seed = first; seed < last; ++seed) {
     const std::string text = RandomScene(seed).text();
-    const scene::Scene scene = load(std::make_shared<support::SourceFile>(ISOSHADE_GRAPHS "/scenes/random.json", text));
+    const scene::Scene scene =
+        load(std::make_shared<support::SourceFile>(ISOSHADE_GRAPHS "/scenes/random.json", text));
     const render::Plan all = plan(scene, 31, 23, false), with = plan(scene, 31, 23);
     ASSERT_FALSE(::testing::Test::HasFailure()) << "seed " << seed << ": " << text;
     left_out += with.stats.left_out_lights;

@@ -48,7 +48,8 @@ int64_t left_out(const scene::Scene& scene, Size size = {61, 43}) {
   check::Library library(ISOSHADE_GRAPHS "/library");
   support::Diagnostics diagnostics;
   const auto with = render::plan_frame(scene, options_of(library, size.width, size.height, {}), diagnostics);
-  const auto all = render::plan_frame(scene, options_of(library, size.width, size.height, without(Skip::lights)), diagnostics);
+  const auto all = render::plan_frame(
+      scene, options_of(library, size.width, size.height, without(Skip::lights)), diagnostics);
   if (!with || !all) {
     ADD_FAILURE() << diagnostics.text();
     return 0;
@@ -65,7 +66,8 @@ const std::string camera = R"("camera": {"position": [0, 3, 9], "target": [0, 0,
 /// A row of balls, and a floor.
 std::string balls(const std::string& effect) {
   return R"("objects": {
-    "balls": {"mesh": {"type": "sphere", "radius": 0.5, "segments": 24, "rings": 12}, "effect": ")" + effect + R"(",
+    "balls": {"mesh": {"type": "sphere", "radius": 0.5, "segments": 24, "rings": 12}, "effect": ")" +
+         effect + R"(",
               "transform": {"translate": [-3, 0, 0]}, "repeat": [{"count": 4, "step": [2, 0, 0]}]},
     "floor": {"mesh": {"type": "plane", "size": [12, 6], "segments": 4}, "effect": "../materials/cook_torrance.json",
               "transform": {"translate": [0, -0.5, 0]}}})";
@@ -92,21 +94,24 @@ TEST(Lights, ThatDoNotReachAnObjectAreLeftOut) {
 }
 
 TEST(Lights, AreLeftOutOfMaterialsWithNormalMaps) {
-  EXPECT_GE(left_out(scene_of(camera + ",\n" + lamps + ",\n" + balls("../materials/gltf_pbr.json"))), 4 * 3 + 3);
+  EXPECT_GE(left_out(scene_of(camera + ",\n" + lamps + ",\n" + balls("../materials/gltf_pbr.json"))),
+            4 * 3 + 3);
 }
 
 TEST(Lights, WhoseShadowsFallElsewhereKeepThem) {
   std::string shadows = lamps;
   for (size_t at = 0; (at = shadows.find("\"intensity\": 9", at)) != std::string::npos; at += 40)
     shadows.insert(at, "\"shadow\": {\"size\": 64}, ");
-  EXPECT_GT(left_out(scene_of(camera + ",\n" + shadows + ",\n" + balls("../materials/cook_torrance.json"))), 0);
+  EXPECT_GT(left_out(scene_of(camera + ",\n" + shadows + ",\n" + balls("../materials/cook_torrance.json"))),
+            0);
 }
 
 /// Where a lamp ends just before and just behind the corner of a box.
 TEST(Lights, ThatReachACornerStay) {
   const auto lamp = [](const std::string& range) {
     return scene_of(R"("camera": {"position": [2, 3, 6], "target": [0, 0, 0], "fov": 30},
-      "lights": {"lamp": {"type": "point", "position": [2, 2, 2], "intensity": 1e6, "range": )" + range + R"(}},
+      "lights": {"lamp": {"type": "point", "position": [2, 2, 2], "intensity": 1e6, "range": )" +
+                    range + R"(}},
       "objects": {"box": {"mesh": {"type": "box", "size": [2, 2, 2]}, "effect": "../materials/cook_torrance.json",
                           "parameters": {"ambient": 0}}})");
   };
@@ -118,43 +123,63 @@ TEST(Lights, ThatReachACornerStay) {
 class LightsOf : public SceneFolder {
  protected:
   /// How many lights are left out of a picture with this node of its effect as the term of the sum.
-  int64_t left_out_of(const std::string& nodes, const std::string& sum = R"({"type": "sum_lights", "in": "term"})") {
+  int64_t left_out_of(const std::string& nodes,
+                      const std::string& sum = R"({"type": "sum_lights", "in": "term"})") {
     folder_.write("effect.json", R"({"isoshade": 1, "effect": "effect",
       "parameters": {"steep": {"type": "float", "value": 2, "min": 0, "max": 8}},
       "nodes": {"c": {"type": "lightcolor"}, "l": {"type": "lightdirection"}, "n": {"type": "normal"},
-        "p": {"type": "position"}, "v": {"type": "viewdirection"}, )" + nodes + R"(, "sum": )" + sum + R"(},
+        "p": {"type": "position"}, "v": {"type": "viewdirection"}, )" +
+                                     nodes + R"(, "sum": )" + sum + R"(},
       "passes": [{"name": "base", "color": "sum"}]})");
     const std::string members = camera + ",\n" + lamps + R"(, "objects": {
       "ball": {"mesh": {"type": "sphere", "segments": 16, "rings": 8}, "effect": "effect.json"}})";
     const render::Plan all = plan({40, 30}, 1, members, false), with = plan({40, 30}, 1, members);
     for (const auto& backend : every_backend())
-      expect_identical(draw(all, *backend), draw(with, *backend), nodes + " on " + std::string(backend->name()));
+      expect_identical(draw(all, *backend), draw(with, *backend),
+                       nodes + " on " + std::string(backend->name()));
     return with.stats.left_out_lights;
   }
 };
 
 TEST_F(LightsOf, EffectsThatMultiplyByTheColourAreLeftOut) {
-  EXPECT_GT(left_out_of(R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"})json"), 0);
-  EXPECT_GT(left_out_of(R"json("term": {"type": "expression", "code": "c * pow(saturate(dot(n, l)), steep) * dot(n, v)",
-                            "c": "c", "n": "n", "l": "l", "v": "v", "steep": "steep"})json"), 0);
+  EXPECT_GT(
+      left_out_of(
+          R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"})json"),
+      0);
+  EXPECT_GT(
+      left_out_of(
+          R"json("term": {"type": "expression", "code": "c * pow(saturate(dot(n, l)), steep) * dot(n, v)",
+                            "c": "c", "n": "n", "l": "l", "v": "v", "steep": "steep"})json"),
+      0);
 }
 
 TEST_F(LightsOf, EffectsThatDoNotMultiplyByTheColourStay) {
-  EXPECT_EQ(left_out_of(R"json("term": {"type": "expression", "code": "color3(max(dot(n, l), 0))", "n": "n", "l": "l"})json"), 0);
+  EXPECT_EQ(
+      left_out_of(
+          R"json("term": {"type": "expression", "code": "color3(max(dot(n, l), 0))", "n": "n", "l": "l"})json"),
+      0);
   // A step of a ramp that is lit without light.
-  EXPECT_EQ(left_out_of(R"json("term": {"type": "expression", "code": "max(c, color3(0.1))", "c": "c"})json"), 0);
+  EXPECT_EQ(left_out_of(R"json("term": {"type": "expression", "code": "max(c, color3(0.1))", "c": "c"})json"),
+            0);
 }
 
 TEST_F(LightsOf, EffectsWhoseFactorMayBeInfiniteStay) {
-  EXPECT_EQ(left_out_of(R"json("term": {"type": "expression", "code": "c / dot(n, l)", "c": "c", "n": "n", "l": "l"})json"), 0);
+  EXPECT_EQ(
+      left_out_of(
+          R"json("term": {"type": "expression", "code": "c / dot(n, l)", "c": "c", "n": "n", "l": "l"})json"),
+      0);
   // Finite for every direction, but not for the zero vector that opposite normals make.
-  EXPECT_EQ(left_out_of(R"json("term": {"type": "expression", "code": "c / dot(n, n)", "c": "c", "n": "n"})json"), 0);
+  EXPECT_EQ(
+      left_out_of(R"json("term": {"type": "expression", "code": "c / dot(n, n)", "c": "c", "n": "n"})json"),
+      0);
   EXPECT_EQ(left_out_of(R"json("w": {"type": "fwidth", "in": "n"},
-                            "term": {"type": "expression", "code": "c * w.x", "c": "c", "w": "w"})json"), 0);
+                            "term": {"type": "expression", "code": "c * w.x", "c": "c", "w": "w"})json"),
+            0);
 }
 
 TEST_F(LightsOf, EffectsThatDifferentiateTheSumStay) {
-  const std::string term = R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"},
+  const std::string term =
+      R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"},
     "light": {"type": "sum_lights", "in": "term"}, "w": {"type": "fwidth", "in": "light"})json";
   EXPECT_EQ(left_out_of(term, R"json({"type": "add", "in1": "light", "in2": "w"})json"), 0);
 }
@@ -178,10 +203,14 @@ class Frames : public ::testing::Test {
       kept.frames += stats.is_kept ? 1 : 0;
       kept.views += stats.kept_views;
       const scene::ImageView image = renderer.image();
-      backends::Image shown{image.width, image.height, {image.rgba.begin(), image.rgba.end()},
+      backends::Image shown{image.width,
+                            image.height,
+                            {image.rgba.begin(), image.rgba.end()},
                             {image.depth.begin(), image.depth.end()}};
-      const auto alone = render::plan_frame(scenes[i], options_of(library, 57, 41, interface::Skips::none()), diagnostics);
-      expect_identical(draw(*alone, *fresh_), shown, "frame " + std::to_string(i) + " on " + std::string(backend.name()));
+      const auto alone =
+          render::plan_frame(scenes[i], options_of(library, 57, 41, interface::Skips::none()), diagnostics);
+      expect_identical(draw(*alone, *fresh_), shown,
+                       "frame " + std::to_string(i) + " on " + std::string(backend.name()));
     }
     return kept;
   }
@@ -203,13 +232,15 @@ const std::string lamp_with_shadow = R"("lights": {
   "lamp": {"type": "point", "position": [0, 3, 1], "intensity": 30, "shadow": {"size": 64}}})";
 
 TEST_F(Frames, ThatAreAsTheOneBeforeAreKept) {
-  std::vector<scene::Scene> scenes(4, scene_of(camera + ",\n" + lamp_with_shadow + ",\n" + balls("../effects/cartoon.json")));
+  std::vector<scene::Scene> scenes(
+      4, scene_of(camera + ",\n" + lamp_with_shadow + ",\n" + balls("../effects/cartoon.json")));
   for (size_t i = 0; i < scenes.size(); ++i) scenes[i].time = static_cast<float>(i);  // nothing reads it
   EXPECT_EQ(draw_all(scenes).frames, 3);
 }
 
 TEST_F(Frames, KeepShadowMapsWhileOnlyTheCameraMoves) {
-  std::vector<scene::Scene> scenes(3, scene_of(camera + ",\n" + lamp_with_shadow + ",\n" + balls("../materials/cook_torrance.json")));
+  std::vector<scene::Scene> scenes(
+      3, scene_of(camera + ",\n" + lamp_with_shadow + ",\n" + balls("../materials/cook_torrance.json")));
   for (size_t i = 0; i < scenes.size(); ++i) scenes[i].camera.position.x = static_cast<float>(i);
   const Kept kept = draw_all(scenes);
   EXPECT_EQ(kept.frames, 0);
@@ -217,10 +248,13 @@ TEST_F(Frames, KeepShadowMapsWhileOnlyTheCameraMoves) {
 }
 
 TEST_F(Frames, OfObjectsOrLightsThatMoveAreDrawn) {
-  std::vector<scene::Scene> scenes(3, scene_of(camera + ",\n" + lamp_with_shadow + ",\n" + balls("../materials/cook_torrance.json")));
-  for (size_t i = 0; i < scenes.size(); ++i) scenes[i].objects[0].transform.translate.y = 0.25f * static_cast<float>(i);
+  std::vector<scene::Scene> scenes(
+      3, scene_of(camera + ",\n" + lamp_with_shadow + ",\n" + balls("../materials/cook_torrance.json")));
+  for (size_t i = 0; i < scenes.size(); ++i)
+    scenes[i].objects[0].transform.translate.y = 0.25f * static_cast<float>(i);
   EXPECT_EQ(draw_all(scenes).views, 0);
-  std::vector<scene::Scene> lit(3, scene_of(camera + ",\n" + lamps + ",\n" + balls("../materials/cook_torrance.json")));
+  std::vector<scene::Scene> lit(
+      3, scene_of(camera + ",\n" + lamps + ",\n" + balls("../materials/cook_torrance.json")));
   for (size_t i = 0; i < lit.size(); ++i) lit[i].lights[3].position.x = static_cast<float>(i);
   EXPECT_EQ(draw_all(lit).views, 0);
 }
