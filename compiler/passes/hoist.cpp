@@ -86,7 +86,7 @@ class Hoister {
     const std::vector<Item> items = find_items(f, rates, function == kernel_, splits);
     items_ += items.size();
     if (items.empty()) return items;
-    Slice slice(f, rates, splits, draw);
+    Slice slice(f, rates, splits, module_, draw);
     support::NameTable taken;
     for (const Parameter& parameter : f.parameters) taken.add(parameter.name);
     for (const Item& item : items) {

@@ -67,64 +67,9 @@ bool Free::is_address(const Instruction& made) const {
   return rates_.made_by[operands[0]] == none && second != none && f_.instructions[second].op == Opcode::constant;
 }
 
-Slice::Slice(const Function& from, const RatesOfFunction& rates, const std::map<InstructionId, const Split*>& splits,
-             Function& to)
-    : from_(from), rates_(rates), splits_(splits), to_(to) {
-  to_.blocks.emplace_back();
-}
-
 void Slice::yield(ValueId value, std::string name) {
   to_.results.push_back({std::move(name), to_.type(value)});
   to_.blocks[0].yields.push_back(value);
-}
-
-ValueId Slice::copy(ValueId value) {
-  if (const auto found = values_.find(value); found != values_.end()) return found->second;
-  if (rates_.made_by[value] == none) return add_parameter(value);
-  const InstructionId id = rates_.made_by[value];
-  for (const ValueId read : read_from_outside(id)) copy(read);
-  const InstructionId copied = copy_instruction(id);  // may add blocks
-  to_.blocks[0].instructions.push_back(copied);
-  return values_.at(value);
-}
-
-ValueId Slice::copy_result(const Item& item) {
-  const auto found = calls_.find(item.call);
-  if (found != calls_.end()) return found->second + static_cast<ValueId>(item.of_call);
-  const Split& split = *splits_.at(item.call);
-  std::vector<ValueId> arguments;
-  for (const size_t parameter : split.needs)
-    arguments.push_back(copy(from_.operands_of(from_.instructions[item.call])[parameter]));
-  Instruction call;
-  call.op = Opcode::call;
-  call.imm = split.draw;
-  call.first_operand = static_cast<uint32_t>(to_.operands.size());
-  call.operand_count = static_cast<uint32_t>(arguments.size());
-  to_.operands.insert(to_.operands.end(), arguments.begin(), arguments.end());
-  call.first_result = static_cast<ValueId>(to_.values.size());
-  call.result_count = static_cast<uint32_t>(split.items.size());
-  for (const Parameter& result : split.items) to_.values.push_back({result.type, 0});
-  to_.blocks[0].instructions.push_back(static_cast<InstructionId>(to_.instructions.size()));
-  to_.instructions.push_back(call);
-  calls_[item.call] = call.first_result;
-  return call.first_result + static_cast<ValueId>(item.of_call);
-}
-
-ValueId Slice::add_parameter(ValueId value) {
-  const auto& parameters = from_.blocks[0].parameters;
-  const auto number = static_cast<size_t>(std::ranges::find(parameters, value) - parameters.begin());
-  support::assert_that(number < parameters.size(), "a value of a block that is not copied");
-  needs.push_back(number);
-  to_.parameters.push_back(from_.parameters[number]);
-  to_.parameters.back().group.clear();
-  to_.parameters.back().uniform = true;
-  to_.blocks[0].parameters.push_back(new_value(value));
-  return values_.at(value);
-}
-
-ValueId Slice::new_value(ValueId of) {
-  to_.values.push_back({from_.type(of), 0});
-  return values_[of] = static_cast<ValueId>(to_.values.size() - 1);
 }
 
 std::vector<ValueId> Slice::read_from_outside(InstructionId id) const {
@@ -148,10 +93,15 @@ std::vector<ValueId> Slice::read_from_outside(InstructionId id) const {
   return outside;
 }
 
-InstructionId Slice::copy_instruction(InstructionId id) {
+ValueId Copier::new_value(ValueId of) {
+  to_.values.push_back({from_.type(of), 0});
+  return values[of] = static_cast<ValueId>(to_.values.size() - 1);
+}
+
+InstructionId Copier::copy(InstructionId id) {
   Instruction made = from_.instructions[id];
   std::vector<ValueId> operands;
-  for (const ValueId operand : from_.operands_of(made)) operands.push_back(values_.at(operand));
+  for (const ValueId operand : from_.operands_of(made)) operands.push_back(values.at(operand));
   for (BlockId& block : made.blocks)
     if (block != none) block = copy_block(block);
   made.first_operand = static_cast<uint32_t>(to_.operands.size());
@@ -164,13 +114,87 @@ InstructionId Slice::copy_instruction(InstructionId id) {
   return static_cast<InstructionId>(to_.instructions.size() - 1);
 }
 
-BlockId Slice::copy_block(BlockId id) {
+BlockId Copier::copy_block(BlockId id) {
   Block copied;
   for (const ValueId parameter : from_.blocks[id].parameters) copied.parameters.push_back(new_value(parameter));
-  for (const InstructionId inner : from_.blocks[id].instructions) copied.instructions.push_back(copy_instruction(inner));
-  for (const ValueId value : from_.blocks[id].yields) copied.yields.push_back(values_.at(value));
+  for (const InstructionId inner : from_.blocks[id].instructions) copied.instructions.push_back(copy(inner));
+  for (const ValueId value : from_.blocks[id].yields) copied.yields.push_back(values.at(value));
   to_.blocks.push_back(std::move(copied));
   return static_cast<BlockId>(to_.blocks.size() - 1);
+}
+
+Slice::Slice(const Function& from, const RatesOfFunction& rates, const std::map<InstructionId, const Split*>& splits,
+             const Module& module, Function& to)
+    : from_(from), rates_(rates), splits_(splits), module_(module), to_(to), copier_(from, to) {
+  to_.blocks.emplace_back();
+}
+
+ValueId Slice::copy(ValueId value) {
+  if (const auto found = copier_.values.find(value); found != copier_.values.end()) return found->second;
+  if (rates_.made_by[value] == none) return add_parameter(value);
+  const InstructionId id = rates_.made_by[value];
+  for (const ValueId read : read_from_outside(id)) copy(read);
+  const InstructionId copied = copier_.copy(id);  // may add blocks
+  to_.blocks[0].instructions.push_back(copied);
+  return copier_.values.at(value);
+}
+
+ValueId Slice::copy_result(const Item& item) {
+  // Calls of calls can make a function as long as a power of two.
+  constexpr size_t longest = 20'000;
+  const auto found = results_.find(item.call);
+  if (found != results_.end()) return found->second[item.of_call];
+  const Split& split = *splits_.at(item.call);
+  std::vector<ValueId> arguments;
+  for (const size_t parameter : split.needs)
+    arguments.push_back(copy(from_.operands_of(from_.instructions[item.call])[parameter]));
+  const Function& body = module_.functions[split.draw];
+  const bool is_short = to_.instructions.size() + body.instructions.size() <= longest;
+  const auto results = is_short ? inline_body(body, arguments) : call(split, arguments);
+  return results_.emplace(item.call, results).first->second[item.of_call];
+}
+
+std::vector<ValueId> Slice::inline_body(const Function& body, std::span<const ValueId> arguments) {
+  Copier copier(body, to_);
+  for (size_t i = 0; i < arguments.size(); ++i) copier.values[body.blocks[0].parameters[i]] = arguments[i];
+  for (const InstructionId id : body.blocks[0].instructions) {
+    const InstructionId copied = copier.copy(id);  // may add blocks
+    to_.blocks[0].instructions.push_back(copied);
+  }
+  std::vector<ValueId> results;
+  for (const ValueId value : body.blocks[0].yields) results.push_back(copier.values.at(value));
+  return results;
+}
+
+std::vector<ValueId> Slice::call(const Split& split, std::span<const ValueId> arguments) {
+  Instruction call;
+  call.op = Opcode::call;
+  call.imm = split.draw;
+  call.first_operand = static_cast<uint32_t>(to_.operands.size());
+  call.operand_count = static_cast<uint32_t>(arguments.size());
+  to_.operands.insert(to_.operands.end(), arguments.begin(), arguments.end());
+  call.first_result = static_cast<ValueId>(to_.values.size());
+  call.result_count = static_cast<uint32_t>(split.items.size());
+  std::vector<ValueId> results;
+  for (const Parameter& result : split.items) {
+    results.push_back(static_cast<ValueId>(to_.values.size()));
+    to_.values.push_back({result.type, 0});
+  }
+  to_.blocks[0].instructions.push_back(static_cast<InstructionId>(to_.instructions.size()));
+  to_.instructions.push_back(call);
+  return results;
+}
+
+ValueId Slice::add_parameter(ValueId value) {
+  const auto& parameters = from_.blocks[0].parameters;
+  const auto number = static_cast<size_t>(std::ranges::find(parameters, value) - parameters.begin());
+  support::assert_that(number < parameters.size(), "a value of a block that is not copied");
+  needs.push_back(number);
+  to_.parameters.push_back(from_.parameters[number]);
+  to_.parameters.back().group.clear();
+  to_.parameters.back().uniform = true;
+  to_.blocks[0].parameters.push_back(copier_.new_value(value));
+  return copier_.values.at(value);
 }
 
 }  // namespace isoshade::passes

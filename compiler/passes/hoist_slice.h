@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -54,12 +55,30 @@ class Free {
   bool is_kernel_;
 };
 
+/// Copies instructions of one function into another.
+class Copier {
+ public:
+  Copier(const ir::Function& from, ir::Function& to) : from_(from), to_(to) {}
+
+  std::map<ir::ValueId, ir::ValueId> values;  ///< what became of the values of the first
+
+  ir::ValueId new_value(ir::ValueId of);
+  /// Copies an instruction whose operands are copied, and its blocks. It is in no block yet.
+  ir::InstructionId copy(ir::InstructionId id);
+
+ private:
+  ir::BlockId copy_block(ir::BlockId id);
+
+  const ir::Function& from_;
+  ir::Function& to_;
+};
+
 /// Copies what some values depend on into a function of its own.
 class Slice {
  public:
-  /// `splits`: of the calls whose callees are split.
+  /// `splits`: of the calls whose callees are split, into functions of the module.
   Slice(const ir::Function& from, const RatesOfFunction& rates, const std::map<ir::InstructionId, const Split*>& splits,
-        ir::Function& to);
+        const ir::Module& module, ir::Function& to);
 
   ir::ValueId copy(const Item& item) { return item.value != ir::none ? copy(item.value) : copy_result(item); }
   void yield(ir::ValueId value, std::string name);
@@ -70,20 +89,20 @@ class Slice {
   ir::ValueId copy(ir::ValueId value);
   /// A result of the draw function of a call's callee.
   ir::ValueId copy_result(const Item& item);
+  /// Puts a body where it is called, so that what several calls compute alike is computed once.
+  std::vector<ir::ValueId> inline_body(const ir::Function& body, std::span<const ir::ValueId> arguments);
+  std::vector<ir::ValueId> call(const Split& split, std::span<const ir::ValueId> arguments);
   ir::ValueId add_parameter(ir::ValueId value);
-  ir::ValueId new_value(ir::ValueId of);
   /// What an instruction reads, and what its blocks read and do not make.
   std::vector<ir::ValueId> read_from_outside(ir::InstructionId id) const;
-  /// Copies an instruction whose operands are copied, and its blocks.
-  ir::InstructionId copy_instruction(ir::InstructionId id);
-  ir::BlockId copy_block(ir::BlockId id);
 
   const ir::Function& from_;
   const RatesOfFunction& rates_;
   const std::map<ir::InstructionId, const Split*>& splits_;
+  const ir::Module& module_;
   ir::Function& to_;
-  std::map<ir::ValueId, ir::ValueId> values_;
-  std::map<ir::InstructionId, ir::ValueId> calls_;  ///< the first result
+  Copier copier_;
+  std::map<ir::InstructionId, std::vector<ir::ValueId>> results_;  ///< of calls
 };
 
 }  // namespace isoshade::passes

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The records of all copies of all objects, whichever of them a view sees.
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 #include "compiler/lower/frame_layout.h"
 #include "runtime/lanes/lanes.h"
@@ -131,7 +133,7 @@ void Planner::place_all() {
   });
   placed_ = {};
   backends::Frame& frame = plan_.frame;
-  frame.objects.clear();
+  const std::vector<float> objects_before = std::exchange(frame.objects, {});
   plan_.origins.clear();
   size_t words = 0;
   for (const Placed& part : parts) words += part.objects.size();
@@ -157,7 +159,9 @@ void Planner::place_all() {
       }
     }
   }
-  frame.revisions.objects = next_revision();
+  const bool is_same = objects_before.size() == frame.objects.size() && frame.revisions.objects != 0 &&
+                       std::memcmp(objects_before.data(), frame.objects.data(), frame.objects.size() * sizeof(float)) == 0;
+  if (!is_same) frame.revisions.objects = next_revision();
 }
 
 }  // namespace isoshade::render

@@ -32,6 +32,7 @@ class Fixed : public ::testing::Test {
   CompileOptions options() {
     CompileOptions options;
     options.library = &library_;
+    options.skips.set(interface::Skip::rates, false);  // programs would load what is computed of parameters
     return options;
   }
   Effect compile(const std::string& text, const FixedWords& fixed = {}) { return compile(source_of(text), fixed); }
