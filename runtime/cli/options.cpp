@@ -177,8 +177,12 @@ void add_no_skip(CLI::App& app, interface::Skips& skips) {
 
 std::vector<std::string> with_skip_names(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
+  // A misspelt name is still taken for one, and not for the scene: that is a path.
+  const auto may_be_names = [](const std::string& text) {
+    return text.find_first_not_of("abcdefghijklmnopqrstuvwxyz,") == std::string::npos;
+  };
   for (size_t i = arguments.size(); i-- > 0;)
-    if (arguments[i] == "--no-skip" && (i + 1 == arguments.size() || !parse_skips(arguments[i + 1])))
+    if (arguments[i] == "--no-skip" && (i + 1 == arguments.size() || !may_be_names(arguments[i + 1])))
       arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::string(all_skips));
   return arguments;
 }

@@ -287,6 +287,21 @@ TEST_F(Cli, StatsListSkippedPosts) {
   EXPECT_NE(without.text.find("posts:    1"), std::string::npos) << without.text;
 }
 
+TEST_F(Cli, EachSkipIsSwitchedOffByItsNameAndAllWithoutOne) {
+  const std::string fog = graphs + "/scenes/fog_balls.json --size 16x9 --backend interpreter --stats -o " + file("a.png") +
+                          " --set fog.fog_density=0";
+  const auto skips = [&](const std::string& options) { return run("render " + options + " " + fog).text; };
+  const std::string_view post = "skipped:  post fog: fog_density is 0", parameters = "of the effect cook_torrance";
+  const std::string all = skips(""), without_posts = skips("--no-skip posts"), none = skips("--no-skip");
+  EXPECT_NE(all.find(post), std::string::npos) << all;
+  EXPECT_NE(all.find(parameters), std::string::npos) << all;
+  EXPECT_EQ(without_posts.find(post), std::string::npos) << without_posts;
+  EXPECT_NE(without_posts.find(parameters), std::string::npos) << without_posts;
+  EXPECT_EQ(none.find("skipped:"), std::string::npos) << none;
+  EXPECT_NE(skips("--no-skip=posts,parameters").find("the same for all pixels of a draw"), std::string::npos);
+  EXPECT_NE(skips("--no-skip pots").find("\"pots\" is not a list of skips"), std::string::npos);
+}
+
 TEST_F(Cli, AnUnknownSubcommandListsTheKnownOnes) {
   const Outcome outcome = run("paint");
   EXPECT_NE(outcome.text.find("paint"), std::string::npos) << outcome.text;
