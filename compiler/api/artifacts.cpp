@@ -36,7 +36,9 @@ struct Stages {
 };
 
 std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKind kind,
-                                const driver::CompileOptions& compile, Diagnostics& diagnostics) {
+                                driver::CompileOptions compile, Diagnostics& diagnostics) {
+  // Who fills records by the reflection knows nothing of what a draw computes.
+  compile.skips.set(interface::Skip::rates, false);
   Stages stages;
   switch (kind) {
     case graph::DocumentKind::function:

@@ -62,10 +62,11 @@ std::string_view color_of(Type type) {
 /// Draws the boxes and links of a document and of the functions that it calls. Names in DOT are "n" and a number.
 class Diagram {
  public:
-  explicit Diagram(int depth) : deepest_(depth) {}
+  Diagram(int depth, const std::set<std::string>& left_out) : deepest_(depth), left_out_(left_out) {}
 
   std::string draw(const TypedGraph& graph) {
     out_ = head;
+    whole_ = &graph;
     out_ += fmt::format("  label=\"{} {}\"\n  labelloc=t\n", graph::kind_name(graph.graph.kind),
                         escaped(graph.graph.name));
     Names inputs;
@@ -120,15 +121,15 @@ class Diagram {
     return number;
   }
 
-  std::string box(std::string_view border, const std::string& rows) {
+  std::string box(std::string_view border, const std::string& rows, std::string_view attributes = "") {
     size_t lines = 0;
     for (size_t at = 0; (at = rows.find("<tr>", at)) != std::string::npos; ++at) ++lines;
     const std::string name = "n" + std::to_string(new_box(lines));
     out_ += fmt::format(
         "  {} [label=<<table border=\"1\" color=\"{}\" cellborder=\"0\" cellspacing=\"0\" "
         "cellpadding=\"3\">{}"
-        "</table>>]\n",
-        name, border, rows);
+        "</table>>{}]\n",
+        name, border, rows, attributes);
     return name;
   }
 
@@ -192,6 +193,17 @@ class Diagram {
     return names;
   }
 
+  bool is_left_out(const TypedGraph& graph, uint32_t node) const {
+    return &graph == whole_ && left_out_.contains(graph.graph.nodes[node].id);
+  }
+  /// The box of a node of which nothing is computed is grey.
+  std::string color_of_node(const TypedGraph& graph, uint32_t node, Type type) const {
+    return is_left_out(graph, node) ? "#f3f4f6" : std::string(color_of(type));
+  }
+  std::string box_of_node(const TypedGraph& graph, uint32_t node, const std::string& rows) {
+    return is_left_out(graph, node) ? box("#d1d5db", rows, " fontcolor=\"#9ca3af\"") : box("#6b7280", rows);
+  }
+
   /// The box of a node, or of a function whose contents are not drawn.
   std::string node_box(const TypedGraph& graph, uint32_t index) {
     const check::Node& node = graph.nodes[index];
@@ -199,7 +211,7 @@ class Diagram {
     const auto operands = graph.operands_of(node);
     const auto types = graph.types_of(node);
     std::string rows = fmt::format("<tr><td colspan=\"2\" bgcolor=\"{}\"><b>{}</b>  {}</td></tr>",
-                                   color_of(types.front()), escaped(source.id), escaped(source.label()));
+                                   color_of_node(graph, index, types.front()), escaped(source.id), escaped(source.label()));
     for (size_t i = 0; i < operands.size(); ++i) {
       const std::string name(node.row != nullptr ? node.row->ports[i].name
                                                  : std::string_view(node.callee->graph.inputs[i].name));
@@ -217,7 +229,7 @@ class Diagram {
     for (size_t i = 0; i < outputs.size(); ++i)
       rows += fmt::format("<tr><td></td><td align=\"right\" port=\"o{}\">{}  {}</td></tr>", i,
                           escaped(outputs[i]), graph::type_name(types[i]));
-    return box("#6b7280", rows);
+    return box_of_node(graph, index, rows);
   }
 
   std::string expression_box(const TypedGraph& graph, const graph::Expression& expression) {
@@ -225,7 +237,7 @@ class Diagram {
     const Type type = graph.types_of(root).front();
     std::string rows = fmt::format(
         "<tr><td colspan=\"2\" bgcolor=\"{}\"><b>{}</b></td></tr><tr><td colspan=\"2\"><i>{}</i></td></tr>",
-        color_of(type), escaped(graph.graph.nodes[expression.root].id),
+        color_of_node(graph, expression.root, type), escaped(graph.graph.nodes[expression.root].id),
         escaped(expression.code.substr(0, 120)));
     for (size_t i = 0; i < expression.ports.size(); ++i) {
       const auto* literal = std::get_if<graph::Literal>(&expression.ports[i].value);
@@ -236,7 +248,7 @@ class Diagram {
     }
     rows +=
         fmt::format("<tr><td></td><td align=\"right\" port=\"o0\">out  {}</td></tr>", graph::type_name(type));
-    return box("#6b7280", rows);
+    return box_of_node(graph, expression.root, rows);
   }
 
   static std::string source_of(const Operand& operand, const Drawn& drawn, const Names& inputs) {
@@ -275,7 +287,7 @@ class Diagram {
       if (is_part[i]) continue;
       if (expression_at[i] != none) {
         draw_expression(graph, graph.graph.expressions[expression_at[i]], drawn, inputs);
-      } else if (graph.nodes[i].callee != nullptr && depth < deepest_) {
+      } else if (graph.nodes[i].callee != nullptr && depth < deepest_ && !is_left_out(graph, i)) {
         draw_cluster(graph, i, drawn, inputs, depth);
       } else {
         const std::string name = node_box(graph, i);
@@ -341,12 +353,16 @@ class Diagram {
 
   std::string out_;
   int deepest_;
+  const std::set<std::string>& left_out_;
+  const TypedGraph* whole_ = nullptr;
   size_t boxes_ = 0, clusters_ = 0;
   BoxLayers layers_;
 };
 
 }  // namespace
 
-std::string draw(const TypedGraph& graph, int depth) { return Diagram(depth).draw(graph); }
+std::string draw(const TypedGraph& graph, int depth, const std::set<std::string>& left_out) {
+  return Diagram(depth, left_out).draw(graph);
+}
 
 }  // namespace isoshade::driver

@@ -2,6 +2,7 @@
 // Draws a graph as a diagram, in the DOT language of Graphviz.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "compiler/check/typed_graph.h"
@@ -19,6 +20,7 @@ inline constexpr size_t most_laid_out_nodes = 200;
 /// function documents as clusters with their own nodes, nested up to `depth`. Text of the document is escaped. Stops at
 /// most_drawn_nodes boxes and notes that in the diagram. A diagram of more than most_laid_out_nodes boxes arranges them
 /// in columns, each to the right of the boxes that it reads, without cluster frames.
-std::string draw(const check::TypedGraph& graph, int depth);
+/// `left_out`: the ids of nodes of the document that are drawn grey.
+std::string draw(const check::TypedGraph& graph, int depth, const std::set<std::string>& left_out = {});
 
 }  // namespace isoshade::driver

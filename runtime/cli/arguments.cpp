@@ -141,6 +141,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   compile_app->add_option(
       "--dump-after", compile.dump_after,
       "Print the result of a stage: document, graph, typed, lower or a pass; `help` lists them");
+  compile_app->add_flag("--explain", compile.explain,
+                        "Print which nodes are computed, with their operations, which became constant and which are left out; "
+                        "with --set what the values save. Needs no -o");
 
   RenderArguments render;
   std::string render_size;
@@ -279,6 +282,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
   CLI::App* draw_app = app.add_subcommand("draw", "Draw a graph as a diagram, using Graphviz");
   draw_app->add_option("GRAPH", draw.graph, "A function, effect or post document")->required();
   draw_app->add_option("-o,--output", draw.output, "FILE.svg, FILE.png or FILE.dot")->required();
+  draw_app->add_option("--set", draw.settings, "With --after-specialisation: PARAMETER=VALUE, as for compile")->take_all();
+  draw_app->add_flag("--after-specialisation", draw.after_specialisation,
+                     "Draw nodes grey that nothing computes once the graph is compiled, for the values of --set");
   draw_app->add_option("--depth", draw.depth, "Levels of called functions to draw")
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
@@ -354,7 +360,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
     std::vector<std::string> last_to_first = with_skip_names(argc, argv);
     std::ranges::reverse(last_to_first);
     app.parse(std::move(last_to_first));
-    if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty())
+    if (compile_app->parsed() && compile.output.empty() && compile.dump_after.empty() && !compile.explain)
       throw CLI::RequiredError("--output");
     const bool measures = !render_frames.empty() && (render.stats || !render.stats_json.empty());
     if (render_app->parsed() && render.output.empty() && !measures)

@@ -67,6 +67,7 @@ struct CompileArguments {
   std::string depfile;         ///< receives the names of all files that were read; empty: none
   bool without_lanes = false;  ///< the program has the headers of isoshade/lanes
   std::string dump_after;
+  bool explain = false;  ///< print what is computed, and what fell away
 };
 
 /// Times of pictures: `count` of them from `first` to `last`, both included; or all at the scene's time.
@@ -157,6 +158,8 @@ struct DrawArguments {
   std::string graph;
   std::string output;
   int depth = 1;  ///< how many levels of called functions are drawn
+  std::vector<std::string> settings;    ///< parameter=value
+  bool after_specialisation = false;    ///< what compiling for them leaves out is grey
 };
 
 struct PageArguments {

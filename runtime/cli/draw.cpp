@@ -6,9 +6,11 @@
 
 #include "compiler/driver/diagram.h"
 #include "compiler/driver/driver.h"
+#include "compiler/driver/explain.h"
 #include "compiler/support/process.h"
 #include "compiler/support/temporary.h"
 #include "compiler/support/visible.h"
+#include "runtime/cli/fixed_words.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -70,7 +72,17 @@ bool draw_to_file(const DrawArguments& arguments, const Common& common, support:
   if (source == nullptr) return false;
   const auto graph = driver::check_document(source, options, diagnostics);
   if (graph == nullptr || !may_write(arguments.output, diagnostics)) return false;
-  const std::string dot = driver::draw(*graph, arguments.depth);
+  std::set<std::string> left_out;
+  if (arguments.after_specialisation) {
+    const auto general = driver::compile_shader(source, options, {}, diagnostics);
+    auto fixed = general ? fixed_words(source, arguments.settings, options, diagnostics) : std::nullopt;
+    if (!fixed) return false;
+    options.fixed = *std::move(fixed);
+    const auto shader = driver::compile_shader(source, options, {}, diagnostics);
+    if (!shader) return false;
+    left_out = driver::explain(*general, *shader).left_out();
+  }
+  const std::string dot = driver::draw(*graph, arguments.depth, left_out);
   if (format == ".dot") return scene::write_file(arguments.output, dot, diagnostics);
   const auto diagram = lay_out(dot, arguments.graph, format.substr(1), common.build_timeout, diagnostics);
   return diagram && scene::write_file(arguments.output, *diagram, diagnostics);

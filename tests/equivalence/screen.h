@@ -33,6 +33,7 @@ class Screen {
     check::Library library(ISOSHADE_GRAPHS "/library");
     driver::CompileOptions options;
     options.library = &library;
+    options.skips.set(interface::Skip::rates, false);  // the record has no room for what a draw computes
     auto compiled = driver::compile_post(source, options, diagnostics);
     EXPECT_TRUE(compiled) << diagnostics.text();
     if (compiled) post = *std::move(compiled);

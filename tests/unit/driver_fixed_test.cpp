@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
+#include "compiler/driver/diagram.h"
+#include "compiler/driver/explain.h"
 #include "compiler/driver/shader.h"
 #include "compiler/ir/expansion.h"
 #include "compiler/ir/validator.h"
@@ -176,6 +178,35 @@ TEST_F(Fixed, PureShadersKeepTheStructAndLoseTheCode) {
     EXPECT_EQ(few.find(gone), std::string::npos) << gone;
   }
   EXPECT_LT(2 * few.size(), all.size());
+}
+
+TEST_F(Fixed, ExplainTellsWhatIsComputedWhatIsConstantAndWhatFellAway) {
+  const std::string text = R"json({"isoshade": 1, "effect": "rimmed", "parameters": {
+      "rim": {"type": "float", "value": 1, "min": 0, "max": 1}, "tint": {"type": "color3", "value": [1, 1, 1]}},
+    "nodes": {"n": {"type": "normal"}, "v": {"type": "viewdirection"}, "facing": {"type": "dotproduct", "in1": "n", "in2": "v"},
+      "edge": {"type": "power", "in1": "facing", "in2": 3.5}, "half": {"type": "multiply", "in1": "rim", "in2": 0.5},
+      "lit": {"type": "expression", "code": "rim > 0 ? tint * (facing + edge * half) : tint * (facing + half)",
+              "rim": "rim", "tint": "tint", "facing": "facing", "edge": "edge", "half": "half"}},
+    "passes": [{"name": "base", "color": "lit"}]})json";
+  const auto general = compile_shader(source_of(text), options(), {}, diagnostics_);
+  CompileOptions of_off = options();
+  of_off.fixed = {0.0f, std::nullopt, std::nullopt, std::nullopt};
+  const auto off = compile_shader(source_of(text), of_off, {}, diagnostics_);
+  ASSERT_TRUE(general && off) << diagnostics_.text();
+  const Explanation explanation = explain(*general, *off);
+  EXPECT_LT(explanation.after, explanation.before);
+  EXPECT_EQ(explanation.left_out(), (std::set<std::string>{"edge", "half"}));
+  const auto fate = [&](const std::string& id) { return *std::ranges::find(explanation.nodes, id, &NodeFate::id); };
+  EXPECT_GT(fate("facing").after, 0u);
+  EXPECT_GT(fate("edge").before, 20u) << "a power";
+  EXPECT_TRUE(explain(*general, *general).left_out().empty());
+  const std::string lines = driver::text(explanation, *off);
+  EXPECT_EQ(lines.find("effect rimmed for fixed rim: "), 0u) << lines;
+  EXPECT_LT(lines.find("computed:"), lines.find("left out:")) << lines;
+  const std::string diagram = draw(*general->typed, 0, explanation.left_out());
+  const std::string_view grey = "fontcolor=\"#9ca3af\"";
+  EXPECT_NE(diagram.find(grey), diagram.rfind(grey)) << "both of them";
+  EXPECT_EQ(draw(*general->typed, 0).find(grey), std::string::npos);
 }
 
 }  // namespace
