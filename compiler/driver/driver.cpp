@@ -210,8 +210,8 @@ Program pixel_program(const check::TypedGraph& typed, size_t pass, const Effect&
   const uint32_t kernel =
       blended ? lower::add_blend_kernel(lowered.module, lowered.interface, layout_of(effect), lights, blend)
               : lower::add_pixel_kernel(lowered.module, lowered.interface, layout_of(effect), lights);
-  Program program{blended ? lower::Stage::blend : lower::Stage::pixel, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {},
-                  options.tier};
+  const lower::Stage stage = blended ? lower::Stage::blend : lower::Stage::pixel;
+  Program program{stage, typed.graph.name, typed.document, std::move(lowered.module), 0, {}, {}, options.tier};
   program.bindings = std::move(lowered.interface.bindings);
   finish(program, kernel, options, typed.graph.source, room);
   return program;

@@ -105,7 +105,8 @@ Explanation explain(const Shader& general, const Shader& fixed) {
     const auto is_same = [&](const NodeFate& other) { return other.id == node.id; };
     if (std::ranges::any_of(explanation.nodes, is_same)) continue;
     const bool is_expression = node.origin != graph::Node::Origin::node;
-    NodeFate fate{node.id, is_expression ? "expression" : node.type, before.operations(node.id), after.operations(node.id), ""};
+    NodeFate fate{node.id, is_expression ? "expression" : node.type, before.operations(node.id),
+                  after.operations(node.id), ""};
     if (fate.after == 0) fate.value = after.constant(node.id);
     explanation.nodes.push_back(std::move(fate));
   }

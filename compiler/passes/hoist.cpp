@@ -17,6 +17,13 @@ namespace {
 
 using namespace ir;
 
+/// A function is split once for each set of parameters that are the same: n nested functions could make 2^n.
+constexpr size_t max_cloned_instructions = 50'000;
+/// That a function gets as parameters: those of its callees are its own. What has more stays as it is.
+constexpr size_t max_items = 500;
+/// Of a record; there may be a million records. Shipped effects have at most a third of it.
+constexpr uint32_t max_words = 256;
+
 class Hoister {
  public:
   Hoister(Module& module, uint32_t kernel, const DrawRate& rate)
@@ -34,6 +41,9 @@ class Hoister {
     made.entry = static_cast<uint32_t>(made.module.functions.size());
     made.module.functions.push_back(std::move(draw));
     const std::vector<size_t> place = shorten(made);
+    uint32_t words = 0;
+    for (const Result& result : made.module.functions[made.entry].results) words += result.type.width;
+    if (words > max_words) return std::nullopt;
     read_values(pixels, made.module.functions[made.entry].results, items, place, made);
     module_.functions[kernel_] = std::move(pixels);
     return made;
@@ -66,8 +76,10 @@ class Hoister {
   }
 
   static std::string free_name(support::NameTable& names, const std::string& wanted) {
+    const support::NameTable::Added first = names.add(wanted);
     std::string name = wanted;
-    for (int i = 1; !names.add(name).is_new; ++i) name = wanted + "_" + std::to_string(i);
+    for (bool is_new = first.is_new; !is_new; is_new = names.add(name).is_new)
+      name = wanted + "_" + std::to_string(++names.number(first.index));
     return name;
   }
 
@@ -85,7 +97,7 @@ class Hoister {
     std::map<InstructionId, const Split*> splits;
     const std::vector<Item> items = find_items(f, rates, function == kernel_, splits);
     items_ += items.size();
-    if (items.empty()) return items;
+    if (items.empty() || items.size() > max_items) return {};
     Slice slice(f, rates, splits, module_, draw);
     support::NameTable taken;
     for (const Parameter& parameter : f.parameters) taken.add(parameter.name);
@@ -103,6 +115,8 @@ class Hoister {
     const auto key = std::pair(function, parameters);
     if (const auto found = splits_.find(key); found != splits_.end()) return found->second;
     Split made;
+    cloned_instructions_ += original_.functions[function].instructions.size();
+    if (cloned_instructions_ > max_cloned_instructions) return splits_.emplace(key, std::move(made)).first->second;
     Function pixels = original_.functions[function], draw;
     const std::vector<Item> items = split(function, parameters, pixels, draw);
     if (!items.empty()) {
@@ -151,7 +165,8 @@ class Hoister {
         replace(pixels.operands_of(made));
         if (const auto found = further.find(id); found != further.end()) {
           const auto first = static_cast<uint32_t>(pixels.operands.size());
-          for (uint32_t i = 0; i < made.operand_count; ++i) pixels.operands.push_back(pixels.operands[made.first_operand + i]);
+          for (uint32_t i = 0; i < made.operand_count; ++i)
+            pixels.operands.push_back(pixels.operands[made.first_operand + i]);
           pixels.operands.insert(pixels.operands.end(), found->second.begin(), found->second.end());
           made.first_operand = first;
           made.operand_count += static_cast<uint32_t>(found->second.size());
@@ -166,14 +181,14 @@ class Hoister {
 
   std::vector<Item> find_items(const Function& f, const RatesOfFunction& rates, bool is_kernel,
                                std::map<InstructionId, const Split*>& splits) {
-    const Free is_free(f, rates, is_kernel);
+    const std::vector<bool> is_free = free_values(f, rates, is_kernel);
     std::vector<Item> items;
     std::map<Item, bool> known;
     const auto add = [&](const Item& item) {
       if (known.emplace(item, true).second) items.push_back(item);
     };
     const auto read = [&](ValueId value) {
-      if (rates.same[value] && !is_free(value)) add({value});
+      if (rates.same[value] && !is_free[value]) add({value});
     };
     const auto visit = [&](const auto& self, BlockId block) -> void {
       for (const InstructionId id : f.blocks[block].instructions) {
@@ -240,7 +255,8 @@ class Hoister {
   void read_values(Function& pixels, const std::vector<Result>& results, const std::vector<Item>& items,
                    const std::vector<size_t>& place, DrawValues& made) {
     std::vector<InstructionId> head;
-    const auto append = [&](Opcode op, uint32_t imm, std::initializer_list<ValueId> operands, Type type, uint32_t origin = 0) {
+    const auto append = [&](Opcode op, uint32_t imm, std::initializer_list<ValueId> operands, Type type,
+                            uint32_t origin = 0) {
       Instruction instruction;
       instruction.op = op;
       instruction.imm = imm;
@@ -292,13 +308,11 @@ class Hoister {
     instructions.insert(instructions.begin(), head.begin(), head.end());
   }
 
-  std::string field_name(uint32_t buffer, const std::string& name) const {
-    const auto& fields = module_.buffers[buffer].fields;
-    const std::string wanted = "draw_" + without_number(name);
-    std::string free = wanted;
-    for (int i = 1; std::ranges::find(fields, free, &RecordField::name) != fields.end(); ++i)
-      free = wanted + "_" + std::to_string(i);
-    return free;
+  std::string field_name(uint32_t buffer, const std::string& name) {
+    const auto [found, is_new] = field_names_.try_emplace(buffer);
+    if (is_new)
+      for (const RecordField& field : module_.buffers[buffer].fields) found->second.add(field.name);
+    return free_name(found->second, "draw_" + without_number(name));
   }
 
   Module& module_;
@@ -310,7 +324,8 @@ class Hoister {
   std::vector<std::pair<std::string, std::string>> wanted_names_;  ///< of functions that replace others, and of these
   std::vector<size_t> needs_;  ///< of the draw function that was made last
   support::NameTable names_;
-  size_t items_ = 0;
+  std::map<uint32_t, support::NameTable> field_names_;  ///< by buffer
+  size_t items_ = 0, cloned_instructions_ = 0;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/passes/hoist_slice.h"
 
+#include <iterator>
 #include <utility>
 
 #include "compiler/support/assert.h"
@@ -33,64 +34,67 @@ std::vector<bool> parameters_needed(const Function& f) {
   return parameters;
 }
 
-bool Free::operator()(ValueId value) const {
-  if (rates_.made_by[value] == none) return true;  // a parameter
-  const Instruction& made = f_.instructions[rates_.made_by[value]];
-  switch (made.op) {
-    case Opcode::constant:
-    case Opcode::hidden_zero: return true;
-    case Opcode::construct:
-    case Opcode::extract: return all_free(made);
-    case Opcode::load: return is_kernel_ && all_free(made);
-    case Opcode::iadd: return (is_kernel_ && is_address(made)) || is_constant(value);
-    case Opcode::fne:
-    case Opcode::ine: return (is_kernel_ && all_free(made)) || is_constant(value);  // a boolean of a record
-    default: return is_constant(value);
+namespace {
+
+/// Walks a function in its order: what a value is made of comes before it.
+class FreeWalk {
+ public:
+  FreeWalk(const Function& f, const RatesOfFunction& rates, bool is_kernel)
+      : f_(f), rates_(rates), is_kernel_(is_kernel), free_(f.values.size()), constant_(f.values.size()) {
+    visit(0);
   }
-}
+  std::vector<bool> take() { return std::move(free_); }
 
-bool Free::is_constant(ValueId value) const {
-  const InstructionId id = rates_.made_by[value];
-  if (id == none) return false;
-  const Instruction& made = f_.instructions[id];
-  if (made.op == Opcode::call || made.op == Opcode::load || block_count(made.op) != 0) return false;
-  return std::ranges::all_of(f_.operands_of(made), [&](ValueId v) { return is_constant(v); });
-}
+ private:
+  bool all(const std::vector<bool>& marks, const Instruction& made) const {
+    return std::ranges::all_of(f_.operands_of(made), [&](ValueId value) { return marks[value]; });
+  }
 
-bool Free::all_free(const Instruction& made) const {
-  return std::ranges::all_of(f_.operands_of(made), [&](ValueId v) { return (*this)(v); });
-}
-
-bool Free::is_address(const Instruction& made) const {
-  const auto operands = f_.operands_of(made);
-  const InstructionId second = rates_.made_by[operands[1]];
-  return rates_.made_by[operands[0]] == none && second != none && f_.instructions[second].op == Opcode::constant;
-}
-
-void Slice::yield(ValueId value, std::string name) {
-  to_.results.push_back({std::move(name), to_.type(value)});
-  to_.blocks[0].yields.push_back(value);
-}
-
-std::vector<ValueId> Slice::read_from_outside(InstructionId id) const {
-  std::vector<ValueId> made, outside;
-  const auto read = [&](ValueId value) {
-    if (std::ranges::find(made, value) == made.end()) outside.push_back(value);
-  };
-  const auto visit = [&](const auto& self, InstructionId inner) -> void {
-    const Instruction& instruction = from_.instructions[inner];
-    for (const ValueId value : from_.operands_of(instruction)) read(value);
-    for (const BlockId block : instruction.blocks) {
-      if (block == none) continue;
-      const Block& body = from_.blocks[block];
-      made.insert(made.end(), body.parameters.begin(), body.parameters.end());
-      for (const InstructionId next : body.instructions) self(self, next);
-      for (const ValueId value : body.yields) read(value);
+  void visit(BlockId block) {
+    for (const ValueId parameter : f_.blocks[block].parameters) free_[parameter] = true;
+    for (const InstructionId id : f_.blocks[block].instructions) {
+      const Instruction& made = f_.instructions[id];
+      for (const BlockId inner : made.blocks)
+        if (inner != none) visit(inner);
+      // hide_foldables keeps drivers from folding what is computed from constants.
+      const bool is_plain = made.op != Opcode::call && made.op != Opcode::load && made.blocks[0] == none;
+      const bool is_constant = is_plain && all(constant_, made);
+      const bool is_free = is_constant || (may_be_free(made) && all(free_, made));
+      for (uint32_t k = 0; k < made.result_count; ++k) {
+        constant_[made.first_result + k] = is_constant;
+        free_[made.first_result + k] = is_free;
+      }
     }
-    for (uint32_t k = 0; k < instruction.result_count; ++k) made.push_back(instruction.first_result + k);
-  };
-  visit(visit, id);
-  return outside;
+  }
+
+  bool may_be_free(const Instruction& made) const {
+    switch (made.op) {
+      case Opcode::construct:
+      case Opcode::extract: return true;
+      case Opcode::load:
+      case Opcode::fne:
+      case Opcode::ine: return is_kernel_;  // a boolean of a record
+      case Opcode::iadd: return is_kernel_ && is_address(made);
+      default: return false;
+    }
+  }
+  /// The record and a constant.
+  bool is_address(const Instruction& made) const {
+    const auto operands = f_.operands_of(made);
+    const InstructionId second = rates_.made_by[operands[1]];
+    return rates_.made_by[operands[0]] == none && second != none && f_.instructions[second].op == Opcode::constant;
+  }
+
+  const Function& f_;
+  const RatesOfFunction& rates_;
+  bool is_kernel_;
+  std::vector<bool> free_, constant_;
+};
+
+}  // namespace
+
+std::vector<bool> free_values(const Function& f, const RatesOfFunction& rates, bool is_kernel) {
+  return FreeWalk(f, rates, is_kernel).take();
 }
 
 ValueId Copier::new_value(ValueId of) {
@@ -129,14 +133,28 @@ Slice::Slice(const Function& from, const RatesOfFunction& rates, const std::map<
   to_.blocks.emplace_back();
 }
 
-ValueId Slice::copy(ValueId value) {
-  if (const auto found = copier_.values.find(value); found != copier_.values.end()) return found->second;
-  if (rates_.made_by[value] == none) return add_parameter(value);
-  const InstructionId id = rates_.made_by[value];
-  for (const ValueId read : read_from_outside(id)) copy(read);
-  const InstructionId copied = copier_.copy(id);  // may add blocks
-  to_.blocks[0].instructions.push_back(copied);
-  return copier_.values.at(value);
+ValueId Slice::copy(ValueId wanted) {
+  // Graphs may be chains of 100,000 nodes: no recursion.
+  std::vector<ValueId> waiting{wanted};
+  while (!waiting.empty()) {
+    const ValueId value = waiting.back();
+    const auto is_missing = [&](ValueId read) { return !copier_.values.contains(read); };
+    if (is_missing(value)) {
+      const InstructionId id = rates_.made_by[value];
+      if (id == none) {
+        add_parameter(value);
+      } else {
+        const std::vector<ValueId> read = read_from_outside(id);
+        const size_t before = waiting.size();
+        std::ranges::copy_if(read, std::back_inserter(waiting), is_missing);
+        if (waiting.size() != before) continue;
+        const InstructionId copied = copier_.copy(id);  // may add blocks
+        to_.blocks[0].instructions.push_back(copied);
+      }
+    }
+    waiting.pop_back();
+  }
+  return copier_.values.at(wanted);
 }
 
 ValueId Slice::copy_result(const Item& item) {
@@ -195,6 +213,32 @@ ValueId Slice::add_parameter(ValueId value) {
   to_.parameters.back().uniform = true;
   to_.blocks[0].parameters.push_back(copier_.new_value(value));
   return copier_.values.at(value);
+}
+
+void Slice::yield(ValueId value, std::string name) {
+  to_.results.push_back({std::move(name), to_.type(value)});
+  to_.blocks[0].yields.push_back(value);
+}
+
+std::vector<ValueId> Slice::read_from_outside(InstructionId id) const {
+  std::vector<ValueId> made, outside;
+  const auto read = [&](ValueId value) {
+    if (std::ranges::find(made, value) == made.end()) outside.push_back(value);
+  };
+  const auto visit = [&](const auto& self, InstructionId inner) -> void {
+    const Instruction& instruction = from_.instructions[inner];
+    for (const ValueId value : from_.operands_of(instruction)) read(value);
+    for (const BlockId block : instruction.blocks) {
+      if (block == none) continue;
+      const Block& body = from_.blocks[block];
+      made.insert(made.end(), body.parameters.begin(), body.parameters.end());
+      for (const InstructionId next : body.instructions) self(self, next);
+      for (const ValueId value : body.yields) read(value);
+    }
+    for (uint32_t k = 0; k < instruction.result_count; ++k) made.push_back(instruction.first_result + k);
+  };
+  visit(visit, id);
+  return outside;
 }
 
 }  // namespace isoshade::passes

@@ -36,24 +36,9 @@ struct Split {
 /// Which parameters the results of a function depend on.
 std::vector<bool> parameters_needed(const ir::Function& f);
 
-/// Tells values that cost pixels no operation: constants, words of records, and vectors of such.
-class Free {
- public:
-  Free(const ir::Function& f, const RatesOfFunction& rates, bool is_kernel) : f_(f), rates_(rates), is_kernel_(is_kernel) {}
-
-  bool operator()(ir::ValueId value) const;
-
- private:
-  /// Computed from constants: hide_foldables keeps drivers from folding them.
-  bool is_constant(ir::ValueId value) const;
-  bool all_free(const ir::Instruction& made) const;
-  /// The record and a constant.
-  bool is_address(const ir::Instruction& made) const;
-
-  const ir::Function& f_;
-  const RatesOfFunction& rates_;
-  bool is_kernel_;
-};
+/// By value: whether it costs pixels no operation, as constants, words of records, and vectors of such. Only kernels load
+/// from records.
+std::vector<bool> free_values(const ir::Function& f, const RatesOfFunction& rates, bool is_kernel);
 
 /// Copies instructions of one function into another.
 class Copier {

@@ -67,9 +67,10 @@ void cse(ir::Module& module);
 void dce(ir::Module& module, std::vector<uint32_t>& entries);
 
 /// Replaces what the ranges of parameters decide, in functions of documents: comparisons with a known outcome, and
-/// what can have only one value, by constants; sums with a zero by the other operand where that is never -0; min, max, clamp and saturate of values within the limits, and magnitudes of positive values, by the
-/// operand that they return. Bit-exact. Relies on parameters being in range (scenes are checked when loaded); takes
-/// NaN and the signs of zeros into account; ranges contain every float that the ops can give.
+/// what can have only one value, by constants; sums with a zero by the other operand where that is never -0; min, max,
+/// clamp and saturate of values within the limits, and magnitudes of positive values, by the operand that they return.
+/// Bit-exact. Relies on parameters being in range (scenes are checked when loaded); takes NaN and the signs of zeros
+/// into account; ranges contain every float that the ops can give.
 /// Needs: bodies for all calls. Leaves: comparisons that are constants, for fold.
 void decide(ir::Module& module, functions::Tier tier);
 

@@ -15,6 +15,8 @@ namespace {
 using namespace ir;
 
 constexpr uint64_t operations_of_division = 4;
+/// Instructions looked at in a function: the time grows with the cube of its selects. Then it stays as it is.
+constexpr uint64_t max_work = 4'000'000;
 
 /// Which side of a branch uses a value.
 enum class Side : uint8_t { neither, then, other, dead };
@@ -62,8 +64,10 @@ class Sinker {
 
   /// Makes one branch, the last that is worth it, or moves into one what only a side of it needs.
   bool sink_one(BlockId block) {
+    if (work_ > max_work) return false;
     analyse(block);
     const auto size = static_cast<uint32_t>(f_.blocks[block].instructions.size());
+    work_ += size;
     for (uint32_t place = size; place-- > 0;) {
       const Instruction& made = at(block, place);
       if ((made.op != Opcode::select && made.op != Opcode::branch) || uses_[place].empty()) continue;
@@ -132,7 +136,7 @@ class Sinker {
     if (made.op == Opcode::select) {
       std::vector<bool> needed(last + 1, false);
       mark_needed(last, needed);
-      for (uint32_t place = last; place-- > 0;) {
+      for (uint32_t place = last; place-- > 0 && work_ <= max_work;) {
         const Instruction& other = at(block, place);
         if (other.op != Opcode::select || f_.operands_of(other)[0] != choice.condition || needed[place] ||
             uses_[place].empty())
@@ -146,7 +150,8 @@ class Sinker {
   }
 
   /// Marks what an instruction needs, directly or not.
-  void mark_needed(uint32_t of, std::vector<bool>& needed) const {
+  void mark_needed(uint32_t of, std::vector<bool>& needed) {
+    work_ += of;
     // What needs a marked instruction comes behind it.
     std::vector<bool> own(of + 1, false);
     own[of] = true;
@@ -156,7 +161,8 @@ class Sinker {
     }
   }
 
-  void find_sides(BlockId block, Choice& choice) const {
+  void find_sides(BlockId block, Choice& choice) {
+    work_ += uses_.size();
     const uint32_t last = choice.members.front();
     const auto size = static_cast<uint32_t>(uses_.size());
     choice.sides.assign(size + 1, Side::neither);
@@ -265,6 +271,7 @@ class Sinker {
   std::vector<uint32_t> place_of_;      ///< by value: the place in the block of what makes it
   std::vector<std::vector<Use>> uses_;  ///< by place
   std::vector<bool> tried_;             ///< by instruction: a select that is not worth a branch
+  uint64_t work_ = 0;
   size_t made_ = 0;
 };
 

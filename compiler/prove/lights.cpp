@@ -16,6 +16,7 @@ namespace source = interface::source;
 
 /// More directions than this are not looked at: each of them may also be 0, and all combinations are proved.
 constexpr size_t most_directions = 5;
+constexpr size_t most_operations = 500'000;  ///< of all these proofs
 /// Small, because a scene waits for it; shipped effects take far less.
 constexpr Effort effort{.proof = 1'000'000, .later = 0, .error = 0, .samples = 0, .tries = 0};
 
@@ -85,6 +86,7 @@ class Judge {
     // A normal that is interpolated may be 0, and so the direction to a light at the point itself.
     const std::vector<std::string> directions = std::move(directions_);
     if (directions.size() > most_directions) return {false, "it depends on too many directions"};
+    if (operations_ << directions.size() > most_operations) return {false, "it is too long"};
     for (size_t zeros = 1; zeros < size_t{1} << directions.size() && judged.add_nothing; ++zeros) {
       std::vector<std::string> without;
       for (size_t d = 0; d < directions.size(); ++d)
@@ -120,6 +122,7 @@ class Judge {
     const auto tape = make_tape_of_terms(lowered_.module, lowered_.interface.entry, givens, outside, tier_);
     if (!tape) return {false, "it is too long, or does not only add up what lights give"};
     if (tape->outputs.empty()) return {true, ""};
+    operations_ = tape->operations.size();
     const Proof proof = prove(*tape, effort);
     if (proof.vacuous || proof.unfinished || !proof.unproved.empty() || !proof.later.empty()) {
       const uint32_t place =
@@ -167,6 +170,7 @@ class Judge {
   const lower::Lowered lowered_;
   const functions::Tier tier_;
   std::vector<std::string> directions_;  ///< that the terms depend on
+  size_t operations_ = 0;  ///< of the last proof
 };
 
 }  // namespace

@@ -79,6 +79,8 @@ void DrawEvaluator::fill(const std::shared_ptr<const passes::DrawValues>& values
   constexpr size_t most_known = 4096;
   std::shared_ptr<Known>& known = known_[values.get()];
   if (known == nullptr) {
+    // Programs that nobody else has are gone.
+    std::erase_if(known_, [](const auto& entry) { return entry.second != nullptr && entry.second->values.use_count() == 1; });
     known = std::make_shared<Known>(values);
     for (const auto& [buffer, bound] : bound_) known->interpreter.bind(static_cast<uint32_t>(buffer), bound.words);
   }

@@ -330,7 +330,7 @@ bool Planner::plan_next(const Scene& scene, Diagnostics& diagnostics) {
   plan_.stats.environment_kept = is_lit && plan_.stats.environment;
   keys_ = std::move(keys);
   const bool same_frame = update_frame_words();
-  if (!is_placed || (draws_read_frame_ && !same_frame)) place_all();
+  if (!is_placed || !is_lit || (draws_read_frame_ && !same_frame)) place_all();
   if (!make_views(width, height)) return false;
   finish_stats(clock.lap());
   return true;

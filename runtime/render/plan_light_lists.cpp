@@ -45,7 +45,8 @@ bool Planner::is_ordinary(const PlacedCopy& copy) const {
   namespace word = lower::object_word;
   const size_t passes =
       plan_.effects[effect_of_object_[copy.object]].passes.size() * parameters_[copy.object].size();
-  const auto words = static_cast<size_t>(record_words(copy.object));
+  // Behind them lies what is computed of them.
+  const auto words = static_cast<size_t>(record_words(copy.object)) - plan_.effects[effect_of_object_[copy.object]].draw_words;
   for (size_t p = copy.first_pass; p < copy.first_pass + passes; ++p) {
     const PlacedPass& pass = placed_.passes[p];
     if (pass.repetitions == 0) continue;

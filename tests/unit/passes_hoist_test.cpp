@@ -167,6 +167,49 @@ TEST(Hoist, MovesALoopThatIsTheSameAsAWhole) {
   EXPECT_EQ(operations_of(made.module), 1u) << ir::print(made.module);
 }
 
+TEST(Hoist, ChainsMayBeLong) {
+  constexpr int length = 100'000;
+  std::string text = "func @main(%record: int uniform, %x: float) -> (y: float) {\n  %v0 = load objects[%record]\n";
+  for (int i = 1; i <= length; ++i)
+    text += "  %v" + std::to_string(i) + " = fsqrt %v" + std::to_string(i - 1) + "\n";
+  text += "  %y = fmul %v" + std::to_string(length) + ", %x\n  return %y\n}\n";
+  const Hoisted made = hoisted(text);
+  ASSERT_TRUE(made.values);
+  EXPECT_EQ(operations_of(made.module), 1u);
+  EXPECT_EQ(operations_of(made.values->module), size_t{length});
+}
+
+// Each function calls the next with all of its parameters, and again with one less that is the same: 2^14 sets of them.
+TEST(Hoist, NestedFunctionsAreSplitWithinABudget) {
+  constexpr int depth = 14;
+  const auto list = [](const std::string& before, const std::string& after, int varying) {
+    std::string text;
+    for (int i = 0; i < depth; ++i)
+      text += (i == 0 ? "" : ", ") + before + (i == varying ? std::string("x") : "a" + std::to_string(i)) + after;
+    return text;
+  };
+  std::string text = "func @f" + std::to_string(depth) + "(" + list("%", ": float", -1) + ", %x: float) -> (y: float) {\n  %s0 = fsqrt %a0\n";
+  for (int i = 1; i < depth; ++i)
+    text += "  %r" + std::to_string(i) + " = fsqrt %a" + std::to_string(i) + "\n  %s" + std::to_string(i) + " = fadd %s" +
+            std::to_string(i - 1) + ", %r" + std::to_string(i) + "\n";
+  text += "  %y = fmul %s" + std::to_string(depth - 1) + ", %x\n  return %y\n}\n\n";
+  for (int d = depth - 1; d >= 0; --d) {
+    const std::string next = "call @f" + std::to_string(d + 1) + "(";
+    text += "func @f" + std::to_string(d) + "(" + list("%", ": float", -1) + ", %x: float) -> (y: float) {\n  %y0 = " + next +
+            list("%", "", -1) + ", %x)\n  %y1 = " + next + list("%", "", d) + ", %x)\n  %y = fadd %y0, %y1\n  return %y\n}\n\n";
+  }
+  text += "func @main(%record: int uniform, %x: float) -> (y: float) {\n  %v = load objects[%record]\n  %y = call @f0(";
+  for (int i = 0; i < depth; ++i) text += "%v, ";
+  text += "%x)\n  return %y\n}\n";
+  Module module = ir::parsed(std::string(buffers) + text);
+  uint32_t kernel = module.find("main");
+  renumber(module);
+  const auto values = hoist(module, kernel, rate_of(0));
+  EXPECT_EQ(ir::validate(module), "");
+  EXPECT_LT(module.functions.size(), 10'000u) << "not 2^15";
+  EXPECT_LE(values ? values->words : 0, 256u);
+}
+
 /// What the module gives for arguments; the record is that of the first.
 Words outcome(const Module& module, uint32_t kernel, const Words& arguments, const Words& memory) {
   ir::Interpreter interpreter(module, ir::Preconditions::report);
