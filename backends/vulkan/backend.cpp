@@ -41,17 +41,20 @@ bool upload_array(Device& device, FrameBuffer buffer, std::span<const T> data, c
   return true;
 }
 
-/// A post has a record and a view of its own; only textures are the frame's.
-backends::Known known_of(const backends::ScreenPass& pass, FrameBuffer buffer) {
-  const bool is_texture =
-      buffer == FrameBuffer::texels || buffer == FrameBuffer::texel_bytes || buffer == FrameBuffer::textures;
-  return is_texture && pass.textures != nullptr ? backends::known_of(*pass.textures, nullptr, buffer) : backends::Known{};
+bool is_texture_array(FrameBuffer buffer) {
+  return buffer == FrameBuffer::texels || buffer == FrameBuffer::texel_bytes || buffer == FrameBuffer::textures;
 }
 
+/// A post has a record and a view of its own; only textures are the frame's.
+backends::Known known_of(const backends::ScreenPass& pass, FrameBuffer buffer) {
+  return is_texture_array(buffer) && pass.textures != nullptr ? backends::known_of(*pass.textures, nullptr, buffer) : backends::Known{};
+}
+
+/// Where a texture lies may be known for the draw: then only its texels are read.
 bool reads_textures(const Program& program) {
   return std::ranges::any_of(program.module.functions, [](const ir::Function& function) {
     return std::ranges::any_of(function.instructions, [](const ir::Instruction& made) {
-      return made.op == ir::Opcode::load && made.imm == static_cast<uint32_t>(FrameBuffer::textures);
+      return made.op == ir::Opcode::load && is_texture_array(static_cast<FrameBuffer>(made.imm));
     });
   });
 }

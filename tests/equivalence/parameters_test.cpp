@@ -80,7 +80,7 @@ class Parameters : public SceneFolder {
     return sum;
   }
   static bool is_reported(const render::Plan& plan) {
-    return std::ranges::any_of(plan.stats.skips, [](const render::Skipped& skip) { return skip.skip == interface::Skip::parameters; });
+    return std::ranges::any_of(plan.stats.in_programs, [](const render::Skipped& skip) { return skip.skip == interface::Skip::parameters; });
   }
   /// Compares a scene on each backend with and without fixed values.
   void expect_same_bits(const scene::Scene& scene, const std::string& what) {
