@@ -296,7 +296,8 @@ TEST(Text, HasTheSameStructureInBothLanguages) {
 TEST(Text, CallsNodesByTheirIds) {
   const auto material = std::ranges::find(shipped(), "materials_cook_torrance_base_pixel", &Texts::name);
   ASSERT_NE(material, shipped().end());
-  for (const char* node : {"f0", "kd", "one_light", "direct", "reflectance", "sky_specular", "color"})
+  EXPECT_FALSE(matches(material->glsl, "(draw_f0)").empty()) << "computed once for a draw";
+  for (const char* node : {"kd", "one_light", "direct", "reflectance", "sky_specular", "color"})
     for (const std::string* text : {&material->glsl, &material->cpp})
       EXPECT_EQ(matches(*text, std::string("[^\n]* (") + node + ") = ").size() >= 1, true) << node;
 }
