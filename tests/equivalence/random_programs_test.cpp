@@ -17,6 +17,7 @@
 #include "compiler/targets/cpp/cpp.h"
 #include "tests/conformance/cases.h"
 #include "tests/unit/random_module.h"
+#include "tests/equivalence/seeds.h"
 #include "tests/unit/scalar_interpreter.h"
 #ifdef ISOSHADE_VULKAN
 #include "backends/vulkan/backend.h"
@@ -29,17 +30,6 @@ using ir::ValueId;
 
 constexpr size_t rows = 2000;
 constexpr size_t max_words = 32;  ///< of a program on Vulkan
-
-struct Seeds {
-  uint64_t first, last;
-};
-
-Seeds seeds(uint64_t count, uint64_t full_count) {
-  Seeds chosen{0, std::getenv("ISOSHADE_FULL") != nullptr ? full_count : count};
-  if (const char* given = std::getenv("ISOSHADE_SEEDS"))
-    std::sscanf(given, "%lu,%lu", &chosen.first, &chosen.last);
-  return chosen;
-}
 
 /// Several random modules behind one kernel, and whose seed each result word is of.
 struct RandomProgram {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "compiler/driver/driver.h"
+#include "tests/equivalence/seeds.h"
 #include "tests/equivalence/scene_folder.h"
 
 namespace isoshade::equivalence {
@@ -136,17 +137,6 @@ class RandomScene {
   std::mt19937 random_;
   int posts_ = 0;
 };
-
-struct Seeds {
-  uint64_t first, last;
-};
-
-Seeds seeds(uint64_t count, uint64_t full_count) {
-  Seeds chosen{0, std::getenv("ISOSHADE_FULL") != nullptr ? full_count : count};
-  if (const char* given = std::getenv("ISOSHADE_SEEDS"))
-    std::sscanf(given, "%lu,%lu", &chosen.first, &chosen.last);
-  return chosen;
-}
 
 TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
   const auto [first, last] = seeds(12, 1250);
