@@ -7,9 +7,9 @@
 #include "compiler/driver/finish.h"
 #include "compiler/driver/front.h"
 #include "compiler/lower/frame_layout.h"
+#include "compiler/lower/light_sums.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/screen.h"
-#include "compiler/prove/lights.h"
 
 namespace isoshade::driver {
 
@@ -172,37 +172,37 @@ std::optional<Effect> check_effect(const support::Source& source, const CompileO
   if (typed == nullptr) return std::nullopt;
   Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}, false,
                 environment_reads(*typed), typed};
+  effect.lists_lights = options.lights.lists && lower::leaves_out_black_lights(*typed);
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
-    const bool lists_lights = options.lights.lists && prove::judge_black_lights(*typed, i, options.tier).add_nothing;
     effect.passes.push_back({pass.name, pass.state, pass.position.has_value(), false, pass.enabled,
-                             pass.double_sided, pass.blended, lists_lights, cutoff_parameter(*typed, i),
+                             pass.double_sided, pass.blended, cutoff_parameter(*typed, i),
                              pass.casts_shadow, pass.casts_blended_shadow, false, pass.receives_shadow, pass.repeat, {}, {},
                              {}, {}});
   }
   return effect;
 }
 
-void make_programs(Effect& effect, const CompileOptions& options) {
+void make_programs(Effect& effect, const CompileOptions& of_scene) {
+  CompileOptions options = of_scene;
+  options.lights.lists = effect.lists_lights;
   const check::TypedGraph& typed = *effect.typed;
   effect.fixed = options.fixed;
   for (size_t i = 0; i < effect.passes.size(); ++i) {
     EffectPass& made = effect.passes[i];
-    CompileOptions of_pass = options;
-    of_pass.lights.lists &= made.black_lights_add_nothing;
     uint32_t room = first_draw_word(effect);
     made.vertex = vertex_program(typed, i, effect, options, room);
     room += draw_words(made.vertex);
     made.cutout = cutout_program(typed, i, effect, options, room);
     if (made.cutout) room += draw_words(*made.cutout);
-    made.pixel = pixel_program(typed, i, effect, of_pass, room);
+    made.pixel = pixel_program(typed, i, effect, options, room);
     effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
                              (made.cutout && reads_previous(*made.cutout));
     made.sums_lights = std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
       return std::holds_alternative<interface::source::LightCount>(binding.source);
     });
     made.receives_shadow &= made.sums_lights;
-    if (made.state.blend != interface::Blend::none) made.blend = pixel_program(typed, i, effect, of_pass, room, true);
+    if (made.state.blend != interface::Blend::none) made.blend = pixel_program(typed, i, effect, options, room, true);
     room += std::max(draw_words(made.pixel), made.blend ? draw_words(*made.blend) : 0);
     effect.draw_words = std::max(effect.draw_words, room - first_draw_word(effect));
     if (!made.blend) continue;

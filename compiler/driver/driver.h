@@ -46,8 +46,6 @@ struct EffectPass {
   std::optional<size_t> enabled;       ///< index of a parameter field; the pass is drawn if it is not 0
   std::optional<size_t> double_sided;  ///< index of a parameter field; no face is culled if it is not 0
   std::optional<size_t> blended;       ///< index of a parameter field; the pass is opaque if it is 0
-  /// See prove::BlackLights; only known where CompileOptions::lights asks for lists. Then `pixel` and `blend` read them.
-  bool black_lights_add_nothing = false;
   std::optional<size_t> cutoff;        ///< index of a parameter field; there is no cut-out if it is 0 or less
   bool casts_shadow = true, casts_blended_shadow = false;  ///< the second: where it is blended
   bool sums_lights = false;     ///< its color depends on lights
@@ -68,6 +66,9 @@ struct Effect {
   bool reads_previous = false;
   EnvironmentReads environment;
   std::shared_ptr<const check::TypedGraph> typed = nullptr;
+  /// Each object lists the lights that its programs sum up: CompileOptions::lights asks for it, and no bit tells whether
+  /// a black light is in the list.
+  bool lists_lights = false;
   FixedWords fixed = {};  ///< what its programs are compiled for
   /// Behind all of that each record has what is the same all over a draw (Program::draw), at most so many words. Where
   /// there are any, there are always words for the columns before them.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/functions/library.h"
+#include "compiler/lower/light_sums.h"
 #include "compiler/lower/sampling.h"
 #include "compiler/support/assert.h"
 
@@ -43,6 +44,7 @@ class Body {
   void make_sum(uint32_t node);
   /// How often a sum over lights or taps turns.
   ir::ValueId turns_of(uint32_t sum);
+  ir::ValueId is_lit();
   void make_fetch(const Node& node);
   FetchOffset offset(nodes::Fetch what, std::span<const Operand> ports);
   Value transform(nodes::Transform what, const Node& node);
@@ -372,6 +374,7 @@ void Body::make_sum(uint32_t index) {
   const bool asks_light = std::ranges::any_of(inside, [&](uint32_t i) {
     return graph_.nodes[i].row != nullptr && graph_.nodes[i].row->is<nodes::Light>();
   });
+  const bool asks_color = sums_colors(graph_, index);
   const std::vector<uint32_t> zero(graph::float_count(summand.needed), 0);
   const Value initial = nodes::constant(b_, summand.needed, zero);
   const auto body = [&](ir::ValueId turn, std::span<const ir::ValueId> carried) {
@@ -388,17 +391,22 @@ void Body::make_sum(uint32_t index) {
     }
     for (const uint32_t i : inside) make(i);
     b_.set_origin(origin_of(index));
-    const ir::ValueId added = read(summand).id();
-    return std::vector{b_.op(ir::Opcode::fadd, {carried[0], added})};
+    const ir::ValueId sum = b_.op(ir::Opcode::fadd, {carried[0], read(summand).id()});
+    // A choice of sums and not of terms: to add 0 would make a sum of -0 positive.
+    return std::vector{asks_color ? b_.op(ir::Opcode::select, {is_lit(), sum, carried[0]}) : sum};
   };
-  ir::ValueId sum = b_.loop(turns_of(index), initial.ids(), body).front();
-  if (node.row->is<nodes::SumLights>()) {
-    // A negative sum too small for a float becomes -0, and a light that adds 0 would make that +0. So that it does not
-    // matter whether such a light is there, no sum is -0.
-    b_.set_origin(origin_of(index));
-    sum = b_.op(ir::Opcode::fadd, {sum, initial.id()});
+  results_of(node)[0] = b_.loop(turns_of(index), initial.ids(), body).front();
+}
+
+/// Whether any light arrives from the light of the current loop.
+ir::ValueId Body::is_lit() {
+  const ir::ValueId color = light_[static_cast<size_t>(nodes::Light::color)], zero = b_.constant(0.0f);
+  ir::ValueId lit = ir::none;
+  for (uint32_t c = 0; c < 3; ++c) {
+    const ir::ValueId shines = b_.op(ir::Opcode::fne, {b_.extract(color, c), zero});
+    lit = c == 0 ? shines : b_.op(ir::Opcode::bor, {lit, shines});
   }
-  results_of(node)[0] = sum;
+  return lit;
 }
 
 ir::ValueId Body::turns_of(uint32_t sum) {

@@ -155,8 +155,11 @@ void define_light_at(ir::Module& module, uint32_t function, LightKinds kinds) {
 std::array<ir::ValueId, 2> light_values(Kernel& k, Int record, Vec3 position, LightKinds kinds) {
   const auto finish = [&](Vec3 direction, Vec3 color) {
     if (!kinds.shadows) return std::array{direction.value, color.value};
+    // Nothing changes where no light arrives.
+    const Float dark(0.0f);
+    const Bool arrives = k.named("arrives", (color[0] != dark) | (color[1] != dark) | (color[2] != dark));
     const Float visible(k.b, k.call("shadow_at", {record.id(k.b), position.value})[0]);
-    return std::array{direction.value, (color * functions::splat<3>(visible)).value};
+    return std::array{direction.value, (color * functions::splat<3>(select(arrives, visible, Float(1.0f)))).value};
   };
   const Vec3 direction = k.load3(FrameBuffer::lights, record, light_word::direction);
   const Vec3 color = k.load3(FrameBuffer::lights, record, light_word::color);

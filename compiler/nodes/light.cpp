@@ -17,7 +17,8 @@ std::vector<Row> light_rows() {
        Color3,
        Light::color},
       {"sum_lights",
-       "The sum of `in` over the lights of the scene, in scene order, starting from 0; never -0.",
+       "The sum of `in` over the lights of the scene, in scene order, starting from 0. If `in` depends on `lightcolor`, lights "
+       "whose colour is 0 at the surface point are left out.",
        {{"in", AnyFloat, "the contribution of one light"}},
        AnyFloat,
        SumLights{}},

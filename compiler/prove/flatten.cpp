@@ -369,18 +369,25 @@ std::optional<Side> Flattener::turns_of(uint32_t count) const {
 /// The result of a loop for a carried value: the sum, if each turn adds to it.
 uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, const Side& turns,
                            uint32_t place) {
-  const Operation& added = pool_[next];
-  const auto operands = pool_.operands(next);
-  const bool adds = added.kind == Kind::op && added.op == Opcode::fadd && operands[0] == carried;
+  const auto is = [&](uint32_t operation, Opcode op) { return pool_[operation].kind == Kind::op && pool_[operation].op == op; };
+  // A turn may add nothing: condition ? carried + term : carried.
+  uint32_t condition = none, sum = next;
+  if (is(next, Opcode::select) && pool_.operands(next)[2] == carried) {
+    condition = pool_.operands(next)[0];
+    sum = pool_.operands(next)[1];
+  }
+  const bool adds = is(sum, Opcode::fadd) && pool_.operands(sum)[0] == carried;
   constexpr double most = 1 << 20;
   if (!adds || initial != pool_.constant(Scalar::floating, 0) || turns.hi > most)
     return unknown(pool_[carried].scalar, place);
   if (turns.hi <= 0) return initial;
   // If the term reads values of earlier turns, it contains the unknown of `carried`.
+  uint32_t term = pool_.operands(sum)[1];
+  if (condition != none) term = pool_.make_op(Opcode::select, {condition, term, initial}, Scalar::floating, place);
   const bool fixed = turns.lo == turns.hi;
   return pool_.make(
       {.kind = Kind::sum, .index = static_cast<uint32_t>(turns.hi), .bits = fixed ? 1u : 0u, .place = place},
-      std::array{pool_.operands(next)[1]});
+      std::array{term});
 }
 
 }  // namespace
@@ -413,48 +420,6 @@ std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const
   tape.module = module;
   Pool pool(tape);
   if (!flatten(pool, function, given, outside)) return std::nullopt;
-  put_in_order(pool);
-  return tape;
-}
-
-std::optional<Tape> make_tape_of_terms(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                                       const std::function<std::vector<Given>(uint32_t)>& outside,
-                                       functions::Tier tier) {
-  Tape tape;
-  tape.tier = tier;
-  tape.module = module;
-  Pool pool(tape);
-  if (!flatten(pool, function, given, outside)) return std::nullopt;
-  /// Everything that some operations are made of, and they themselves.
-  const auto parts_of = [&](std::vector<uint32_t> open) {
-    std::vector<bool> found(tape.operations.size());
-    std::vector<uint32_t> parts;
-    while (!open.empty()) {
-      const uint32_t operation = open.back();
-      open.pop_back();
-      if (found[operation]) continue;
-      found[operation] = true;
-      parts.push_back(operation);
-      open.insert(open.end(), pool.operands(operation).begin(), pool.operands(operation).end());
-    }
-    return parts;
-  };
-  const auto is_sum = [&](uint32_t operation) { return pool[operation].kind == Kind::sum; };
-  const auto differentiates_sum = [&](uint32_t operation) {
-    // Derivatives of anything but inputs have answers of unknown error.
-    const Operation& asked = pool[operation];
-    if (asked.kind != Kind::asked || asked.index != static_cast<uint32_t>(Answer::unknown)) return false;
-    return std::ranges::any_of(parts_of({operation}), is_sum);
-  };
-  std::vector<uint32_t> results;
-  for (const Tape::Output& output : tape.outputs) results.push_back(output.operation);
-  tape.outputs.clear();
-  for (const uint32_t operation : parts_of(results)) {
-    // What a loop carries from turn to turn is unknown, and is no part of a sum.
-    if (pool[operation].kind == Kind::unknown || differentiates_sum(operation)) return std::nullopt;
-    if (is_sum(operation))
-      tape.outputs.push_back({"term " + std::to_string(tape.outputs.size()), pool.operands(operation)[0]});
-  }
   put_in_order(pool);
   return tape;
 }

@@ -162,10 +162,4 @@ std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const
                               const std::function<std::vector<Given>(uint32_t)>& outside,
                               functions::Tier tier = functions::Tier::standard);
 
-/// The same of the terms that loops of the function add up, which become the outputs. Nothing, too, where a result
-/// depends on a loop that does anything else, or on derivatives of a sum.
-std::optional<Tape> make_tape_of_terms(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                                       const std::function<std::vector<Given>(uint32_t)>& outside,
-                                       functions::Tier tier = functions::Tier::standard);
-
 }  // namespace isoshade::prove

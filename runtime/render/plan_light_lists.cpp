@@ -12,51 +12,15 @@
 namespace isoshade::render {
 namespace {
 
-namespace assume = interface::assume;
+/// Boxes beyond this are not looked at: squares of distances in them may not be finite.
+constexpr double limit = 0x1p60;
 
-/// Interpolated values exceed those of vertices by rounding; coordinates in view space are differences of others.
-constexpr float limit = static_cast<float>(assume::limit) / 8;
-
-bool lie_within(std::span<const float> words, double low, double high) {
-  return std::ranges::all_of(words, [&](float word) { return word >= low && word <= high; });
-}
-
-/// Whether the vertices of a mesh are as `isoshade check` assumes, but for corner normals, on which no light depends.
-bool has_ordinary_vertices(const StoredMesh& mesh, std::span<const float> vertices) {
-  namespace word = lower::vertex_word;
-  constexpr double most_coordinate = assume::texture_coordinate.hi / 2, most_color = assume::color.hi / 2;
-  for (const MeshPart& part : mesh.parts) {
-    for (size_t v = 0; v < part.vertex_count; ++v) {
-      const std::span vertex = vertices.subspan((part.first_vertex + v) * word::stride, word::stride);
-      if (!lie_within(vertex.first(word::corner_normals), -double{limit}, limit) ||
-          !lie_within(vertex.subspan(word::texcoord, 2), -most_coordinate, most_coordinate) ||
-          !lie_within(vertex.subspan(word::texcoord1, 2), -most_coordinate, most_coordinate) ||
-          !lie_within(vertex.subspan(word::color, 4), assume::color.lo, most_color))
-        return false;
-    }
-  }
-  return true;
+bool lies_within(const ReachBox& box) {
+  const auto is_near = [](double at) { return std::abs(at) <= limit; };
+  return std::ranges::all_of(box.low, is_near) && std::ranges::all_of(box.high, is_near);
 }
 
 }  // namespace
-
-/// Whether all numbers that programs may read of a copy are as `isoshade check` assumes, see prove::BlackLights.
-bool Planner::is_ordinary(const PlacedCopy& copy) const {
-  namespace word = lower::object_word;
-  const size_t passes =
-      plan_.effects[effect_of_object_[copy.object]].passes.size() * parameters_[copy.object].size();
-  // Behind them lies what is computed of them.
-  const auto words = static_cast<size_t>(record_words(copy.object)) - plan_.effects[effect_of_object_[copy.object]].draw_words;
-  for (size_t p = copy.first_pass; p < copy.first_pass + passes; ++p) {
-    const PlacedPass& pass = placed_.passes[p];
-    if (pass.repetitions == 0) continue;
-    const std::span record = std::span(plan_.frame.objects).subspan(static_cast<size_t>(pass.record), words);
-    if (!lie_within(record.first(word::program), -double{limit}, limit) ||
-        !lie_within(record.subspan(word::parameters), -assume::limit, assume::limit))
-      return false;
-  }
-  return true;
-}
 
 /// The lights that are not black, and of these those that reach a copy.
 Planner::LightsOfCopy Planner::lights_of(const PlacedCopy& copy) const {
@@ -64,53 +28,37 @@ Planner::LightsOfCopy Planner::lights_of(const PlacedCopy& copy) const {
   LightsOfCopy lights;
   const StoredMesh& mesh = plan_.meshes[mesh_of_object_[copy.object]];
   const ReachBox box = box_around(mesh.low, mesh.high, copy.model);
+  const bool is_known = lies_within(box);
   for (size_t i = 0; i < count; ++i) {
     constexpr int stride = lower::light_word::stride;
     const LightRecord record = std::span(plan_.frame.lights).subspan(i * stride).first<stride>();
     lights.shining.push_back(!is_black(record));
-    lights.reaching.push_back(lights.shining[i] && reaches(record, box));
+    lights.reaching.push_back(lights.shining[i] && (!is_known || reaches(record, box)));
   }
   return lights;
 }
 
 void Planner::list_lights() {
   namespace word = lower::object_word;
-  const auto has_lists = [](const driver::Effect& effect) {
-    return std::ranges::any_of(effect.passes, &driver::EffectPass::black_lights_add_nothing);
-  };
-  if (std::ranges::none_of(plan_.effects, has_lists)) return;
+  if (std::ranges::none_of(plan_.effects, &driver::Effect::lists_lights)) return;
   backends::Frame& frame = plan_.frame;
   const size_t count = scene_->lights.size(), first = frame.lights.size();
   const std::vector<bool> all(count, true);
   LightLists lists{.lights = frame.lights};
-  const glm::vec3 eye = glm::abs(scene_->camera.position);
-  lists.is_eye_ordinary = std::max({eye.x, eye.y, eye.z}) <= limit;
-  if (lists.is_eye_ordinary == light_lists_.is_eye_ordinary &&
-      light_lists_.objects == frame.revisions.objects && same_bits(lists.lights, light_lists_.lights)) {
+  if (light_lists_.objects == frame.revisions.objects && same_bits(lists.lights, light_lists_.lights)) {
     frame.lights.insert(frame.lights.end(), light_lists_.words.begin(), light_lists_.words.end());
     plan_.stats.skips.insert(plan_.stats.skips.end(), light_lists_.skips.begin(), light_lists_.skips.end());
     plan_.stats.left_out_lights = light_lists_.left_out;
     return;
   }
 
-  if (!has_ordinary_texels_)
-    has_ordinary_texels_ =
-        lie_within(std::span(frame.texels).first(texels_of_textures_), assume::color.lo, assume::color.hi);
-  if (vertices_of_ordinary_ != frame.revisions.vertices) {
-    vertices_of_ordinary_ = frame.revisions.vertices;
-    has_ordinary_mesh_.clear();
-    for (const StoredMesh& mesh : plan_.meshes)
-      has_ordinary_mesh_.push_back(has_ordinary_vertices(mesh, frame.vertices));
-  }
-  const bool may_leave_out = lists.is_eye_ordinary && *has_ordinary_texels_;
   struct Part {
     std::vector<LightsOfCopy> copies;
   };
   const auto parts = in_parts<Part>(placed_.copies.size(), [&](size_t i, Part& part) {
     const PlacedCopy& copy = placed_.copies[i];
-    const bool leaves_out = may_leave_out && has_lists(plan_.effects[effect_of_object_[copy.object]]) &&
-                            has_ordinary_mesh_[mesh_of_object_[copy.object]] && is_ordinary(copy);
-    part.copies.push_back(leaves_out ? lights_of(copy) : LightsOfCopy{all, all});
+    const bool has_list = plan_.effects[effect_of_object_[copy.object]].lists_lights;
+    part.copies.push_back(has_list ? lights_of(copy) : LightsOfCopy{all, all});
   });
 
   std::map<std::vector<bool>, size_t> list_at;  ///< word in Frame::lights
@@ -142,7 +90,7 @@ void Planner::list_lights() {
       for (size_t p = 0; p < effect.passes.size() * material_parts; ++p) {
         const driver::EffectPass& pass = effect.passes[p / material_parts];
         const PlacedPass& placed = placed_.passes[copy.first_pass + p];
-        if (!pass.black_lights_add_nothing || placed.repetitions == 0) continue;
+        if (!effect.lists_lights || placed.repetitions == 0) continue;
         const std::vector<bool>& of_pass = pass.moves_vertices ? lights.shining : lights.reaching;
         const size_t list = find_list(of_pass);
         const bool is_all = list == first;

@@ -200,7 +200,6 @@ class Planner {
   struct LightLists {
     std::vector<float> lights = {};  ///< their records
     uint64_t objects = 0;            ///< Revisions::objects
-    bool is_eye_ordinary = false;
     std::vector<float> words = {};  ///< what stands behind the records
     std::vector<Skipped> skips = {};
     int64_t left_out = 0;
@@ -208,7 +207,6 @@ class Planner {
   /// Appends the lists behind the records of the lights, and writes to each record of an object where its own is.
   void list_lights();
   LightsOfCopy lights_of(const PlacedCopy& copy) const;
-  bool is_ordinary(const PlacedCopy& copy) const;
 
   // How far things have moved (plan_motion.cpp), if a post reads that.
   bool may_read_motion() const;
@@ -259,9 +257,6 @@ class Planner {
   bool draws_read_frame_ = false;                        ///< what is the same for a draw may depend on it
   std::vector<float> lights_before_, frame_before_;  ///< arrays of the frame before, to compare with
   LightLists light_lists_;                           ///< of the frame before
-  std::optional<bool> has_ordinary_texels_;          ///< of textures; they stay
-  std::vector<bool> has_ordinary_mesh_;              ///< by mesh
-  uint64_t vertices_of_ordinary_ = 0;                ///< Revisions::vertices of these
   std::vector<const driver::Program*> programs_before_;
   std::vector<uint32_t> cutouts_before_;
   glm::mat4 projection_before_{1};

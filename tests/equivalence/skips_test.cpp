@@ -153,35 +153,44 @@ TEST_F(LightsOf, EffectsThatMultiplyByTheColourAreLeftOut) {
       0);
 }
 
-TEST_F(LightsOf, EffectsThatDoNotMultiplyByTheColourStay) {
+TEST_F(LightsOf, EffectsThatMakeLightOfBlackLightsAreLeftOut) {
+  // A step of a ramp that would be lit without light.
+  EXPECT_GT(left_out_of(R"json("term": {"type": "expression", "code": "max(c, color3(0.1))", "c": "c"})json"), 0);
+  // Terms that may be infinite or NaN.
+  EXPECT_GT(
+      left_out_of(
+          R"json("term": {"type": "expression", "code": "c / dot(n, l)", "c": "c", "n": "n", "l": "l"})json"),
+      0);
+  EXPECT_GT(left_out_of(R"json("w": {"type": "fwidth", "in": "n"},
+                            "term": {"type": "expression", "code": "c / w.x", "c": "c", "w": "w"})json"),
+            0);
+}
+
+// A sum of -0 stays one, as every light that is added would make it +0.
+TEST_F(LightsOf, EffectsThatSumUpLessThanAFloatHoldsAreLeftOut) {
+  EXPECT_GT(left_out_of(R"json("term": {"type": "expression", "code": "c * -1e-38", "c": "c"})json",
+                        R"json({"type": "expression", "code": "color3(1) / light", "light": "tiny"})json" +
+                            std::string(R"json(, "tiny": {"type": "sum_lights", "in": "term"})json")),
+            0);
+}
+
+TEST_F(LightsOf, EffectsThatDifferentiateTheSumAreLeftOut) {
+  const std::string term =
+      R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"},
+    "light": {"type": "sum_lights", "in": "term"}, "w": {"type": "fwidth", "in": "light"})json";
+  EXPECT_GT(left_out_of(term, R"json({"type": "add", "in1": "light", "in2": "w"})json"), 0);
+}
+
+TEST_F(LightsOf, EffectsThatDoNotReadTheColourStay) {
   EXPECT_EQ(
       left_out_of(
           R"json("term": {"type": "expression", "code": "color3(max(dot(n, l), 0))", "n": "n", "l": "l"})json"),
       0);
-  // A step of a ramp that is lit without light.
-  EXPECT_EQ(left_out_of(R"json("term": {"type": "expression", "code": "max(c, color3(0.1))", "c": "c"})json"),
+  // One sum that does not is enough.
+  EXPECT_EQ(left_out_of(R"json("facing": {"type": "dotproduct", "in1": "n", "in2": "l"},
+    "all": {"type": "sum_lights", "in": "facing"},
+    "term": {"type": "expression", "code": "c * all", "c": "c", "all": "all"})json"),
             0);
-}
-
-TEST_F(LightsOf, EffectsWhoseFactorMayBeInfiniteStay) {
-  EXPECT_EQ(
-      left_out_of(
-          R"json("term": {"type": "expression", "code": "c / dot(n, l)", "c": "c", "n": "n", "l": "l"})json"),
-      0);
-  // Finite for every direction, but not for the zero vector that opposite normals make.
-  EXPECT_EQ(
-      left_out_of(R"json("term": {"type": "expression", "code": "c / dot(n, n)", "c": "c", "n": "n"})json"),
-      0);
-  EXPECT_EQ(left_out_of(R"json("w": {"type": "fwidth", "in": "n"},
-                            "term": {"type": "expression", "code": "c * w.x", "c": "c", "w": "w"})json"),
-            0);
-}
-
-TEST_F(LightsOf, EffectsThatDifferentiateTheSumStay) {
-  const std::string term =
-      R"json("term": {"type": "expression", "code": "c * max(dot(n, l), 0)", "c": "c", "n": "n", "l": "l"},
-    "light": {"type": "sum_lights", "in": "term"}, "w": {"type": "fwidth", "in": "light"})json";
-  EXPECT_EQ(left_out_of(term, R"json({"type": "add", "in1": "light", "in2": "w"})json"), 0);
 }
 
 /// Draws frames one after the other with one renderer, with the skip and without, and counts what was kept.
