@@ -33,7 +33,9 @@ uint32_t add_under(ir::Module& module) {
   const Int step = k.named("step", select(rest < Int(0), Int(-1), select(rest >= twice, Int(1), Int(0))));
   const Int place = k.named("place", guess + step);
   const Float inside = to_float(rest - step * twice) / width;
-  k.b.finish(std::array{place.value, k.named("inside", inside).value});
+  // Images of one size are usual, and spare all of that.
+  const Bool same = k.named("same", k.integer(1) == k.integer(2));
+  k.b.finish(std::array{select(same, k.integer(0), place).value, k.named("inside", select(same, Float(0.5f), inside)).value});
   return k.index;
 }
 
