@@ -221,11 +221,16 @@ KnownRanges RangeWalker::chosen(const RangeFrame& frame, const ir::Instruction& 
   const auto may_give_minus_zero = [](const KnownRange& a, const KnownRange& b) {
     return !a.is_never_minus_zero() || !b.is_never_minus_zero();
   };
-  const auto lesser = [&](const KnownRange& a, const KnownRange& b) {
-    return a && b ? KnownRange{std::min(a.lo, b.lo), std::min(a.hi, b.hi), may_give_minus_zero(a, b)} : KnownRange{};
+  // min(a, b) is b < a ? b : a, and max(a, b) is a < b ? b : a: a NaN in the place of b gives a.
+  const auto lesser = [&](const KnownRange& a, const KnownRange& b) -> KnownRange {
+    if (a && b) return {std::min(a.lo, b.lo), std::min(a.hi, b.hi), may_give_minus_zero(a, b)};
+    if (a.least && b) return {std::min(*a.least, b.lo), b.hi};
+    return a ? KnownRange{.most = a.hi} : KnownRange{};
   };
-  const auto greater = [&](const KnownRange& a, const KnownRange& b) {
-    return a && b ? KnownRange{std::max(a.lo, b.lo), std::max(a.hi, b.hi), may_give_minus_zero(a, b)} : KnownRange{};
+  const auto greater = [&](const KnownRange& a, const KnownRange& b) -> KnownRange {
+    if (a && b) return {std::max(a.lo, b.lo), std::max(a.hi, b.hi), may_give_minus_zero(a, b)};
+    if (a.most && b) return {b.lo, std::max(*a.most, b.hi)};
+    return a ? KnownRange{.least = a.lo} : KnownRange{};
   };
   for (uint32_t c = 0; c < f.type(made.first_result).width; ++c) {
     const auto of = [&](size_t operand) -> const KnownRange& {

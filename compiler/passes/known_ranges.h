@@ -20,6 +20,8 @@ struct KnownRange {
   bool may_be_minus_zero = true;
   /// No float but 0 has a smaller magnitude.
   double gap = 0x1p-126;
+  /// Of a range that is not known otherwise: the component is no NaN, but may be infinite on the other side.
+  std::optional<double> least = {}, most = {};
 
   explicit operator bool() const { return lo <= hi; }
   bool is_point() const { return lo == hi; }

@@ -67,6 +67,19 @@ constexpr Case cases[] = {
      "%o = constant float 0x3f800000 %c: bool = flt %x, %o %out = select %c, %x, %y", "flt", true},
     {"ComparisonAtTheEnd", 0.25f, 1,
      "%o = constant float 0x3f800000 %c: bool = flt %x, %o %out = select %c, %x, %y", "flt", false},
+    // max(-1, x) and min(1, x) are no NaN and end on one side, with the other they end on both; max(x, -1) may be NaN.
+    {"SquareOfChosen", 0, 0,
+     "%m = constant float 0xbf800000 %o = constant float 0x3f800000 %z = constant float 0x00000000 %a = call @max(%m, %x) "
+     "%b = call @min(%a, %o) %s = fmul %b, %b %out = fmul %s, %z", "fmul", true},
+    {"SquareOfChosenTheOtherWay", 0, 0,
+     "%m = constant float 0xbf800000 %o = constant float 0x3f800000 %z = constant float 0x00000000 %a = call @min(%o, %x) "
+     "%b = call @max(%a, %m) %s = fmul %b, %b %out = fmul %s, %z", "fmul", true},
+    {"SquareOfChosenOrNan", 0, 0,
+     "%m = constant float 0xbf800000 %o = constant float 0x3f800000 %z = constant float 0x00000000 %a = call @max(%x, %m) "
+     "%b = call @min(%a, %o) %s = fmul %b, %b %out = fmul %s, %z", "fmul", false},
+    {"SquareOfChosenOrInfinite", 0, 0,
+     "%m = constant float 0xbf800000 %z = constant float 0x00000000 %a = call @max(%m, %x) %s = fmul %a, %a "
+     "%out = fmul %s, %z", "fmul", false},
 };
 
 class Decided : public testing::TestWithParam<Case> {};
@@ -101,7 +114,11 @@ TEST_P(Decided, OnlyWhereEveryBitStays) {
   const std::string range = is_declared ? " least " + hexadecimal(c.least) + " most " + hexadecimal(c.most) : "";
   // %w makes the function one that declares a range.
   const ir::Module before =
-      ir::valid("func @main(%x: float" + range + ", %y: float" + range +
+      ir::valid("func @min(%a: float, %b: float) -> (out: float) library \"min\" { %c: bool = flt %b, %a "
+                "%out = select %c, %b, %a return %out } "
+                "func @max(%a: float, %b: float) -> (out: float) library \"max\" { %c: bool = flt %a, %b "
+                "%out = select %c, %b, %a return %out } "
+                "func @main(%x: float" + range + ", %y: float" + range +
                 ", %w: float least 0x00000000 most 0x3f800000) -> (out: float) from \"test.json\" { " + c.body +
                 " return %out }");
   ir::Module after = before;
@@ -109,12 +126,13 @@ TEST_P(Decided, OnlyWhereEveryBitStays) {
   const bool is_fewer = count(ir::print(after), c.op) < count(ir::print(before), c.op);
   EXPECT_EQ(is_fewer, c.is_decided) << ir::print(after);
 
+  const uint32_t kernel = before.find("main");
   ir::Interpreter first(before, ir::Preconditions::report), second(after, ir::Preconditions::report);
   for (const uint32_t x : values_of(c))
     for (const uint32_t y : values_of(c)) {
       const std::vector<uint32_t> words{x, y, 0};
       std::vector<uint32_t> expected(1), made(1);
-      ASSERT_TRUE(first.run(0, words, expected) && second.run(0, words, made));
+      ASSERT_TRUE(first.run(kernel, words, expected) && second.run(kernel, words, made));
       ASSERT_EQ(made, expected) << std::hex << x << " " << y << "\n" << ir::print(after);
     }
 }
