@@ -49,11 +49,14 @@ class ChainPlanner {
 
   bool read_post(size_t p);
   bool find_sources(size_t p, Planned& planned);
-  /// The image that results when posts that are switched off pass on the image that they would process.
+  /// The image that results when posts that do not run pass on the image that they would process.
   int passed_on(int image) const;
+  /// Of the posts that run.
+  PostChain chain() const;
   void drop_unread();
   bool check_result(int result) const;
   bool check_size(const PostChain& chain) const;
+  /// Of a chain of all posts, whether they are switched off or not: or a value would change what the others do.
   size_t count_sample_steps(const PostChain& chain) const;
 
   const scene::Scene& scene_;
@@ -63,6 +66,7 @@ class ChainPlanner {
   std::vector<Skipped>& skipped_;
   Diagnostics& diagnostics_;
   std::vector<Planned> planned_;
+  std::vector<size_t> switched_off_;
 };
 
 bool ChainPlanner::find_sources(size_t p, Planned& planned) {
@@ -112,7 +116,7 @@ bool ChainPlanner::read_post(size_t p) {
   planned.record = values->words({}, {});
   const bool has_image = planned.sources[0] != scene::motion_image;  // one that it could pass on
   if (!skip_ || !has_image || !document.parameters.is_off(document.enabled, planned.record)) return true;
-  planned.runs = false;
+  switched_off_.push_back(p);
   const std::string& parameter = document.parameters.fields[*document.enabled].name;
   skipped_.push_back({interface::Skip::posts, "post " + post.name, parameter + " is 0"});
   return true;
@@ -188,15 +192,8 @@ size_t ChainPlanner::count_sample_steps(const PostChain& chain) const {
   return count;
 }
 
-std::optional<PostChain> ChainPlanner::plan() {
+PostChain ChainPlanner::chain() const {
   PostChain chain;
-  bool good = true;
-  for (size_t p = 0; p < scene_.posts.size() && !diagnostics_.full(); ++p) good = read_post(p) && good;
-  if (!good || diagnostics_.full()) return std::nullopt;
-  const int result = passed_on(static_cast<int>(planned_.size()) - 1);
-  if (!check_result(result)) return std::nullopt;
-  if (skip_) drop_unread();
-
   std::vector<int> number(planned_.size());
   const auto number_of = [&](int image) {
     const int real = passed_on(image);
@@ -209,7 +206,7 @@ std::optional<PostChain> ChainPlanner::plan() {
     const int this_step = static_cast<int>(chain.steps.size());
     number[p] = this_step + 1;
     PostStep step{documents_[p],
-                  std::move(planned_[p].record),
+                  planned_[p].record,
                   part_of(width_, scene_.posts[p].size),
                   part_of(height_, scene_.posts[p].size),
                   {},
@@ -223,9 +220,23 @@ std::optional<PostChain> ChainPlanner::plan() {
     chain.last_reader.push_back(PostChain::none);
   }
   chain.result = number_of(static_cast<int>(planned_.size()) - 1);
-  if (!check_size(chain)) return std::nullopt;
-  chain.sample_steps = count_sample_steps(chain);
   return chain;
+}
+
+std::optional<PostChain> ChainPlanner::plan() {
+  bool good = true;
+  for (size_t p = 0; p < scene_.posts.size() && !diagnostics_.full(); ++p) good = read_post(p) && good;
+  if (!good || diagnostics_.full()) return std::nullopt;
+  const size_t of_samples = count_sample_steps(chain());
+  for (const size_t p : switched_off_) planned_[p].runs = false;
+  const int result = passed_on(static_cast<int>(planned_.size()) - 1);
+  if (!check_result(result)) return std::nullopt;
+  if (skip_) drop_unread();
+  PostChain made = chain();
+  if (!check_size(made)) return std::nullopt;
+  made.sample_steps = static_cast<size_t>(
+      std::ranges::count_if(made.steps, [&](const PostStep& step) { return step.post_number < of_samples; }));
+  return made;
 }
 
 }  // namespace

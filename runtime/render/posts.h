@@ -30,7 +30,8 @@ struct PostChain {
   std::vector<int> last_reader;  ///< of each image: the last step that reads it, or none
   int result = 0;                ///< the image that the scene becomes
   /// How many steps at the beginning are run for each sample, where a pixel has several: up to the last one that reads
-  /// the depth, if all of them look at no pixel but their own, and nothing else reads what they make.
+  /// the depth, if all of them look at no pixel but their own, and nothing else reads what they make. Posts that are
+  /// left out count here, too.
   size_t sample_steps = 0;
   static constexpr int none = -1;
 

@@ -21,7 +21,10 @@ class RandomScene {
   std::string text() {
     std::string members = R"("camera": {"position": )" + vector(-6, 6, 1, 7, 5, 11) + R"(, "target": )" +
                           vector(-1, 1, -1, 1, -1, 1) + R"(, "fov": )" + number(25, 70) + "},\n";
-    members += R"("background": [0.1, 0.2, 0.3, 1], "lights": {)" +
+    members += R"("background": [0.1, 0.2, 0.3, )" + std::string(below(2) == 0 ? "1" : "0") + "], \"samples\": " +
+               (below(4) == 0 ? "4" : "1") + ",\n";
+    if (below(4) == 0) members += R"("environment": {"sky": {"zenith": )" + vector(0, 1, 0, 1, 0, 1) + R"(, "ground": )" + vector(0, 1, 0, 1, 0, 1) + "}},\n";
+    members += "\"lights\": {" +
                list(1 + below(12), [&](int i) { return light(i); }) + "},\n";
     members += "\"objects\": {" + list(1 + below(5), [&](int i) { return object(i); }) + "}";
     if (below(2) == 0) members += ",\n\"posts\": [" + list(1 + below(2), [&](int) { return post(); }) + "]";
@@ -71,7 +74,13 @@ class RandomScene {
         "../materials/cook_torrance.json", "../effects/cartoon.json",
         "../materials/gltf_pbr.json",      "../effects/flat.json",
         "../effects/force_field.json",     "../effects/smoke.json",
-        "../effects/cross_hatching.json",  "../effects/tinted_glass.json"};
+        "../effects/cross_hatching.json",  "../effects/tinted_glass.json",
+        "../effects/dissolve.json",        "../effects/outline.json",
+        "../effects/trellis.json",         "../effects/leaves.json",
+        "../effects/refraction.json",      "../effects/fur.json",
+        "../effects/overlay.json",         "../effects/stylised_highlight.json",
+        "../effects/planted.json",         "../materials/moved_vertices.json",
+        "../materials/textured.json",      "../materials/derivatives.json"};
     const std::string effect = effects[below(std::size(effects))];
     std::string text = "\"object" + std::to_string(i) + "\": {\"mesh\": " + meshes[below(std::size(meshes))];
     text += ", \"effect\": \"" + effect + "\", \"transform\": {\"translate\": " + vector(-4, 2, -1, 2, -4, 3);
@@ -119,19 +128,25 @@ class RandomScene {
     check::Library library(ISOSHADE_GRAPHS "/library");
     driver::CompileOptions options;
     options.library = &library;
-    const auto made = driver::compile_effect(
-        graph::read_source(ISOSHADE_GRAPHS "/scenes/" + effect, diagnostics), options, diagnostics);
-    EXPECT_TRUE(made) << diagnostics.text();
-    if (made) found->second = made->parameters.fields;
+    const auto source = graph::read_source(ISOSHADE_GRAPHS "/scenes/" + effect, diagnostics);
+    const auto kind = driver::kind_of(source, diagnostics);
+    if (kind == graph::DocumentKind::post) {
+      if (auto post = driver::check_post(source, options, diagnostics)) found->second = post->parameters.fields;
+    } else if (auto made = driver::check_effect(source, options, diagnostics)) {
+      found->second = made->parameters.fields;
+    }
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
     return found->second;
   }
 
   std::string post() {
     static constexpr const char* posts[] = {"../effects/distance_fog.json", "../effects/height_fog.json",
-                                            "../effects/tonemap_aces.json"};
+                                            "../effects/tonemap_aces.json", "../effects/backdrop.json",
+                                            "../effects/paper.json"};
     const int number = posts_++;
-    return "{\"name\": \"post" + std::to_string(number) + "\", \"effect\": \"" +
-           posts[below(std::size(posts))] + "\"}";
+    const std::string effect = posts[below(std::size(posts))];
+    return "{\"name\": \"post" + std::to_string(number) + "\", \"effect\": \"" + effect + "\", \"parameters\": {" +
+           parameters(effect) + "}}";
   }
 
   std::mt19937 random_;
@@ -139,7 +154,7 @@ class RandomScene {
 };
 
 TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
-  const auto [first, last] = seeds(12, 1250);
+  const auto [first, last] = seeds(12, 10'000);
   const auto interpreter = interpreter::create();
   const auto cpu = cpu_backend();
   int64_t left_out = 0;
@@ -152,7 +167,9 @@ TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
     left_out += with.stats.left_out_lights;
     const backends::Image expected = draw(all, *interpreter);
     expect_identical(expected, draw(with, *interpreter), "interpreter, seed " + std::to_string(seed));
-    expect_identical(expected, draw(with, *cpu), "cpu, seed " + std::to_string(seed));
+    // C++ compilers take most of the time.
+    if (last - first <= 100 || seed % 16 == 0)
+      expect_identical(expected, draw(with, *cpu), "cpu, seed " + std::to_string(seed));
     ASSERT_FALSE(::testing::Test::HasFailure()) << text;
   }
   EXPECT_GT(left_out, 0);
