@@ -54,6 +54,24 @@ void Image::resize(int w, int h, bool has_color) {
   depth.resize(pixels);
 }
 
+TileCounts& TileCounts::operator+=(const TileCounts& other) {
+  tiles += other.tiles;
+  empty += other.empty;
+  kept += other.kept;
+  blocks += other.blocks;
+  blocks_of_one_object += other.blocks_of_one_object;
+  return *this;
+}
+
+TileCounts& TileCounts::operator-=(const TileCounts& other) {
+  tiles -= other.tiles;
+  empty -= other.empty;
+  kept -= other.kept;
+  blocks -= other.blocks;
+  blocks_of_one_object -= other.blocks_of_one_object;
+  return *this;
+}
+
 bool is_finite(std::span<const float> numbers) {
   using Floats = lanes::Float<4, 1>;
   const auto is_special = [](const auto& x) { return (lanes::bits_nonnan(x) & lanes::exponent_bits) == lanes::exponent_bits; };

@@ -134,6 +134,7 @@ struct ScreenPass {
   /// The depth, the image that it processes, and those that its document lists.
   std::span<const ImageRead> images;
   const Frame* textures = nullptr;  ///< whose textures it reads; null if it reads none
+  bool keeps_background_plain = false;       ///< pixels without a surface that have one color keep one
 };
 
 /// Triangles to draw into a window of a view's target, and where the result goes.
@@ -149,6 +150,19 @@ struct Drawing {
   /// own sample alone, as their first two images; nothing else reads what they make.
   std::span<const ScreenPass> posts = {};
   Slot depth, color;  ///< of the window in pixels; no color where the target has none
+  bool skips_tiles = true;  ///< Skip::tiles
+};
+
+/// What tiles showed that were drawn (Skip::tiles), of all views. Backends that draw no tiles have none.
+struct TileCounts {
+  int64_t tiles = 0;
+  int64_t empty = 0;    ///< no triangle reaches them
+  int64_t kept = 0;     ///< of these, those that held the same already
+  int64_t blocks = 0;   ///< of 8x8 pixels, that show anything
+  int64_t blocks_of_one_object = 0;
+
+  TileCounts& operator+=(const TileCounts& other);
+  TileCounts& operator-=(const TileCounts& other);
 };
 
 /// A step on a device.
@@ -187,6 +201,9 @@ class Backend {
   /// Who has drawn what is in `layers`; null if nobody says so.
   const void* drawer() const { return drawer_; }
   void set_drawer(const void* drawer) { drawer_ = drawer; }
+
+  /// Of all draws so far.
+  virtual TileCounts tile_counts() const { return {}; }
 
   // The images of a frame lie in one array, `layers`, where programs read them. It lives on from frame to frame.
 

@@ -19,6 +19,7 @@ struct Slot {
   size_t row_floats() const { return static_cast<size_t>(width) * static_cast<size_t>(channels); }
   size_t size() const { return row_floats() * static_cast<size_t>(height); }
   bool exists() const { return channels > 0; }
+  bool operator==(const Slot&) const = default;
 };
 
 /// An image that a program may read.

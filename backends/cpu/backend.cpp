@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <climits>
+#include <cstring>
+#include <optional>
 #include <tbb/enumerable_thread_specific.h>
 #include <utility>
 
@@ -54,11 +56,17 @@ class CpuBackend final : public backends::Backend {
 
   bool reserve(size_t floats, Diagnostics& diagnostics) override;
   void write(size_t first, std::span<const float> floats) override {
-    forget_blank(first, floats.size());
+    forget_empty(first, floats.size());
     std::ranges::copy(floats, layers_.begin() + static_cast<ptrdiff_t>(first));
   }
   std::span<const float> read(const Slot& slot) override { return std::span(layers_).subspan(slot.first, slot.size()); }
   bool is_finite() override { return is_finite_; }
+  backends::TileCounts tile_counts() const override {
+    backends::TileCounts counts;
+    for (const std::unique_ptr<TilePainter>& painter : painters_)
+      if (painter) counts += painter->counts();
+    return counts;
+  }
   bool transform(const ViewPass& pass, support::Array<float>& clip, Diagnostics& diagnostics) override;
   bool draw(const Drawing& drawing, Diagnostics& diagnostics) override;
   bool post(std::span<const ScreenPass> passes, const Slot& made, Diagnostics& diagnostics) override;
@@ -80,24 +88,32 @@ class CpuBackend final : public backends::Backend {
   };
   bool bind(std::span<const ScreenPass> passes, Screens& screens, Diagnostics& diagnostics);
 
-  /// The tiles of an image of depth alone that hold nothing. Where the next frame draws nothing either, as around what a
+  /// The tiles of an image that were empty when it was drawn. Where the next frame draws nothing either, as around what a
   /// shadow map shows, they are not written again: 64 MiB for a map of 4096 x 4096.
-  struct BlankTiles {
-    Slot slot;
+  struct EmptyTiles {
+    Slot depth, color;
+    int side;  ///< DrawJob::side
+    float pixel[4];
     std::vector<uint8_t> tiles;
   };
-  /// What is known of the image that is about to be drawn; null if it is none of depth alone, drawn as a whole.
-  uint8_t* find_blank(const Drawing& drawing, const raster::TileGrid& grid);
+  /// What is known of the image that is about to be drawn, whose pixels of empty tiles are these.
+  uint8_t* find_empty(const Drawing& drawing, const EmptyPixel& pixel, const raster::TileGrid& grid);
   /// Something else is about to be written there.
-  void forget_blank(size_t first, size_t floats) {
-    std::erase_if(blank_, [&](const BlankTiles& known) {
-      return known.slot.first < first + floats && first < known.slot.first + known.slot.size();
-    });
+  void forget_empty(size_t first, size_t floats) {
+    const auto overlaps = [&](const Slot& slot) {
+      return slot.exists() && slot.first < first + floats && first < slot.first + slot.size();
+    };
+    std::erase_if(empty_, [&](const EmptyTiles& known) { return overlaps(known.depth) || overlaps(known.color); });
+  }
+
+  void forget_images(const Drawing& drawing) {
+    forget_empty(drawing.depth.first, drawing.depth.size());
+    if (drawing.color.exists()) forget_empty(drawing.color.first, drawing.color.size());
   }
 
   KernelStore kernels_;
   raster::Bins bins_;  ///< of the window that is drawn
-  std::vector<BlankTiles> blank_;
+  std::vector<EmptyTiles> empty_;
   tbb::enumerable_thread_specific<std::unique_ptr<TilePainter>> painters_;
   support::Array<float> layers_;
   std::atomic<bool> is_finite_ = true;  ///< what has been made since reserve()
@@ -110,7 +126,7 @@ bool CpuBackend::reserve(size_t floats, Diagnostics& diagnostics) {
     backends::report_too_large(FrameBuffer::layers, floats * sizeof(float), limit, nullptr, diagnostics);
     return false;
   }
-  if (floats != layers_.size()) blank_.clear();
+  if (floats != layers_.size()) empty_.clear();
   if (floats > layers_.capacity()) {
     support::release(layers_);  // or growing would copy what is lost
     layers_.resize(floats);
@@ -200,18 +216,17 @@ bool CpuBackend::bind(std::span<const ScreenPass> passes, Screens& screens, Diag
   return kernels.has_value();
 }
 
-uint8_t* CpuBackend::find_blank(const Drawing& drawing, const raster::TileGrid& grid) {
-  const Slot& depth = drawing.depth;
-  const backends::Window& window = drawing.window;
-  const bool is_whole = window.x == 0 && window.y == 0 && window.width == depth.width && window.height == depth.height;
-  const auto known = std::ranges::find_if(blank_, [&](const BlankTiles& blank) {
-    return blank.slot.first == depth.first && blank.slot.width == depth.width && blank.slot.height == depth.height;
+uint8_t* CpuBackend::find_empty(const Drawing& drawing, const EmptyPixel& pixel, const raster::TileGrid& grid) {
+  const auto known = std::ranges::find_if(empty_, [&](const EmptyTiles& last) {
+    return last.depth == drawing.depth && last.color == drawing.color && last.side == drawing.side &&
+           std::memcmp(last.pixel, pixel.color, sizeof pixel.color) == 0;
   });
-  if (!drawing.color.exists() && is_whole && known != blank_.end()) return known->tiles.data();
-  forget_blank(depth.first, depth.size());
-  if (drawing.color.exists()) forget_blank(drawing.color.first, drawing.color.size());
-  if (drawing.color.exists() || !is_whole) return nullptr;
-  return blank_.emplace_back(BlankTiles{depth, std::vector<uint8_t>(static_cast<size_t>(grid.count()))}).tiles.data();
+  if (known != empty_.end()) return known->tiles.data();
+  forget_images(drawing);
+  EmptyTiles& made = empty_.emplace_back(EmptyTiles{drawing.depth, drawing.color, drawing.side, {}, {}});
+  std::ranges::copy(pixel.color, made.pixel);
+  made.tiles.resize(static_cast<size_t>(grid.count()));
+  return made.tiles.data();
 }
 
 bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
@@ -230,23 +245,29 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
 
   std::vector<TilePost> tile_posts;
   for (size_t i = 0; i < drawing.posts.size(); ++i)
-    tile_posts.push_back({*posts.kernels[i], posts.buffers[i].views(), posts.records[i]});
-  DrawJob job{.frame = frame,
-              .view = view,
-              .grid = grid,
-              .triangles = triangles,
-              .opaque = raster::opaque_count(triangles.data(), static_cast<int>(count)),
-              .buffers = buffers.views(),
-              .kernels = kernels,
-              .side = drawing.side,
-              .posts = tile_posts,
-              .background = {},
-              .color = drawing.color.exists() ? layers_.data() + drawing.color.first : nullptr,
-              .depth = layers_.data() + drawing.depth.first,
-              .width = drawing.depth.width,
-              .blank = find_blank(drawing, grid),
-              .bins = bins_};
-  backends::resolve_color(view.background, drawing.side, job.background);
+    tile_posts.push_back({*posts.kernels[i], posts.buffers[i].views(), posts.records[i], drawing.posts[i].keeps_background_plain});
+  std::optional<EmptyPixel> empty;
+  if (drawing.skips_tiles) {
+    const lanes::FpGuard guard;
+    empty = empty_pixel(view, tile_posts, drawing.side);
+  }
+  if (!empty) forget_images(drawing);
+  const DrawJob job{.frame = frame,
+                    .view = view,
+                    .grid = grid,
+                    .triangles = triangles,
+                    .opaque = raster::opaque_count(triangles.data(), static_cast<int>(count)),
+                    .buffers = buffers.views(),
+                    .kernels = kernels,
+                    .side = drawing.side,
+                    .posts = tile_posts,
+                    .skips_tiles = drawing.skips_tiles,
+                    .empty = empty ? &*empty : nullptr,
+                    .filled = empty ? find_empty(drawing, *empty, grid) : nullptr,
+                    .color = drawing.color.exists() ? layers_.data() + drawing.color.first : nullptr,
+                    .depth = layers_.data() + drawing.depth.first,
+                    .width = drawing.depth.width,
+                    .bins = bins_};
   bins_.sort(triangles, grid, workers());
   const size_t parts = (count + triangle_chunk - 1) / triangle_chunk;
   std::vector<std::vector<bool>> programs(parts);
@@ -270,7 +291,7 @@ bool CpuBackend::draw(const Drawing& drawing, Diagnostics& diagnostics) {
 bool CpuBackend::post(std::span<const ScreenPass> passes, const Slot& made, Diagnostics& diagnostics) {
   Screens screens;
   if (!bind(passes, screens, diagnostics)) return false;
-  forget_blank(made.first, made.size());
+  forget_empty(made.first, made.size());
   const auto width = static_cast<size_t>(made.width), height = static_cast<size_t>(made.height);
   // A task takes consecutive rows, because these read almost the same pixels.
   const size_t rows = std::max<size_t>(1, row_chunk / width);

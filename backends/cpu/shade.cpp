@@ -14,6 +14,7 @@
 namespace isoshade::cpu {
 namespace {
 
+namespace image_record = interface::image_record;
 using raster::tile_pixels;
 using raster::tile_size;
 
@@ -31,13 +32,46 @@ void copy_rows(const float* from, size_t from_stride, float* to, size_t to_strid
     std::memcpy(to + static_cast<size_t>(y) * to_stride, from + static_cast<size_t>(y) * from_stride, count * sizeof(float));
 }
 
+/// Where an image of a post begins in its layers.
+int32_t& first_of(std::span<int32_t> records, int image) {
+  return records[static_cast<size_t>(image * lower::image_word::stride + lower::image_word::first)];
+}
+
+/// The arrays of a post with layers and records of its own.
+void copy_buffers(const TilePost& post, const std::vector<int32_t>& records, const BufferView& layers,
+                  BufferView (&buffers)[std::size(lower::frame_buffers)]) {
+  std::copy_n(post.buffers, std::size(lower::frame_buffers), buffers);
+  buffers[static_cast<size_t>(lower::FrameBuffer::layer_records)].data = records.data();
+  buffers[static_cast<size_t>(lower::FrameBuffer::layers)] = layers;
+}
+
 void fill_color(const float (&color)[4], float* row, int width) {
   for (int x = 0; x < width; ++x) std::memcpy(row + 4 * x, color, sizeof color);
 }
 
 }  // namespace
 
-TilePainter::Canvas TilePainter::canvas_of(const DrawJob& job, int tile) {
+std::optional<EmptyPixel> empty_pixel(const backends::View& view, std::span<const TilePost> posts, int side) {
+  float color[4];
+  std::copy_n(view.background, 4, color);
+  bool finite = backends::is_finite(color);
+  for (const TilePost& post : posts) {
+    if (!post.keeps_background_plain) return std::nullopt;
+    const float sample[] = {0.0f, color[0], color[1], color[2], color[3]};  // the depth first
+    std::vector<int32_t> records(post.records.begin(), post.records.end());
+    first_of(records, image_record::depth) = 0;
+    first_of(records, image_record::color) = 1;
+    BufferView buffers[std::size(lower::frame_buffers)];
+    copy_buffers(post, records, {sample, std::size(sample)}, buffers);
+    post.kernel.post(buffers, 0, 0, 1, color);
+    finite = backends::is_finite(color) && finite;
+  }
+  EmptyPixel pixel{{}, finite};
+  backends::resolve_color(color, side, pixel.color);
+  return pixel;
+}
+
+Canvas TilePainter::canvas_of(const DrawJob& job, int tile) {
   x_ = job.grid.x(tile);
   y_ = job.grid.y(tile);
   const raster::Box& area = job.grid.area;
@@ -52,19 +86,30 @@ TilePainter::Canvas TilePainter::canvas_of(const DrawJob& job, int tile) {
 }
 
 bool TilePainter::paint(const DrawJob& job, int tile) {
+  ++counts_.tiles;
   canvas_ = canvas_of(job, tile);
+  if (job.skips_tiles && job.bins.of(tile).empty()) return paint_empty(job, tile);
+  if (job.filled != nullptr) job.filled[tile] = 0;
   collect(job, tile);
-  const bool is_opaque = static_cast<size_t>(job.opaque) * lower::triangle_word::stride == job.triangles.size();
-  if (runs_.empty() && job.side > 1 && is_opaque && job.posts.empty()) {
-    fill_pixels(job);
-    return true;
+  paint_opaque(job);
+  blend(job, tile);
+  return finish(job);
+}
+
+bool TilePainter::paint_empty(const DrawJob& job, int tile) {
+  ++counts_.empty;
+  if (job.empty == nullptr) {
+    fill_background(job);
+    return finish(job);
   }
-  if (runs_.empty())
-    leave_blank(job, tile);
+  if (std::exchange(job.filled[tile], 1) != 0)
+    ++counts_.kept;
   else
-    paint_opaque(job);
-  if (job.blank != nullptr) job.blank[tile] = runs_.empty() && is_opaque;
-  if (!is_opaque) blend(job, tile);
+    fill_pixels(job);
+  return job.empty->is_finite;
+}
+
+bool TilePainter::finish(const DrawJob& job) {
   if (!job.view.target.has_color) return true;
   bool finite = is_finite();
   for (const TilePost& post : job.posts) finite = process(post, job) && finite;
@@ -72,13 +117,9 @@ bool TilePainter::paint(const DrawJob& job, int tile) {
   return finite;
 }
 
-void TilePainter::leave_blank(const DrawJob& job, int tile) const {
-  if (job.blank == nullptr || job.blank[tile] == 0) fill_background(job);
-}
-
 void TilePainter::fill_background(const DrawJob& job) const {
   for (int y = 0; y < canvas_.height; ++y) {
-    if (job.view.target.has_color) fill_color(job.view.background, canvas_.color + 4 * canvas_.index(0, y), canvas_.width);
+    fill_color(job.view.background, canvas_.color + 4 * canvas_.index(0, y), canvas_.width);
     std::fill_n(canvas_.depth + canvas_.index(0, y), canvas_.width, 0.0f);
   }
 }
@@ -87,32 +128,27 @@ void TilePainter::fill_pixels(const DrawJob& job) const {
   const int x = (x_ - job.grid.area.x0) / job.side, y = (y_ - job.grid.area.y0) / job.side;
   for (int row = 0; row < canvas_.height / job.side; ++row) {
     const size_t first = static_cast<size_t>(y + row) * static_cast<size_t>(job.width) + static_cast<size_t>(x);
-    fill_color(job.background, job.color + 4 * first, canvas_.width / job.side);
+    if (job.color != nullptr) fill_color(job.empty->color, job.color + 4 * first, canvas_.width / job.side);
     std::fill_n(job.depth + first, canvas_.width / job.side, 0.0f);
   }
 }
 
 /// Runs a post over the samples of the tile, in place. Returns whether what it made is finite.
 bool TilePainter::process(const TilePost& post, const DrawJob& job) {
-  namespace word = lower::image_word;
-  BufferView buffers[std::size(lower::frame_buffers)];
-  std::copy_n(post.buffers, std::size(lower::frame_buffers), buffers);
-  BufferView& layers = buffers[static_cast<size_t>(lower::FrameBuffer::layers)];
+  BufferView own[std::size(lower::frame_buffers)];
+  const BufferView* buffers = post.buffers;
   if (job.side > 1) {
     records_.assign(post.records.begin(), post.records.end());
-    buffers[static_cast<size_t>(lower::FrameBuffer::layer_records)].data = records_.data();
-    layers = {samples_->color, sizeof(Samples) / sizeof(float)};
+    copy_buffers(post, records_, {samples_->color, sizeof(Samples) / sizeof(float)}, own);
+    buffers = own;
   }
-  const auto first_of = [&](int image) -> int32_t& {
-    return records_[static_cast<size_t>((1 + image) * word::stride + word::first)];
-  };
   for (int y = 0; y < canvas_.height; ++y) {
     if (job.side > 1) {
       // A program finds its sample by its place in the whole picture: each row of it would begin there.
       const int64_t place = static_cast<int64_t>(y_ + y) * job.view.target.width + x_;
       const auto row = static_cast<int64_t>(canvas_.index(0, y));
-      first_of(0) = static_cast<int32_t>((samples_->depth - samples_->color) + row - place);
-      first_of(1) = static_cast<int32_t>(4 * (row - place));
+      first_of(records_, image_record::depth) = static_cast<int32_t>((samples_->depth - samples_->color) + row - place);
+      first_of(records_, image_record::color) = static_cast<int32_t>(4 * (row - place));
     }
     post.kernel.post(buffers, x_, y_ + y, canvas_.width, canvas_.color + 4 * canvas_.index(0, y));
   }
@@ -142,22 +178,16 @@ void TilePainter::paint_opaque(const DrawJob& job) {
   if (canvas_.width < tile_size || canvas_.height < tile_size)
     for (int i = 0; i < tile_pixels; ++i)
       if (raster::tile_x(i) >= canvas_.width || raster::tile_y(i) >= canvas_.height) tile_.triangles[i] = nothing;
-  segment();
-  list_pixels();
+  pixels_.sort(tile_, x_, y_, job.skips_tiles, counts_);
   shade(job);
-  write_color(job);
+  pixels_.write(tile_, job.view.background, canvas_);
 }
 
 void TilePainter::collect(const DrawJob& job, int tile) {
-  runs_.clear();
   const std::span<const int32_t> listed = opaque_of(job, job.bins.of(tile));
-  if (listed.empty()) return;
   tile_.clear();
   rasterize(job, listed);
-  for (const int32_t triangle : listed) {
-    const int object = raster::triangle_at(job.triangles.data(), triangle).object();
-    if (runs_.empty() || runs_.back().object != object) runs_.push_back({triangle, object, 0});
-  }
+  pixels_.begin(job.triangles.data(), listed);  // their records are in the cache now
 }
 
 void TilePainter::rasterize(const DrawJob& job, std::span<const int32_t> listed) {
@@ -196,7 +226,6 @@ void TilePainter::blend(const DrawJob& job, int tile) {
   const int32_t* const triangles = job.triangles.data();
   std::span<const int32_t> listed = job.bins.of(tile).subspan(opaque_of(job, job.bins.of(tile)).size());
   if (listed.empty()) return;
-  if (runs_.empty()) tile_.clear();
   bool changes_depth = false;
   while (!listed.empty()) {
     const raster::Triangle first = raster::triangle_at(triangles, listed.front());
@@ -246,76 +275,28 @@ void TilePainter::blend_candidates(const DrawJob& job, const raster::Candidates&
         if (!first.over() && !(found.depth[i] > tile_.depth[place])) continue;
         tile_.depth[place] = found.depth[i];
       }
-      pixel_x_[next] = found.x[i];
-      pixel_y_[next] = found.y[i];
-      pixel_triangle_[next] = found.triangle[i];
-      std::copy_n(color_at(found.x[i], found.y[i]), 4, color_ + 4 * next);
+      pixels_.x[next] = found.x[i];
+      pixels_.y[next] = found.y[i];
+      pixels_.triangle[next] = found.triangle[i];
+      std::copy_n(color_at(found.x[i], found.y[i]), 4, pixels_.color + 4 * next);
       ++next;
     }
     layer.clear();
     if (next == 0) continue;
-    kernel.blend(job.buffers, first.object(), job.frame.light_count, next, pixel_x_, pixel_y_, pixel_triangle_, color_);
+    kernel.blend(job.buffers, first.object(), job.frame.light_count, next, pixels_.x, pixels_.y, pixels_.triangle,
+                 pixels_.color);
     for (int i = 0; i < next; ++i)
-      std::copy_n(color_ + 4 * i, 4, color_at(pixel_x_[i], pixel_y_[i]));
-  }
-}
-
-int TilePainter::run_of(int triangle) const {
-  const auto after = std::upper_bound(runs_.begin(), runs_.end(), triangle,
-                                      [](int t, const Run& run) { return t < run.first_triangle; });
-  return static_cast<int>(after - runs_.begin()) - 1;
-}
-
-void TilePainter::segment() {
-  segments_.clear();
-  int begin = 0, run = nothing, last_triangle = nothing;
-  int run_first = nothing, run_end = 0;  // the triangles of the run, or `nothing` alone
-  const auto end_at = [&](int i) {
-    if (run == nothing || begin == i) return;
-    segments_.push_back({begin, i, run});
-    runs_[static_cast<size_t>(run)].pixels += i - begin;
-  };
-  for (int i = 0; i < tile_pixels; ++i) {
-    const int triangle = tile_.triangles[i];
-    // The common cases: neighbours mostly show one triangle, or one object.
-    if (triangle == last_triangle) continue;
-    last_triangle = triangle;
-    if (triangle >= run_first && triangle < run_end) continue;
-    end_at(i);
-    begin = i;
-    run = triangle == nothing ? nothing : run_of(triangle);
-    const auto next = static_cast<size_t>(run + 1);
-    run_first = run == nothing ? nothing : runs_[static_cast<size_t>(run)].first_triangle;
-    run_end = run == nothing ? 0 : next < runs_.size() ? runs_[next].first_triangle : INT_MAX;
-  }
-  end_at(tile_pixels);
-}
-
-void TilePainter::list_pixels() {
-  int begin = 0;
-  for (Run& run : runs_) begin += std::exchange(run.pixels, begin);
-  for (const Segment& segment : segments_) {
-    int& next = runs_[static_cast<size_t>(segment.run)].pixels;
-    int place = next;
-    for (int i = segment.begin; i < segment.end; ++i, ++place) {
-      place_[i] = place;
-      pixel_x_[place] = x_ + raster::tile_x(i);
-      pixel_y_[place] = y_ + raster::tile_y(i);
-      pixel_triangle_[place] = tile_.triangles[i];
-    }
-    next = place;
+      std::copy_n(pixels_.color + 4 * i, 4, color_at(pixels_.x[i], pixels_.y[i]));
   }
 }
 
 // One call takes pixels of one object, so that its parameters are uniform.
 void TilePainter::shade(const DrawJob& job) {
-  int begin = 0;
-  for (const Run& run : runs_) {
-    if (run.pixels == begin) continue;
+  for (const SortedPixels::Run& run : pixels_.runs()) {
+    if (run.begin == run.end) continue;
     const Kernel& kernel = *job.kernels[backends::pixel_program_of(job.frame, run.object)];
-    kernel.pixel(job.buffers, run.object, job.frame.light_count, run.pixels - begin, pixel_x_ + begin,
-                 pixel_y_ + begin, pixel_triangle_ + begin, color_ + 4 * begin);
-    begin = run.pixels;
+    kernel.pixel(job.buffers, run.object, job.frame.light_count, run.end - run.begin, pixels_.x + run.begin,
+                 pixels_.y + run.begin, pixels_.triangle + run.begin, pixels_.color + 4 * run.begin);
   }
 }
 
@@ -328,33 +309,6 @@ void TilePainter::write_depth() const {
       std::copy_n(tile_.depth + raster::tile_index(x, y), count, depth + x);
     }
   }
-}
-
-void TilePainter::write_color(const DrawJob& job) const {
-  for (int y = 0; y < canvas_.height; ++y) {
-    float* row = canvas_.color + 4 * canvas_.index(0, y);
-    for (int x = 0; x < canvas_.width; x += raster::block_size) {
-      const int first = raster::tile_index(x, y);
-      const int count = std::min(raster::block_size, canvas_.width - x);
-      if (count == raster::block_size && is_one_piece(first)) {
-        std::memcpy(row + 4 * x, color_ + 4 * place_[first], 4 * raster::block_size * sizeof(float));
-        continue;
-      }
-      for (int i = 0; i < count; ++i) {
-        const float* color =
-            tile_.triangles[first + i] == nothing ? job.view.background : color_ + 4 * place_[first + i];
-        std::memcpy(row + 4 * (x + i), color, 4 * sizeof(float));
-      }
-    }
-  }
-}
-
-/// Whether the pixels of a block's row are all covered and their colors lie one after the other.
-bool TilePainter::is_one_piece(int first) const {
-  bool whole = true;
-  for (int i = 0; i < raster::block_size; ++i)
-    whole &= tile_.triangles[first + i] != nothing && place_[first + i] == place_[first] + i;
-  return whole;
 }
 
 }  // namespace isoshade::cpu

@@ -5,6 +5,7 @@
 
 #include "compiler/check/stage_needs.h"
 #include "compiler/driver/finish.h"
+#include "compiler/driver/plain_background.h"
 #include "compiler/driver/front.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/light_sums.h"
@@ -252,6 +253,7 @@ void make_program(Post& post, const CompileOptions& options) {
   post.is_pointwise = lower::is_pointwise(lowered);
   post.fixed = options.fixed;
   fix_parameters(lowered.module, lowered.interface, post.parameters, options.fixed);
+  post.keeps_background_plain = post.is_pointwise && keeps_background_plain(lowered, options.tier);
   name_words(lowered.module, post.parameters, 0);
   const uint32_t kernel = lower::add_post_kernel(lowered.module, interface,
                                                  layout_of(post.parameters, lower::tap_sums(typed), 0), options.lights);

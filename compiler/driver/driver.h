@@ -86,6 +86,7 @@ struct Post {
   std::vector<bool> reads;          ///< whether it reads the image that it processes, then each of `images`
   bool reads_depth = false;
   bool is_pointwise = false;      ///< of images it reads no pixel but the one that it makes, and the size does not matter
+  bool keeps_background_plain = false;  ///< is_pointwise, and pixels without a surface that have one color keep one
   EnvironmentReads environment;   ///< none if the scene has no environment
   std::optional<size_t> enabled;  ///< index of a parameter field; the post is skipped if it is 0
   Program program;

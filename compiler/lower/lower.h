@@ -83,6 +83,8 @@ Lowered lower(const check::TypedGraph& graph, const LowerOptions& options = {});
 /// Of a post: whether the result depends on nothing but the camera, the environment and what the depth and the image that it goes over have
 /// at the pixel.
 bool is_pointwise(const Lowered& post);
+/// Of a post that is_pointwise(): whether the result is the same at all pixels that have the same depth and color.
+bool ignores_place(const Lowered& post);
 
 /// One function of a shader that other programs link.
 struct ShaderEntry {

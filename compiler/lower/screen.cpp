@@ -18,6 +18,9 @@ using nodes::Edge;
 /// What the greatest coordinate of a scene is: farther away there is nothing.
 constexpr float greatest_distance = 1e9f;
 
+/// The group of values.def whose values are not the same for all pixels.
+constexpr std::string_view place_group = "screen";
+
 /// What names of an image begin with: "depth", "color" or "image_NAME".
 std::string prefix_of(const check::TypedGraph& graph, interface::ImageNumber image) {
   if (image == depth_image) return "depth";
@@ -180,7 +183,7 @@ std::vector<Binding> screen_bindings(const check::TypedGraph& graph, const Scree
     for (interface::ImageNumber image = 0; image < needs.images.size(); ++image)
       if (needs.images[image].read) add(image, needs.images[image]);
   };
-  add_values("screen");
+  add_values(place_group);
   add_images([&](interface::ImageNumber image, const ImageNeeds& needed) {
     const std::string prefix = prefix_of(graph, image);
     for (const Axis axis : {Axis::x, Axis::y}) bindings.push_back(interface::bind_pixel(image, prefix, axis));
@@ -308,6 +311,14 @@ bool is_pointwise(const Lowered& post) {
     }
   }
   return true;
+}
+
+bool ignores_place(const Lowered& post) {
+  // The number of a pixel is passed to reads of it alone, see is_pointwise().
+  return std::ranges::none_of(post.interface.bindings, [](const Binding& binding) {
+    const auto* screen = std::get_if<interface::source::ScreenValue>(&binding.source);
+    return screen != nullptr && interface::row(screen->value).group == place_group;
+  });
 }
 
 }  // namespace isoshade::lower

@@ -182,8 +182,8 @@ class FrameSequence {
     measured_.height = target.height / side;
     measured_.samples = plan->samples;
     if (frame == 0)
-      for (const auto* skipped : {&plan->stats.in_programs, &plan->stats.skips})
-        measured_.skipped.insert(measured_.skipped.end(), skipped->begin(), skipped->end());
+      for (const auto& skipped : {plan->stats.in_programs, plan->stats.skips, stats.skips})
+        measured_.skipped.insert(measured_.skipped.end(), skipped.begin(), skipped.end());
     measured_.kept_frames += stats.is_kept ? 1 : 0;
     measured_.views += stats.views;
     measured_.kept_views += stats.kept_views;

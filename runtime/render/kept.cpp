@@ -13,11 +13,6 @@ bool overlap(const Slot& a, const Slot& b) {
   return a.exists() && b.exists() && a.first < b.first + b.size() && b.first < a.first + a.size();
 }
 
-bool is_same(const Slot& a, const Slot& b) {
-  const auto& [first, width, height, channels] = a;
-  return first == b.first && width == b.width && height == b.height && channels == b.channels;
-}
-
 /// Whether another image of the frame shares the place of a view's.
 bool is_overwritten(const FrameLayout& layout, size_t view) {
   std::vector<Slot> others{layout.motion, layout.drawn_motion.depth, layout.drawn_motion.color};
@@ -69,7 +64,7 @@ std::vector<bool> DrawnFrame::views_of(const Plan& plan, const FrameLayout& layo
   std::vector<bool> kept(views.size());
   // With other places, a view that is drawn might overwrite one that is kept.
   const auto is_in_place = [&](const DrawnView& drawn, const FrameLayout::ViewImages& now) {
-    return is_same(drawn.depth, now.depth) && is_same(drawn.color, now.color);
+    return drawn.depth == now.depth && drawn.color == now.color;
   };
   if (floats_ != layout.floats || samples_ != plan.samples ||
       !std::ranges::equal(views_, layout.views, is_in_place))

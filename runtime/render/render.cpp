@@ -16,6 +16,7 @@
 #include "runtime/render/records.h"
 #include "runtime/render/samples.h"
 #include "runtime/render/search.h"
+#include "runtime/render/skips.h"
 
 namespace isoshade::render {
 
@@ -162,7 +163,8 @@ class FrameRenderer {
                     .side = is_picture ? samples_each_way(plan_.samples) : 1,
                     .posts = {},
                     .depth = layout_.views[v].depth,
-                    .color = layout_.views[v].color};
+                    .color = layout_.views[v].color,
+                    .skips_tiles = plan_.skips.has(interface::Skip::tiles)};
     if (!search) {
       drawing.posts = posts;
       backends::Made made;
@@ -220,7 +222,8 @@ class FrameRenderer {
             .view = std::span(frame_.picture().words).first(lower::view_word::camera_words),
             .record = s < records_of_step_.size() ? std::span<const float>(records_of_step_[s]) : std::span<const float>(),
             .images = images_of_step_[s],
-            .textures = step.post->environment.any ? &frame_ : nullptr};
+            .textures = step.post->environment.any ? &frame_ : nullptr,
+            .keeps_background_plain = step.post->keeps_background_plain};
   }
 
   std::vector<float> record_of(size_t s) {
@@ -273,7 +276,8 @@ class FrameRenderer {
                         .triangles = memory_.triangles_,
                         .window = {0, 0, width, height},
                         .depth = drawn.depth,
-                        .color = drawn.color},
+                        .color = drawn.color,
+                        .skips_tiles = plan_.skips.has(interface::Skip::tiles)},
                        diagnostics_))
       return false;
     const ImageRead images[] = {{Slot{0, width, height, 0}}, {drawn.color}};
@@ -357,6 +361,7 @@ bool Renderer::draw(const Plan& plan, DrawStats& stats, support::Diagnostics& di
   stats.fused_posts = static_cast<int64_t>(layout.fused());
   stats.kept_images = plan.posts.steps.empty() ? 0 : static_cast<int64_t>(layout.most_images);
   const std::vector<backends::DeviceStep> device_before = backend_.device_steps();
+  const backends::TileCounts tiles_before = backend_.tile_counts();
   const FrameLayout* used = &layout;
   std::optional<FrameLayout> apart;
   const bool may_keep = plan.skips.has(interface::Skip::frames) && backend_.drawer() == this;
@@ -374,6 +379,9 @@ bool Renderer::draw(const Plan& plan, DrawStats& stats, support::Diagnostics& di
   if (!FrameRenderer(plan, layout, *this, stats, diagnostics).run(false, is_kept)) return false;
   stats.device = backend_.device_steps();
   for (size_t i = 0; i < stats.device.size(); ++i) stats.device[i].seconds -= device_before[i].seconds;
+  stats.tiles = backend_.tile_counts();
+  stats.tiles -= tiles_before;
+  report_tiles(stats.tiles, stats.skips);
   if (!backend_.is_finite()) {
     used = &apart.emplace(plan, true);
     DrawStats searched;

@@ -50,4 +50,15 @@ void report_draw_values(const driver::Effect& effect, std::vector<Skipped>& skip
   }
 }
 
+void report_tiles(const backends::TileCounts& counts, std::vector<Skipped>& skips) {
+  const auto report = [&](int64_t count, int64_t total, const std::string& unit, std::string reason) {
+    if (count == 0) return;
+    const std::string what = std::to_string(count) + " of " + std::to_string(total) + " " + unit;
+    skips.push_back({interface::Skip::tiles, what, std::move(reason)});
+  };
+  report(counts.empty - counts.kept, counts.tiles, "tiles", "nothing covers them");
+  report(counts.kept, counts.tiles, "tiles", "nothing covers them, as in the frame before");
+  report(counts.blocks_of_one_object, counts.blocks, "blocks of pixels", "each shows one object");
+}
+
 }  // namespace isoshade::render

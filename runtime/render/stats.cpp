@@ -105,7 +105,7 @@ std::string text(const DrawStats& stats) {
   for (const backends::DeviceStep& step : stats.device)
     if (step.seconds > 0) steps += fmt::format("{}{} {:.2f}", steps.empty() ? "" : ", ", step.name, 1e3 * step.seconds);
   if (!steps.empty()) text += "device:   " + steps + " ms by its clock\n";
-  return text;
+  return text + text_of_skips(stats.skips);
 }
 
 }  // namespace isoshade::render

@@ -57,6 +57,8 @@ struct DrawStats {
   bool is_kept = false;       ///< nothing has changed since the last frame, and nothing was drawn
   int64_t kept_images = 0;    ///< the most images that the post chain kept at a time, with the new one
   int64_t fused_posts = 0;    ///< posts that were run right after what is before them, pixel by pixel
+  backends::TileCounts tiles;
+  std::vector<Skipped> skips;  ///< while the frame was drawn
   NonFiniteReport non_finite;
   double build_seconds = 0;  ///< the backend's, for machine code; not part of the following
   std::vector<backends::DeviceStep> device;  ///< the steps of this frame on a device
