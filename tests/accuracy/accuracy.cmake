@@ -66,6 +66,32 @@ isoshade_test(strokes_test
   TIMEOUT 300)
 target_compile_definitions(strokes_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
 
+# Pictures against what follows from their scenes.
+isoshade_test(picture_accuracy_test
+  SOURCES
+    accuracy/blending_accuracy_test.cpp
+    accuracy/fur_test.cpp
+    accuracy/motion_accuracy_test.cpp
+    accuracy/tier_pictures_test.cpp
+    accuracy/white_sky_test.cpp
+    accuracy/world_position_test.cpp
+  LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter isoshade_reference
+  LABEL accuracy
+  TIMEOUT 600)
+target_compile_definitions(picture_accuracy_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs")
+
+if(ISOSHADE_VULKAN)
+  # Forward pairs, which are outside of the contract.
+  isoshade_test(forward_picture_test
+    SOURCES accuracy/forward_picture_test.cpp
+    LINKS isoshade_render isoshade_compare isoshade_cpu isoshade_interpreter isoshade_vulkan isoshade_bench
+    LABEL accuracy
+    TIMEOUT 300
+    DEVICES)
+  target_compile_definitions(forward_picture_test PRIVATE
+    ISOSHADE_VULKAN ISOSHADE_GRAPHS="${PROJECT_SOURCE_DIR}/graphs" ISOSHADE_ROOT="${PROJECT_SOURCE_DIR}")
+endif()
+
 # On every backend. `stress_test --update` writes docs/stress.md.
 isoshade_test(stress_test
   SOURCES

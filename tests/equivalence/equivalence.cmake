@@ -27,9 +27,7 @@ equivalence_test(repeats_test 300)
 equivalence_test(shadows_test 300)
 equivalence_test(environment_scenes_test 300)
 equivalence_test(blending_test 300)
-target_link_libraries(blending_test PRIVATE isoshade_reference)
 equivalence_test(motion_test 600)
-target_link_libraries(motion_test PRIVATE isoshade_reference)
 equivalence_test(parameters_test 600)
 equivalence_test(views_test 300)
 equivalence_test(skips_test 300)
@@ -50,8 +48,3 @@ isoshade_test(random_programs_test
   TIMEOUT 7200
   DEVICES)
 target_compile_definitions(random_programs_test PRIVATE $<$<BOOL:${ISOSHADE_VULKAN}>:ISOSHADE_VULKAN>)
-
-if(ISOSHADE_VULKAN)
-  equivalence_test(forward_picture_test 300)
-  target_link_libraries(forward_picture_test PRIVATE isoshade_bench)
-endif()
