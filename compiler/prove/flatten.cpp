@@ -15,16 +15,6 @@ using ir::Scalar;
 /// The largest derivative that is assumed.
 constexpr double steepest = 1e6;
 
-/// Gives bodies to the declarations of library functions, and only to those.
-void give_bodies(ir::Module& module, functions::Tier tier) {
-  for (uint32_t i = 0; i < module.functions.size(); ++i) {
-    if (!module.functions[i].is_declaration() || module.functions[i].library.empty()) continue;
-    const functions::Variant& variant = functions::variant_of(module.functions[i]);
-    ir::Builder builder(module, i);
-    variant.body(tier)(builder);
-  }
-}
-
 /// The name of a component, as the tables of `isoshade eval` have it.
 std::string component_name(const Given& given, ir::Type type, uint32_t component) {
   if (given.element >= 0)
@@ -85,10 +75,7 @@ Words Flattener::input(const Given& given, ir::Type type) {
         {component_name(given, type, c), type.scalar, end(given.lo), end(given.hi), vector, given.quotient});
     words.push_back(pool_.make({.kind = Kind::input, .scalar = type.scalar, .index = index}, {}));
   }
-  if (unit) {
-    pool_.units.insert(words);
-    pool_.at_most_units.insert(words);
-  }
+  if (unit) pool_.add_unit(words);
   return words;
 }
 
@@ -146,10 +133,7 @@ Words Flattener::ask(const Given& given, ir::Type type, const Words& question, u
                                 .place = place},
                                operands));
   }
-  if (given.unit && type.width > 1) {
-    pool_.units.insert(words);
-    pool_.at_most_units.insert(words);
-  }
+  if (given.unit && type.width > 1) pool_.add_unit(words);
   return words;
 }
 
@@ -395,7 +379,6 @@ uint32_t Flattener::summed(uint32_t initial, uint32_t carried, uint32_t next, co
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
              const std::function<std::vector<Given>(uint32_t)>& outside) {
   Tape& tape = pool.tape();
-  give_bodies(tape.module, tape.tier);
   Flattener flattener(pool, outside);
   const ir::Function& entry = tape.module.functions[function];
   support::assert_that(given.size() == entry.parameters.size(), "not every parameter is given");
@@ -410,18 +393,6 @@ bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
       tape.outputs.push_back({component_name({result.name}, result.type, c), results[i][c]});
   }
   return true;
-}
-
-std::optional<Tape> make_tape(const ir::Module& module, uint32_t function, const std::vector<Given>& given,
-                              const std::function<std::vector<Given>(uint32_t)>& outside,
-                              functions::Tier tier) {
-  Tape tape;
-  tape.tier = tier;
-  tape.module = module;
-  Pool pool(tape);
-  if (!flatten(pool, function, given, outside)) return std::nullopt;
-  put_in_order(pool);
-  return tape;
 }
 
 }  // namespace isoshade::prove

@@ -40,6 +40,11 @@ class Pool {
   std::set<Words> at_most_units;     ///< of length 1, or zeros
   std::map<Words, Product> crosses;  ///< cross products and their factors
 
+  void add_unit(const Words& vector) {
+    units.insert(vector);
+    at_most_units.insert(vector);
+  }
+
  private:
   static std::vector<uint32_t> key(const Operation& operation, std::span<const uint32_t> operands);
 
@@ -47,7 +52,8 @@ class Pool {
   std::map<std::vector<uint32_t>, uint32_t> made_;
 };
 
-/// Inlines the function into the pool's tape and sets the outputs. False if the tape became too long.
+/// Inlines a function of the tape's module, whose library functions have bodies, and sets the outputs. False if the tape
+/// became too long.
 bool flatten(Pool& pool, uint32_t function, const std::vector<Given>& given,
              const std::function<std::vector<Given>(uint32_t)>& outside);
 
