@@ -1,5 +1,6 @@
 # isoshade_add_graph(TARGET GRAPH [WRAPPER none|forward|isoshade] [TARGETS glsl cpp glsl-es spirv] [PREFIX NAME]
-#                    [PRECISION fast|default|precise] [DIVISION native|exact] [SAMPLING fetch|samplers] [LIBRARY FOLDER])
+#                    [PRECISION fast|default|precise] [DIVISION native|exact] [SAMPLING fetch|samplers] [LIBRARY FOLDER]
+#                    [SET PARAMETER=VALUE...])
 #
 # Compiles an effect, a post or a function when TARGET, an executable or a library, is built:
 #
@@ -13,6 +14,8 @@
 #   forward   vertex and fragment shaders for a renderer of your own, of an effect or a post: glsl (the default), glsl-es, spirv
 #   isoshade  the stages that isoshade's own backends run: glsl and cpp (the default), spirv
 #
+# - SET compiles an effect or a post for these values of parameters alone. A second variant of a document needs a target of its
+#   own, such as an INTERFACE library, and with PREFIX other names.
 # - The C++ of functions is included by the document's name, #include "glow.h": its folder is an include directory of TARGET.
 #   For any C++, TARGET and what links it get the headers and flags of isoshade::lanes: those without which the bits would
 #   depend on the compiler, such as -ffp-contract=off.
@@ -135,7 +138,7 @@ function(_isoshade_read_document graph wrapper name_result stems_result stages_r
 endfunction()
 
 function(isoshade_add_graph target graph)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "WRAPPER;PREFIX;PRECISION;DIVISION;SAMPLING;LIBRARY" "TARGETS")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "WRAPPER;PREFIX;PRECISION;DIVISION;SAMPLING;LIBRARY" "TARGETS;SET")
   if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES)
     message(FATAL_ERROR "isoshade_add_graph: unknown or incomplete arguments "
                         "${arg_UNPARSED_ARGUMENTS}${arg_KEYWORDS_MISSING_VALUES}")
@@ -215,6 +218,9 @@ function(isoshade_add_graph target graph)
       string(TOLOWER ${option} word)
       list(APPEND options --${word} ${arg_${option}})
     endif()
+  endforeach()
+  foreach(setting IN LISTS arg_SET)
+    list(APPEND options --set ${setting})
   endforeach()
   set(library "")
   if(arg_LIBRARY)

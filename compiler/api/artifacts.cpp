@@ -35,36 +35,36 @@ struct Stages {
   }
 };
 
-std::optional<Stages> stages_of(const support::Source& source, graph::DocumentKind kind,
-                                driver::CompileOptions compile, Diagnostics& diagnostics) {
+std::optional<Stages> stages_of(const driver::Checked& document, driver::CompileOptions compile,
+                                Diagnostics& diagnostics) {
   // Who fills records by the reflection knows nothing of what a draw computes.
   compile.skips.set(interface::Skip::rates, false);
   Stages stages;
-  switch (kind) {
+  switch (document->graph.kind) {
     case graph::DocumentKind::function:
-      if (auto program = driver::compile_function(source, compile, diagnostics)) {
+      if (auto program = driver::compile_function(document, compile, diagnostics)) {
         const std::string name = program->name;
         stages.add(*std::move(program), name);
         return stages;
       }
       return std::nullopt;
-    case graph::DocumentKind::post:
-      if (auto post = driver::compile_post(source, compile, diagnostics)) {
-        stages.record = reflect::record_of(post->parameters, 0);
-        stages.add(std::move(post->program), post->name + ".post");
-        return stages;
-      }
-      return std::nullopt;
+    case graph::DocumentKind::post: {
+      driver::Post post = driver::post_of(document, compile);
+      driver::make_program(post, compile);
+      stages.record = reflect::record_of(post.parameters, 0);
+      stages.add(std::move(post.program), post.name + ".post");
+      return stages;
+    }
     case graph::DocumentKind::effect:
     case graph::DocumentKind::scene:
     case graph::DocumentKind::image: break;
   }
-  auto effect = driver::compile_effect(source, compile, diagnostics);
-  if (!effect) return std::nullopt;
-  stages.record = reflect::record_of(effect->parameters, lower::object_word::parameters);
-  for (size_t i = 0; i < effect->passes.size(); ++i) {
-    driver::EffectPass& pass = effect->passes[i];
-    const std::string stem = driver::pass_stem(effect->name, pass.name, i);
+  driver::Effect effect = driver::effect_of(document, compile);
+  driver::make_programs(effect, compile);
+  stages.record = reflect::record_of(effect.parameters, lower::object_word::parameters);
+  for (size_t i = 0; i < effect.passes.size(); ++i) {
+    driver::EffectPass& pass = effect.passes[i];
+    const std::string stem = driver::pass_stem(effect.name, pass.name, i);
     stages.add(std::move(pass.vertex), stem + ".vertex", pass.name);
     if (pass.cutout) stages.add(*std::move(pass.cutout), stem + ".cutout", pass.name);
     if (pass.blend) stages.add(*std::move(pass.blend), stem + ".blend", pass.name);
@@ -226,7 +226,7 @@ class Maker {
 
 }  // namespace
 
-std::optional<Artifacts> make_artifacts(const support::Source& source, const driver::CompileOptions& compile,
+std::optional<Artifacts> make_artifacts(const driver::Checked& document, const driver::CompileOptions& compile,
                                         const ArtifactOptions& options, Diagnostics& diagnostics) {
   if (options.hardware_samplers && options.wrapper != Wrapper::forward) {
     diagnostics.report(support::Id::unsupported, "only forward shaders read images by samplers")
@@ -234,9 +234,8 @@ std::optional<Artifacts> make_artifacts(const support::Source& source, const dri
     return std::nullopt;
   }
   Maker maker(options, diagnostics);
-  const auto kind = maker.check_targets() ? driver::kind_of(source, diagnostics) : std::nullopt;
-  if (!kind) return std::nullopt;
-  if (kind == graph::DocumentKind::function && options.wrapper == Wrapper::forward) {
+  if (!maker.check_targets()) return std::nullopt;
+  if (document->graph.kind == graph::DocumentKind::function && options.wrapper == Wrapper::forward) {
     diagnostics.report(support::Id::unsupported, "a function has no vertices and pixels to stand around it")
         .suggest("leave out --wrapper forward");
     return std::nullopt;
@@ -244,12 +243,12 @@ std::optional<Artifacts> make_artifacts(const support::Source& source, const dri
   driver::CompileOptions of_shader = compile;
   std::optional<Stages> stages;
   if (options.wrapper == Wrapper::isoshade) {
-    stages = stages_of(source, *kind, compile, diagnostics);
+    stages = stages_of(document, compile, diagnostics);
     if (!stages) return std::nullopt;
     of_shader.dump = {};  // of the stages alone
   }
   const auto shader =
-      driver::compile_shader(source, of_shader, {options.prefix, options.division}, diagnostics);
+      driver::compile_shader(document, of_shader, {options.prefix, options.division}, diagnostics);
   if (!shader) return std::nullopt;
   if (options.wrapper == Wrapper::forward && !driver::can_be_forward(*shader, diagnostics)) return std::nullopt;
   return maker.make(*shader, stages, compile.library->files());

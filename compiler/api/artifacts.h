@@ -28,8 +28,8 @@ struct Artifacts {
   std::vector<std::string> read;
 };
 
-/// `source` is a function, effect or post document. Reports targets that do not exist or do not have what is wanted.
-std::optional<Artifacts> make_artifacts(const support::Source& source, const driver::CompileOptions& compile,
+/// Reports targets that do not exist or do not have what is wanted.
+std::optional<Artifacts> make_artifacts(const driver::Checked& document, const driver::CompileOptions& compile,
                                         const ArtifactOptions& options, support::Diagnostics& diagnostics);
 
 }  // namespace isoshade::api

@@ -3,6 +3,7 @@
 
 #include "compiler/api/artifacts.h"
 #include "compiler/api/boundary.h"
+#include "compiler/driver/fixed_settings.h"
 
 namespace isoshade {
 
@@ -22,7 +23,11 @@ bool compile_source(const support::Source& source, const CompileOptions& options
   wanted.prove = options.prove;
   wanted.prefix = options.prefix;
   wanted.division = options.exact_division ? driver::Division::exact : driver::Division::native;
-  auto artifacts = api::make_artifacts(source, compile, wanted, diagnostics);
+  const driver::Checked document = driver::check_document(source, compile, diagnostics);
+  auto fixed = document ? driver::fixed_words(*document, options.fixed, diagnostics) : std::nullopt;
+  if (!fixed) return false;
+  compile.fixed = *std::move(fixed);
+  auto artifacts = api::make_artifacts(document, compile, wanted, diagnostics);
   if (!artifacts) return false;
   made.files = std::move(artifacts->files);
   made.read = std::move(artifacts->read);

@@ -161,18 +161,18 @@ std::optional<graph::DocumentKind> kind_of(const support::Source& source, Diagno
   return document ? graph::document_kind(*document, diagnostics) : std::nullopt;
 }
 
-std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source,
-                                                        const CompileOptions& options,
-                                                        Diagnostics& diagnostics) {
+Checked check_document(const support::Source& source, const CompileOptions& options, Diagnostics& diagnostics) {
   return read_graph(source, std::nullopt, options, diagnostics);
 }
 
 std::optional<Effect> check_effect(const support::Source& source, const CompileOptions& options,
                                    Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::effect, options, diagnostics);
-  if (typed == nullptr) return std::nullopt;
-  Effect effect{typed->graph.name, typed->document, {parameters_of(*typed), images_of(*typed), {}}, {}, false,
-                environment_reads(*typed), typed};
+  return typed == nullptr ? std::nullopt : std::optional(effect_of(typed, options));
+}
+
+Effect effect_of(const Checked& typed, const CompileOptions& options) {
+  Effect effect{typed->graph.name, typed->document, parameter_block(*typed), {}, false, environment_reads(*typed), typed};
   effect.lists_lights = options.lights.lists && lower::leaves_out_black_lights(*typed);
   for (size_t i = 0; i < typed->graph.passes.size(); ++i) {
     const graph::Pass& pass = typed->graph.passes[i];
@@ -223,21 +223,20 @@ std::optional<Effect> compile_effect(const support::Source& source, const Compil
 std::optional<Post> check_post(const support::Source& source, const CompileOptions& options,
                                Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::post, options, diagnostics);
-  if (typed == nullptr) return std::nullopt;
+  return typed == nullptr ? std::nullopt : std::optional(post_of(typed, options));
+}
+
+Post post_of(const Checked& typed, const CompileOptions& options) {
   Post post;
   post.name = typed->graph.name;
   post.document = typed->document;
-  post.parameters = {parameters_of(*typed), {}, {}};
+  post.parameters = parameter_block(*typed);
   post.enabled = typed->graph.enabled;
   post.typed = typed;
   if (options.lights.environment.value_or(true)) post.environment = environment_reads(*typed);
   for (const graph::InputImage& image : typed->graph.images) {
     if (image.name == graph::motion_image_name) post.motion = post.images.size();
     post.images.push_back(image.name);
-  }
-  for (const lower::TapSum& sum : lower::tap_sums(*typed)) {
-    post.parameters.taps.push_back(field(typed->graph.nodes[sum.node].id, graph::Type::integer));
-    post.parameters.taps.back().value = {static_cast<float>(sum.taps)};
   }
   return post;
 }
@@ -273,7 +272,11 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
 std::optional<Program> compile_function(const support::Source& source, const CompileOptions& options,
                                         Diagnostics& diagnostics) {
   const auto typed = read_graph(source, graph::DocumentKind::function, options, diagnostics);
-  if (typed == nullptr || !check::stands_alone(*typed, diagnostics)) return std::nullopt;
+  return typed == nullptr ? std::nullopt : compile_function(typed, options, diagnostics);
+}
+
+std::optional<Program> compile_function(const Checked& typed, const CompileOptions& options, Diagnostics& diagnostics) {
+  if (!check::stands_alone(*typed, diagnostics)) return std::nullopt;
   lower::Lowered lowered = lower_with_buffers(*typed);
   Program program{
       lower::Stage::eval, typed->graph.name, typed->document, std::move(lowered.module), 0, {}, {},

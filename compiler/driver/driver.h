@@ -96,10 +96,11 @@ struct Post {
 
 std::optional<graph::DocumentKind> kind_of(const support::Source& source, support::Diagnostics& diagnostics);
 
+/// A document that has passed the front end.
+using Checked = std::shared_ptr<const check::TypedGraph>;
+
 /// The front end: parses and checks a function, effect or post document.
-std::shared_ptr<const check::TypedGraph> check_document(const support::Source& source,
-                                                        const CompileOptions& options,
-                                                        support::Diagnostics& diagnostics);
+Checked check_document(const support::Source& source, const CompileOptions& options, support::Diagnostics& diagnostics);
 
 /// The parts of an effect document, and of a post document, that need no programs: a scene tells by the parameters which
 /// values are fixed. Until there are programs, nothing is known of what these read.
@@ -107,6 +108,8 @@ std::optional<Effect> check_effect(const support::Source& source, const CompileO
                                    support::Diagnostics& diagnostics);
 std::optional<Post> check_post(const support::Source& source, const CompileOptions& options,
                                support::Diagnostics& diagnostics);
+Effect effect_of(const Checked& effect, const CompileOptions& options);
+Post post_of(const Checked& post, const CompileOptions& options);
 /// Make the programs of what was checked.
 void make_programs(Effect& effect, const CompileOptions& options);
 void make_program(Post& post, const CompileOptions& options);
@@ -121,6 +124,8 @@ std::optional<Post> compile_post(const support::Source& source, const CompileOpt
 
 /// `source` is a function document; the program is its eval kernel.
 std::optional<Program> compile_function(const support::Source& source, const CompileOptions& options,
+                                        support::Diagnostics& diagnostics);
+std::optional<Program> compile_function(const Checked& function, const CompileOptions& options,
                                         support::Diagnostics& diagnostics);
 
 /// The program of the visibility pass, the same for every scene.

@@ -4,6 +4,7 @@
 #include "compiler/check/check.h"
 #include "compiler/driver/dumps.h"
 #include "compiler/graph/extend.h"
+#include "compiler/lower/screen.h"
 
 namespace isoshade::driver {
 
@@ -74,13 +75,6 @@ std::vector<Field> output_fields(const check::TypedGraph& typed) {
   return fields;
 }
 
-std::vector<Field> parameters_of(const check::TypedGraph& typed) {
-  std::vector<Field> fields = input_fields(typed);
-  for (size_t i = 0; i < fields.size(); ++i)
-    fields[i].value = record_words(*typed.graph.inputs[i].value, fields[i].words);
-  return fields;
-}
-
 std::vector<Image> images_of(const check::TypedGraph& typed) {
   std::vector<Image> images;
   for (lower::ImageSlot& slot : lower::image_slots(typed).slots) {
@@ -88,6 +82,19 @@ std::vector<Image> images_of(const check::TypedGraph& typed) {
     images.push_back({std::move(slot), file});
   }
   return images;
+}
+
+ParameterBlock parameter_block(const check::TypedGraph& typed) {
+  ParameterBlock block{input_fields(typed), {}, {}};
+  for (size_t i = 0; i < block.fields.size(); ++i)
+    block.fields[i].value = record_words(*typed.graph.inputs[i].value, block.fields[i].words);
+  if (typed.graph.kind == graph::DocumentKind::effect) block.images = images_of(typed);
+  if (typed.graph.kind != graph::DocumentKind::post) return block;
+  for (const lower::TapSum& sum : lower::tap_sums(typed)) {
+    block.taps.push_back(field(typed.graph.nodes[sum.node].id, graph::Type::integer));
+    block.taps.back().value = {static_cast<float>(sum.taps)};
+  }
+  return block;
 }
 
 }  // namespace isoshade::driver

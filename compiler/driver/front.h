@@ -20,8 +20,8 @@ std::shared_ptr<const check::TypedGraph> read_graph(const support::Source& sourc
 Field field(const std::string& name, graph::Type type);
 std::vector<Field> input_fields(const check::TypedGraph& typed);
 std::vector<Field> output_fields(const check::TypedGraph& typed);
-/// With their defaults.
-std::vector<Field> parameters_of(const check::TypedGraph& typed);
 std::vector<Image> images_of(const check::TypedGraph& typed);
+/// What the record of an effect or a post holds, with the defaults.
+ParameterBlock parameter_block(const check::TypedGraph& typed);
 
 }  // namespace isoshade::driver

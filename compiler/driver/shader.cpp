@@ -25,14 +25,18 @@ std::string pass_stem(const std::string& effect, const std::string& pass, size_t
 
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, Diagnostics& diagnostics) {
+  const auto typed = read_graph(source, std::nullopt, options, diagnostics);
+  return typed == nullptr ? std::nullopt : compile_shader(typed, options, shader_options, diagnostics);
+}
+
+std::optional<Shader> compile_shader(const Checked& typed, const CompileOptions& options,
+                                     const ShaderOptions& shader_options, Diagnostics& diagnostics) {
   const std::string& wanted = shader_options.prefix;
   if (!wanted.empty() && !graph::is_id(wanted)) {
     diagnostics.report(support::Id::bad_id, support::quote(wanted) +
                                                 " is not a valid prefix: it must match [A-Za-z_][A-Za-z0-9_]{0,127}");
     return std::nullopt;
   }
-  const auto typed = read_graph(source, std::nullopt, options, diagnostics);
-  if (typed == nullptr) return std::nullopt;
   const graph::Graph& graph = typed->graph;
   Shader shader;
   shader.typed = typed;
@@ -50,7 +54,7 @@ std::optional<Shader> compile_shader(const support::Source& source, const Compil
   if (options.tier != functions::Tier::standard) pure.tier = functions::tier_name(options.tier);
 
   lower::LoweredShader lowered = lower::lower_shader(*typed);
-  if (graph.kind != graph::DocumentKind::function) shader.parameters = {parameters_of(*typed), images_of(*typed), {}};
+  if (graph.kind != graph::DocumentKind::function) shader.parameters = parameter_block(*typed);
   const bool is_effect = graph.kind == graph::DocumentKind::effect;
   for (lower::ShaderEntry& entry : lowered.entries) {
     const interface::Repeat* repeat = is_effect ? &graph.passes[entry.pass].repeat : nullptr;

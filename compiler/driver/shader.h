@@ -51,6 +51,9 @@ std::string pass_stem(const std::string& effect, const std::string& pass, size_t
 /// `source` is a function, effect or post document.
 std::optional<Shader> compile_shader(const support::Source& source, const CompileOptions& options,
                                      const ShaderOptions& shader_options, support::Diagnostics& diagnostics);
+/// Reports a prefix that names cannot begin with.
+std::optional<Shader> compile_shader(const Checked& document, const CompileOptions& options,
+                                     const ShaderOptions& shader_options, support::Diagnostics& diagnostics);
 
 /// The shader without ops that the language lacks, and with functions that its compilers can take.
 emit::PureShader prepared(const Shader& shader, const emit::Target& target);

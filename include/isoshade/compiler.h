@@ -39,6 +39,10 @@ struct CompileOptions {
   bool exact_division = false;
   /// Adds to the reflection what `isoshade check` finds; takes seconds where much is left to prove.
   bool prove = false;
+  /// "rim=0": values of parameters of an effect or a post, as `--set` of the command. The functions are compiled for these
+  /// values alone, and lose what only others need; the struct of parameters keeps all fields. Of an image only that there is
+  /// none: "map=\"\"". Of several values for one parameter, the last one counts.
+  std::vector<std::string> fixed = {};
 };
 
 /// A file as `isoshade compile -o FOLDER` writes it. C++ includes the headers that are installed in isoshade/lanes.

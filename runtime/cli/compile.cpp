@@ -10,8 +10,8 @@
 #include "backends/cpu/compiler.h"
 #include "compiler/api/artifacts.h"
 #include "compiler/driver/explain.h"
+#include "compiler/driver/fixed_settings.h"
 #include "compiler/support/visible.h"
-#include "runtime/cli/fixed_words.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -129,11 +129,11 @@ class Writer {
 };
 
 /// False after an error.
-bool print_explanation(const support::Source& source, driver::CompileOptions options, support::Diagnostics& diagnostics) {
+bool print_explanation(const driver::Checked& document, driver::CompileOptions options, support::Diagnostics& diagnostics) {
   options.dump = {};
-  const auto fixed = driver::compile_shader(source, options, {}, diagnostics);
+  const auto fixed = driver::compile_shader(document, options, {}, diagnostics);
   options.fixed = {};
-  const auto general = fixed ? driver::compile_shader(source, options, {}, diagnostics) : std::nullopt;
+  const auto general = fixed ? driver::compile_shader(document, options, {}, diagnostics) : std::nullopt;
   if (!general) return false;
   std::fputs(driver::text(driver::explain(*general, *fixed), *fixed).c_str(), stdout);
   return true;
@@ -168,14 +168,14 @@ int compile(const CompileArguments& arguments, const Common& common) {
   wanted.prefix = arguments.prefix;
   wanted.division = arguments.division == "exact" ? driver::Division::exact : driver::Division::native;
   const support::Source source = graph::read_source(arguments.graph, diagnostics);
-  auto fixed = source ? fixed_words(source, arguments.settings, options, diagnostics) : std::nullopt;
+  const driver::Checked document = source ? driver::check_document(source, options, diagnostics) : nullptr;
+  auto fixed = document ? driver::fixed_words(*document, arguments.settings, diagnostics) : std::nullopt;
   if (fixed) options.fixed = *std::move(fixed);
-  const bool is_set = options.fixed.empty() == arguments.settings.empty();
-  if (arguments.explain && source && is_set && !print_explanation(source, options, diagnostics)) {
+  if (!fixed || (arguments.explain && !print_explanation(document, options, diagnostics))) {
     flush(diagnostics, common);
     return failure;
   }
-  const auto made = source && is_set ? api::make_artifacts(source, options, wanted, diagnostics) : std::nullopt;
+  const auto made = api::make_artifacts(document, options, wanted, diagnostics);
   const bool has_stage = arguments.dump_after.empty() || lists_stages || dumped > 0;
   if (made && !has_stage)
     diagnostics.report(support::Id::unknown_stage, "there is no stage \"" + arguments.dump_after + "\"")

@@ -7,10 +7,10 @@
 #include "compiler/driver/diagram.h"
 #include "compiler/driver/driver.h"
 #include "compiler/driver/explain.h"
+#include "compiler/driver/fixed_settings.h"
 #include "compiler/support/process.h"
 #include "compiler/support/temporary.h"
 #include "compiler/support/visible.h"
-#include "runtime/cli/fixed_words.h"
 #include "runtime/cli/session.h"
 #include "runtime/scene/output_file.h"
 
@@ -74,11 +74,11 @@ bool draw_to_file(const DrawArguments& arguments, const Common& common, support:
   if (graph == nullptr || !may_write(arguments.output, diagnostics)) return false;
   std::set<std::string> left_out;
   if (arguments.after_specialisation) {
-    const auto general = driver::compile_shader(source, options, {}, diagnostics);
-    auto fixed = general ? fixed_words(source, arguments.settings, options, diagnostics) : std::nullopt;
+    const auto general = driver::compile_shader(graph, options, {}, diagnostics);
+    auto fixed = general ? driver::fixed_words(*graph, arguments.settings, diagnostics) : std::nullopt;
     if (!fixed) return false;
     options.fixed = *std::move(fixed);
-    const auto shader = driver::compile_shader(source, options, {}, diagnostics);
+    const auto shader = driver::compile_shader(graph, options, {}, diagnostics);
     if (!shader) return false;
     left_out = driver::explain(*general, *shader).left_out();
   }

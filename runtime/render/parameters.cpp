@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "compiler/driver/parameter_value.h"
 #include "compiler/graph/files.h"
 #include "compiler/support/assert.h"
 #include "compiler/support/visible.h"
@@ -32,88 +33,6 @@ void report_unknown(const driver::ParameterBlock& block, std::string_view giver,
       Id::unknown_parameter, where, "the effect of " + quote(giver) + " has no parameter " + quote(name),
       name, names);
   if (report.fix.empty()) report.note(list.empty() ? "it has no parameters" : "it has " + list);
-}
-
-/// Records hold floats, which have all integers up to this one.
-constexpr int64_t greatest_integer = int64_t{1} << 24;
-
-bool check_integer(const driver::Field& field, int64_t value, const support::Span& where, Diagnostics& diagnostics) {
-  if (value >= -greatest_integer && value <= greatest_integer) return true;
-  diagnostics.report(Id::out_of_range, where,
-                     "the integer parameter " + quote(field.name) + " is " + std::to_string(value) + "; it lies between -" +
-                         std::to_string(greatest_integer) + " and " + std::to_string(greatest_integer));
-  return false;
-}
-
-/// Whether every number of a value is in the range of the field.
-bool check_range(const driver::Field& field, Type type, const Literal& literal, const support::Span& where,
-                 Diagnostics& diagnostics) {
-  std::vector<float> numbers = literal.numbers;
-  if (literal.kind == Literal::Kind::number) numbers = {literal.number};
-  for (float number : numbers) {
-    const bool below = field.min && number < *field.min;
-    if (!below && !(field.max && number > *field.max)) continue;
-    const std::string fault = !field.names.empty() ? " has no value " + graph::limit_text(type, number)
-                              : below              ? " is at least " + graph::limit_text(type, *field.min)
-                                                   : " is at most " + graph::limit_text(type, *field.max);
-    support::Diagnostic& report =
-        diagnostics.report(Id::out_of_range, where, "the parameter " + quote(field.name) + fault);
-    if (!field.names.empty()) report.note(graph::described_names(field.names));
-    return false;
-  }
-  return true;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
-  return list;
-}
-
-bool check_fit(const driver::Field& field, const Literal& literal, const support::Span& where,
-               Diagnostics& diagnostics) {
-  const Type type = driver::type_of(field);
-  const std::string& name = field.name;
-  const std::vector<std::string>& values = field.names;
-  if (literal.kind == Literal::Kind::string && !values.empty()) {
-    if (graph::named_value(values, literal.string)) return true;
-    std::vector<std::string_view> names(values.begin(), values.end());
-    diagnostics
-        .report_unknown(Id::unknown_choice, where,
-                        "no value of the parameter " + quote(name) + " is called " + quote(literal.string),
-                        literal.string, names)
-        .note(graph::described_names(values));
-    return false;
-  }
-  if (graph::fits(type, literal))
-    return check_range(field, type, literal, where, diagnostics) &&
-           (type != Type::integer || check_integer(field, literal.integer, where, diagnostics));
-  const int floats = graph::float_count(type);
-  std::string expected = std::string(graph::type_name(type));
-  if (type == Type::filename) expected += ", a path in quotes";
-  if (type == Type::boolean) expected += ", true or false";
-  if (type == Type::integer) expected += ", a whole number without fraction";
-  if (floats == 1) expected += ", a number";
-  if (!values.empty()) expected += ", or one of " + listed(values);
-  if (floats > 1) expected += ", an array of " + std::to_string(floats) + " numbers";
-  diagnostics.report(Id::wrong_type, where, "the parameter " + quote(name) + " is of type " + expected);
-  return false;
-}
-
-/// Writes a value into the record. `names`: of an integer's values.
-void store(Type type, const std::vector<std::string>& names, const Literal& literal, float* words) {
-  switch (type) {
-    case Type::boolean: words[0] = literal.boolean ? 1.0f : 0.0f; break;
-    case Type::integer: {
-      const auto named = graph::named_value(names, literal.string);
-      words[0] = static_cast<float>(named ? named->integer : literal.integer);
-      break;
-    }
-    case Type::floating: words[0] = literal.number; break;
-    case Type::filename:
-    case Type::string: break;  // not in the record
-    default: std::copy(literal.numbers.begin(), literal.numbers.end(), words);
-  }
 }
 
 /// Stores a factor of a material, held in the range of the field that takes it, if the block has such a field. Integers
@@ -166,7 +85,7 @@ class ParameterValues::Resolver {
     const size_t errors_before = diagnostics_.error_count();
     for (const driver::Field& field : block_.fields)
       if (driver::type_of(field) == Type::integer && !field.value.empty())
-        check_integer(field, static_cast<int64_t>(field.value[0]), {}, diagnostics_);
+        driver::check_integer(field, static_cast<int64_t>(field.value[0]), {}, diagnostics_);
     take_factors();
     take_parameters();
     take_variations();
@@ -203,9 +122,9 @@ class ParameterValues::Resolver {
       const auto number = find(parameter.name, parameter.name_where);
       if (!number) continue;
       const driver::Field& field = block_.fields[*number];
-      if (!check_fit(field, parameter.value, parameter.value_where, diagnostics_)) continue;
-      store(driver::type_of(field), field.names, parameter.value,
-            values_.common_.data() + block_.word_of(*number));
+      if (!driver::check_fit(field, parameter.value, parameter.value_where, diagnostics_)) continue;
+      driver::store(driver::type_of(field), field.names, parameter.value,
+                    values_.common_.data() + block_.word_of(*number));
     }
   }
 
@@ -218,7 +137,7 @@ class ParameterValues::Resolver {
         if (!number) continue;
         const driver::Field& field = block_.fields[*number];
         for (const Literal& value : variation.values)
-          if (!check_fit(field, value, variation.value_where, diagnostics_)) break;
+          if (!driver::check_fit(field, value, variation.value_where, diagnostics_)) break;
         const Type type = driver::type_of(field);
         if (type == Type::filename) continue;
         if (!variation.listed && type == Type::integer) {
@@ -297,7 +216,7 @@ float ParameterValues::most(size_t word) const {
     if (varying.first_word != word) continue;
     for (const Literal& value : varying.variation.values) {
       float number = 0;
-      store(varying.type, varying.names, value, &number);
+      driver::store(varying.type, varying.names, value, &number);
       most = std::max(most.value_or(number), number);
     }
   }
@@ -324,7 +243,7 @@ std::vector<float> ParameterValues::words(const scene::Instance& instance,
   for (const Varying& varying : varying_) {
     const Literal value =
         scene::variation_value(varying.variation, instance.place[varying.axis], varying.count);
-    store(varying.type, varying.names, value, words.data() + varying.first_word);
+    driver::store(varying.type, varying.names, value, words.data() + varying.first_word);
   }
   for (float& word : words) word = scene::canonical(word);
   for (size_t i = 0; i < images_.size(); ++i) {

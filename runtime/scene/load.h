@@ -39,9 +39,6 @@ class SceneDocument {
   graph::FileRule files_;
 };
 
-/// A setting `parameter=value` of a document that is no scene: the same values. Reports one that is malformed.
-std::optional<Parameter> parse_setting(const std::string& text, support::Diagnostics& diagnostics);
-
 /// Writes values into a scene document, one setting after the other:
 ///
 ///     object.parameter=value   a parameter of an object's effect, for all copies in its grid
@@ -53,8 +50,7 @@ std::optional<Parameter> parse_setting(const std::string& text, support::Diagnos
 ///
 /// A path for a parameter of type filename is relative to the working directory, and may lead anywhere.
 ///
-/// A value is JSON, or numbers with commas between them ("1,0.5,0"), or a plain word. parse_scene
-/// checks whether it fits; its reports show the setting. Reports settings that are malformed, or that name nothing or
+/// Values are those of graph::parse_setting(). parse_scene checks whether they fit; its reports show the setting. Reports settings that are malformed, or that name nothing or
 /// more than one thing, and then returns false.
 bool apply_settings(graph::Document& document, const std::vector<std::string>& settings,
                     const graph::FileRule& files, support::Diagnostics& diagnostics);

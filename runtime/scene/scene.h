@@ -15,6 +15,7 @@
 
 #include "compiler/graph/document.h"
 #include "compiler/graph/graph.h"
+#include "compiler/graph/setting.h"
 #include "compiler/interface/binding.h"
 #include "runtime/scene/encode.h"
 #include "runtime/scene/mesh.h"
@@ -106,12 +107,8 @@ struct Transform {
   glm::vec3 scale{1, 1, 1};                      ///< no component is 0
 };
 
-/// A value for a parameter of an effect. render/ checks whether the effect has the parameter and the value fits.
-struct Parameter {
-  std::string name;
-  graph::Literal value;
-  support::Span name_where, value_where;
-};
+/// render/ checks whether the effect has the parameter and the value fits.
+using Parameter = graph::GivenParameter;
 
 /// A parameter that varies along an axis of a grid: from one value to another in equal steps, or over a list.
 struct Variation {

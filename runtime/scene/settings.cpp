@@ -6,6 +6,7 @@
 
 #include "compiler/graph/extend.h"
 #include "compiler/graph/graph.h"
+#include "compiler/graph/setting.h"
 #include "compiler/support/visible.h"
 #include "runtime/scene/format.h"
 #include "runtime/scene/load.h"
@@ -15,65 +16,12 @@ namespace isoshade::scene {
 using graph::Document;
 using graph::Json;
 using graph::Member;
+using graph::Setting;
 using support::Diagnostics;
 using support::Id;
 using support::quote;
 
 namespace {
-
-struct Setting {
-  std::string_view text;  ///< as given
-  std::string_view name;  ///< empty if only a parameter is given
-  std::string_view key;
-  support::Source source;  ///< name.key=value, the value as JSON
-  Json value;
-};
-
-std::optional<Document> parse_json(const std::string& text) {
-  Diagnostics unheard;
-  return graph::parse_document(std::make_shared<support::SourceFile>("--set", text), unheard);
-}
-
-bool is_json(const std::string& text) { return parse_json(text).has_value(); }
-
-/// The value as JSON.
-std::optional<std::string> to_json(std::string_view text) {
-  const std::string value(text);
-  if (is_json(value)) return value;
-  if (std::string list = "[" + value + "]"; value.find(',') != std::string::npos && is_json(list))
-    return list;
-  if (value.empty() || value.find_first_of("[]{},:\"") != std::string::npos) return std::nullopt;
-  if (std::string word = "\"" + value + "\""; is_json(word)) return word;
-  return std::nullopt;
-}
-
-std::optional<Setting> split(std::string_view text, Diagnostics& diagnostics, std::string_view example) {
-  Setting setting{text, {}, {}, {}, {}};
-  const size_t equals = text.find('=');
-  const std::string target(text.substr(0, equals));
-  const size_t dot = target.find('.');
-  setting.key = text.substr(0, equals);
-  if (dot != std::string::npos) {
-    setting.name = setting.key.substr(0, dot);
-    setting.key.remove_prefix(dot + 1);
-  }
-  const bool named = graph::is_id(setting.key) && (dot == std::string::npos || graph::is_id(setting.name));
-  const auto value = equals == std::string_view::npos ? std::nullopt : to_json(text.substr(equals + 1));
-  // Parsed at its position in the text, so that spans are right.
-  const std::string padding(target.size() + 1, ' ');
-  auto parsed = named && value ? parse_json(padding + *value) : std::nullopt;
-  if (parsed) {
-    setting.value = std::move(parsed->root);
-    setting.source = std::make_shared<support::SourceFile>("--set", target + "=" + *value,
-                                                           support::SourceFile::Origin::argument);
-    return setting;
-  }
-  diagnostics.report(Id::bad_setting, "--set " + quote(text) + " is not of the form name.parameter=value")
-      .note(named && equals != std::string_view::npos
-                ? "the value is JSON, numbers with commas between them, or a plain word"
-                : "for example --set " + std::string(example));
-  return std::nullopt;
-}
 
 template <typename Value>  // Json or const Json
 Value* find_object(Value& json, std::string_view key) {
@@ -264,26 +212,11 @@ bool Editor::apply(Setting& setting) {
 
 }  // namespace
 
-std::optional<Parameter> parse_setting(const std::string& text, Diagnostics& diagnostics) {
-  const std::optional<Setting> setting = split(text, diagnostics, "roughness=0.3");
-  if (!setting) return std::nullopt;
-  if (!setting->name.empty()) {
-    diagnostics.report(Id::bad_setting, "--set " + quote(text) + " names something in a scene")
-        .suggest("--set " + support::visible(text.substr(setting->name.size() + 1)));
-    return std::nullopt;
-  }
-  const Document document{setting->source, setting->value};
-  const auto literal = graph::parse_literal(document, setting->value, setting->key, diagnostics);
-  if (!literal) return std::nullopt;
-  const auto key_end = static_cast<uint32_t>(setting->key.size());
-  return Parameter{std::string(setting->key), *literal, {setting->source, 0, key_end}, document.span(setting->value)};
-}
-
 bool apply_settings(Document& document, const std::vector<std::string>& settings,
                     const graph::FileRule& files, Diagnostics& diagnostics) {
   Editor editor(document, files, diagnostics);
   for (const std::string& text : settings) {
-    std::optional<Setting> setting = split(text, diagnostics, "balls.roughness=0.3");
+    std::optional<Setting> setting = graph::parse_setting(text, "balls.roughness=0.3", diagnostics);
     if (!setting || !editor.apply(*setting)) return false;
   }
   return true;

@@ -104,6 +104,69 @@ TEST(Compiler, PrecisionChangesTheText) {
             other.find("cartoon.glsl")->bytes);
 }
 
+const isoshade::Document rim{"/virtual/rim.json", R"({
+  "isoshade": 1, "effect": "rim", "parameters": {
+    "strength": {"type": "float", "value": 1, "min": 0, "max": 4}, "tint": {"type": "color3", "value": [1, 1, 1]},
+    "mode": {"type": "integer", "enum": ["flat", "noisy"], "value": "noisy"}, "map": {"type": "filename", "value": ""}},
+  "nodes": {"noise": {"type": "noise3d", "to": "float"}, "unused": {"type": "time"},
+    "picture": {"type": "image", "file": {"link": "map"}, "default": [1, 1, 1]},
+    "color": {"type": "expression", "code": "tint * picture * (mode == 1 ? noise : 1) * strength",
+              "tint": "tint", "picture": "picture", "noise": "noise", "mode": "mode", "strength": "strength"}},
+  "passes": [{"name": "base", "color": "color"}]
+})"};
+
+TEST(Compiler, FixedValuesLeaveOutWhatOthersNeed) {
+  const auto has = [](const isoshade::Compilation& made, const char* text) {
+    return made.find("rim.glsl")->bytes.find(text) != std::string::npos;
+  };
+  isoshade::CompileOptions options;
+  options.targets = {"glsl"};
+  const isoshade::Compilation general = isoshade::compile(rim, options);
+  ASSERT_TRUE(general) << general.text;
+  for (const char* text : {"noise3d", "parameters.mode", "isoshade_texel(", "parameters.strength"}) EXPECT_TRUE(has(general, text)) << text;
+  options.fixed = {"mode=noisy", "mode=flat", "map=\"\"", "tint=0.25,0.5,0.75"};
+  const isoshade::Compilation fixed = isoshade::compile(rim, options);
+  ASSERT_TRUE(fixed) << fixed.text;
+  for (const char* text : {"noise3d", "parameters.mode", "isoshade_texel(", "parameters.tint"}) EXPECT_FALSE(has(fixed, text)) << text;
+  for (const char* text : {"parameters.strength", "int mode;", "0.25"}) EXPECT_TRUE(has(fixed, text)) << text;
+  EXPECT_NE(fixed.find("rim.json")->bytes.find("\"fixed\": 0"), std::string::npos) << "the reflection tells it";
+  EXPECT_EQ(fixed.diagnostics.size(), 1u) << "the warning of the unused node, once\n" << fixed.text;
+  for (const isoshade::Wrapper wrapper : {isoshade::Wrapper::forward, isoshade::Wrapper::isoshade}) {
+    options.wrapper = wrapper;
+    const isoshade::Compilation wrapped = isoshade::compile(rim, options);
+    ASSERT_TRUE(wrapped) << wrapped.text;
+    for (const isoshade::File& file : wrapped.files) {
+      const bool is_text = file.name != "rim.json";
+      EXPECT_TRUE(!is_text || file.bytes.find("noise3d") == std::string::npos) << file.name;
+    }
+  }
+}
+
+TEST(Compiler, FixedValuesAreChecked) {
+  const auto first = [](const isoshade::Document& document, std::vector<std::string> fixed) {
+    isoshade::CompileOptions options;
+    options.sources.disabled_warnings = {"unused-node"};
+    options.fixed = std::move(fixed);
+    const isoshade::Compilation made = isoshade::compile(document, options);
+    EXPECT_FALSE(made);
+    EXPECT_TRUE(made.files.empty());
+    return made.diagnostics.empty() ? isoshade::Diagnostic{} : made.diagnostics[0];
+  };
+  const isoshade::Diagnostic unknown = first(rim, {"strenght=0"});
+  EXPECT_EQ(unknown.id, "unknown-parameter");
+  EXPECT_NE(unknown.suggestion.find("\"strength\""), std::string::npos) << unknown.suggestion;
+  const isoshade::Diagnostic outside = first(rim, {"strength=9"});
+  EXPECT_EQ(outside.id, "out-of-range");
+  EXPECT_EQ(outside.where.file, "--set") << "as the command calls it";
+  EXPECT_EQ(outside.where.column, 10) << "of the value";
+  EXPECT_EQ(first(rim, {"mode=nosy"}).id, "unknown-choice");
+  EXPECT_EQ(first(rim, {"tint=1"}).id, "wrong-type");
+  EXPECT_EQ(first(rim, {"strength"}).id, "bad-setting");
+  EXPECT_EQ(first(rim, {"rim.strength=1"}).id, "bad-setting");
+  EXPECT_EQ(first(rim, {"map=a.png"}).id, "unsupported");
+  EXPECT_EQ(first(half, {"in=1"}).id, "unsupported") << "a function has no parameters";
+}
+
 TEST(Compiler, ErrorsAreDataWithPlaces) {
   isoshade::Document wrong = half;
   wrong.text.replace(wrong.text.find("\"in2\""), 5, "\"in3\"");

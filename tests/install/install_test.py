@@ -7,6 +7,7 @@
 ISOSHADE_KEEP=FOLDER keeps the files of the test there.
 """
 
+import json
 import os
 import pathlib
 import re
@@ -235,6 +236,22 @@ class Installed(unittest.TestCase):
                     f"add_library(wrong INTERFACE)\nisoshade_add_graph(wrong {arguments})\n")
                 said = run("cmake", "-S", source, "-B", source / "build", f"-Disoshade_ROOT={self.prefix}", ok=False)
                 self.assertIn(message, " ".join(said.split()))
+
+    def test_cmake_compiles_for_fixed_values(self):
+        source, build = self.folder / "fixed", self.folder / "fixed/build"
+        source.mkdir()
+        (source / "glow.json").write_text(
+            '{"isoshade": 1, "effect": "glow", "parameters": {"power": {"type": "float", "value": 1}, '
+            '"tint": {"type": "color3", "value": [1, 1, 1]}}, '
+            '"nodes": {"c": {"type": "multiply", "in1": "tint", "in2": "power"}}, "passes": [{"name": "base", "color": "c"}]}')
+        (source / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(fixed LANGUAGES NONE)\nfind_package(isoshade CONFIG REQUIRED)\n"
+            "add_library(dim INTERFACE)\n"
+            "isoshade_add_graph(dim glow.json TARGETS glsl PREFIX dim SET power=0.5 tint=0.25,0.5,1)\n")
+        configure(source, build, f"-Disoshade_ROOT={self.prefix}")
+        run("cmake", "--build", build, "--target", "dim")
+        parameters = json.loads((build / "dim.isoshade/glow.json").read_text())["parameters"]
+        self.assertEqual([parameter["fixed"] for parameter in parameters], [0.5, [0.25, 0.5, 1]])
 
     def test_an_edited_function_makes_the_spirv_of_a_wrapper_again(self):
         source, build = self.folder / "spirv", self.folder / "spirv/build"
