@@ -2,7 +2,10 @@
 #include "compiler/driver/fixed.h"
 
 #include <bit>
+#include <utility>
 
+#include "compiler/driver/front.h"
+#include "compiler/lower/lower.h"
 #include "compiler/passes/bind.h"
 
 namespace isoshade::driver {
@@ -43,14 +46,27 @@ class Fixer {
     return std::nullopt;
   }
 
+  /// Tells how far a repetition counts where its value stays open.
+  void narrow(interface::Binding& binding) const {
+    const auto* const repetition = std::get_if<source::PassRepetition>(&binding.source);
+    const std::optional<int> count = repetition != nullptr ? repetitions() : std::nullopt;
+    if (count && repetition->what == interface::Repetition::index) binding.assumed.hi = *count - 1;
+  }
+
  private:
-  KnownWords value_of(const source::PassRepetition& repetition) const {
+  /// How often the pass is drawn, if that is known.
+  std::optional<int> repetitions() const {
     if (repeat_ == nullptr) return std::nullopt;
     const std::optional<size_t> parameter = repeat_->parameter;
-    if (parameter && !is_fixed(fixed_, block_, *parameter)) return std::nullopt;
-    const int count = parameter ? static_cast<int>(*fixed_[block_.word_of(*parameter)]) : repeat_->count;
-    if (repetition.what == interface::Repetition::count) return std::vector{static_cast<uint32_t>(count)};
-    return count == 1 ? KnownWords(std::vector{0u}) : std::nullopt;
+    if (!parameter) return repeat_->count;
+    return is_fixed(fixed_, block_, *parameter) ? std::optional(static_cast<int>(*fixed_[block_.word_of(*parameter)]))
+                                                : std::nullopt;
+  }
+  KnownWords value_of(const source::PassRepetition& repetition) const {
+    const std::optional<int> count = repetitions();
+    if (!count) return std::nullopt;
+    if (repetition.what == interface::Repetition::count) return std::vector{static_cast<uint32_t>(*count)};
+    return *count == 1 ? KnownWords(std::vector{0u}) : std::nullopt;
   }
 
   const ParameterBlock& block_;
@@ -82,10 +98,20 @@ void fix_parameters(ir::Module& module, interface::Interface& interface, const P
   std::vector<interface::Binding> bindings;
   for (interface::Binding& binding : interface.bindings) {
     words.push_back(fixer.value_of(binding));
-    if (!words.back()) bindings.push_back(std::move(binding));
+    if (words.back()) continue;
+    fixer.narrow(binding);
+    bindings.push_back(std::move(binding));
   }
   passes::bind_parameters(module.functions[interface.entry], words);
   interface.bindings = std::move(bindings);
+}
+
+std::function<void(lower::Lowered& lowered, size_t pass)> fixing(const check::TypedGraph& document, FixedWords fixed) {
+  if (fixed.empty()) return {};
+  return [&document, block = parameter_block(document), fixed = std::move(fixed)](lower::Lowered& lowered, size_t pass) {
+    const bool is_pass = document.graph.kind == graph::DocumentKind::effect;
+    fix_parameters(lowered.module, lowered.interface, block, fixed, is_pass ? &document.graph.passes[pass].repeat : nullptr);
+  };
 }
 
 void drop_unread(ir::Function& function, interface::Interface& interface) {

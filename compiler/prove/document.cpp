@@ -81,12 +81,13 @@ Given given_of(const TypedGraph& graph, const interface::Binding& binding) {
 }
 
 std::optional<std::vector<Subject>> subjects_of(const TypedGraph& graph, support::Diagnostics& diagnostics,
-                                                functions::Tier tier) {
+                                                functions::Tier tier, const Change& change) {
   std::vector<Subject> subjects;
   const auto add = [&](const std::string& name, lower::LowerOptions part) {
     lower::NodesOfOrigins nodes;
     part.nodes = &nodes;
     lower::Lowered lowered = lower::lower(graph, part);
+    if (change) change(lowered, part.pass);
     std::vector<Given> givens;
     for (const interface::Binding& binding : lowered.interface.bindings) givens.push_back(given_of(graph, binding));
     const auto outside = [&](uint32_t function) {

@@ -2,6 +2,7 @@
 // What `isoshade check` asks of a document: the tapes of what it computes, over the inputs that it allows.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,10 +27,14 @@ struct Subject {
   interface::Interface interface;  ///< of the tape's module
 };
 
-/// Nothing, and a report, where a document is too large.
+/// Changes what is lowered of a document, or of a pass of an effect, before anything is proved of it.
+using Change = std::function<void(lower::Lowered& lowered, size_t pass)>;
+
+/// Nothing, and a report, where a document is too large. `change` may be empty.
 std::optional<std::vector<Subject>> subjects_of(const check::TypedGraph& graph,
                                                 support::Diagnostics& diagnostics,
-                                                functions::Tier tier = functions::Tier::standard);
+                                                functions::Tier tier = functions::Tier::standard,
+                                                const Change& change = {});
 
 /// How much is not proved of a subject, by what is reported.
 struct NotProved {

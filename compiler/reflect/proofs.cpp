@@ -40,9 +40,9 @@ Proof proof_of(const prove::Subject& subject, const prove::Effort& effort) {
 
 }  // namespace
 
-std::optional<List<Proof>> proofs_of(const check::TypedGraph& graph, functions::Tier tier,
-                                     support::Diagnostics& diagnostics) {
-  const auto subjects = prove::subjects_of(graph, diagnostics, tier);
+std::optional<List<Proof>> proofs_of(const driver::Shader& shader, support::Diagnostics& diagnostics) {
+  const check::TypedGraph& graph = *shader.typed;
+  const auto subjects = prove::subjects_of(graph, diagnostics, shader.tier, driver::fixing(graph, shader.fixed));
   if (!subjects) return std::nullopt;
   List<Proof> proofs;
   const prove::Effort effort = prove::effort_for(*subjects);

@@ -429,7 +429,7 @@ std::optional<Reflection> reflect(const driver::Shader& shader, const ReflectOpt
                                   support::Diagnostics& diagnostics) {
   Reflection made = Reflector(shader, options).reflect();
   if (!options.prove) return made;
-  made.proofs = proofs_of(*shader.typed, shader.tier, diagnostics);
+  made.proofs = proofs_of(shader, diagnostics);
   return made.proofs ? std::optional(std::move(made)) : std::nullopt;
 }
 

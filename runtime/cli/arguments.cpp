@@ -270,6 +270,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit) {
       ->add_option("--where", ranges,
                    "Restrict an input, or the scalar product or clamp that a node computes; may be repeated")
       ->check(range_text);
+  check_app
+      ->add_option("--set", check.settings, "Prove an effect or post for one value of a parameter: PARAMETER=VALUE, as for compile")
+      ->take_all();
   add_precision(*check_app, check.precision);
 
   FormatArguments format;

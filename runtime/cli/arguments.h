@@ -145,6 +145,7 @@ struct NamedRange {
 struct CheckArguments {
   std::vector<std::string> documents;
   std::vector<NamedRange> where;
+  std::vector<std::string> settings;
   functions::Tier precision = functions::Tier::standard;
   std::string output;  ///< file for the table of counterexamples; empty: none is written
 };

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <set>
 
+#include "compiler/driver/fixed_settings.h"
 #include "compiler/prove/document.h"
-#include "compiler/driver/driver.h"
 #include "compiler/support/parse_number.h"
 #include "compiler/support/visible.h"
 #include "runtime/cli/session.h"
@@ -129,9 +129,11 @@ Result check_one(const std::string& path, const CheckArguments& arguments, const
   const support::Source source = graph::read_source(path, diagnostics);
   if (source == nullptr) return Result::error;
   const auto typed = driver::check_document(source, options, diagnostics);
-  if (typed == nullptr) return Result::error;
+  auto fixed = typed ? driver::fixed_words(*typed, arguments.settings, diagnostics) : std::nullopt;
+  if (!fixed) return Result::error;
   if (!arguments.output.empty() && !may_write(arguments.output, diagnostics)) return Result::error;
-  const auto subjects = prove::subjects_of(*typed, diagnostics, arguments.precision);
+  const auto subjects =
+      prove::subjects_of(*typed, diagnostics, arguments.precision, driver::fixing(*typed, *std::move(fixed)));
   if (!subjects) return Result::error;
   Result result = Result::proved;
   const auto where = restrictions(*subjects, arguments.where, diagnostics);

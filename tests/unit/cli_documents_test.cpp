@@ -206,6 +206,32 @@ TEST_F(Cli, CheckSetsTheExitCodeAndWritesCounterexamplesForEval) {
   EXPECT_NE(as_data.text.find("\"refuted\""), std::string::npos) << as_data.text;
 }
 
+TEST_F(Cli, CheckProvesForValuesOfParameters) {
+  const std::string effect = file("share.json", R"({"isoshade": 1, "effect": "share", "parameters": {
+    "by": {"type": "float", "value": 1, "min": 0, "max": 4}, "tint": {"type": "color3", "value": [1, 1, 1], "min": 0, "max": 1}},
+    "nodes": {"q": {"type": "divide", "in1": "tint", "in2": "by"}}, "passes": [{"name": "base", "color": "q"}]})");
+  EXPECT_EQ(run("check " + effect).exit, 1);
+  const Outcome proved = run("check " + effect + " --set by=2 --set tint=0.25,0.5,1");
+  EXPECT_EQ(proved.exit, 0) << proved.text;
+  EXPECT_NE(proved.text.find("color.y in [0.25, 0.25]"), std::string::npos) << proved.text;
+  const Outcome refuted = run("check " + effect + " --set by=0");
+  EXPECT_EQ(refuted.exit, 1) << "only the value counts\n" << refuted.text;
+  EXPECT_NE(refuted.text.find("share.json:3:"), std::string::npos) << refuted.text;
+  EXPECT_EQ(run("check " + effect + " --set yb=0").exit, 2);
+  EXPECT_EQ(run("check " + ggx + " --set alpha=1").exit, 2) << "a function has no parameters";
+
+  const auto outcome_of = [&](const std::string& options) {
+    const Outcome made = run("compile " + effect + " -q --check -o " + file("out") + options);
+    EXPECT_EQ(made.exit, 0) << made.text;
+    const std::string reflection = read(folder_ / "out" / "share.json"), key = "\"outcome\": \"";
+    const size_t at = reflection.find(key);
+    return at == std::string::npos ? reflection : reflection.substr(at + key.size(), reflection.find('"', at + key.size()) - at - key.size());
+  };
+  EXPECT_EQ(outcome_of(""), "refuted");
+  EXPECT_EQ(outcome_of(" --set by=2"), "proved");
+  EXPECT_EQ(outcome_of(" --set by=0"), "refuted");
+}
+
 TEST_F(Cli, NodesListsAllAndDescribesOne) {
   const Outcome all = run("nodes");
   EXPECT_EQ(all.exit, 0);

@@ -4,18 +4,26 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <iterator>
+
+#include "compiler/driver/fixed_settings.h"
 
 namespace isoshade::reflect {
 namespace {
 
+/// `fixed`: as `compile --set` takes them.
 Reflection reflection_of(const std::string& text, const ReflectOptions& options = {},
-                         const driver::ShaderOptions& shader_options = {}) {
+                         const driver::ShaderOptions& shader_options = {}, const std::vector<std::string>& fixed = {}) {
   support::Diagnostics diagnostics;
   check::Library library;
   driver::CompileOptions compile_options;
   compile_options.library = &library;
   const auto source = std::make_shared<support::SourceFile>("fur.json", text);
-  const auto shader = driver::compile_shader(source, compile_options, shader_options, diagnostics);
+  const driver::Checked document = driver::check_document(source, compile_options, diagnostics);
+  auto words = document ? driver::fixed_words(*document, fixed, diagnostics) : std::nullopt;
+  compile_options.fixed = words.value_or(driver::FixedWords());
+  const auto shader =
+      words ? driver::compile_shader(document, compile_options, shader_options, diagnostics) : std::nullopt;
   EXPECT_TRUE(shader) << diagnostics.text();
   if (!shader) return {};
   auto made = reflect(*shader, options, diagnostics);
@@ -224,6 +232,30 @@ TEST(Reflect, ProvesOnlyIfAsked) {
   EXPECT_EQ(refuted.proofs->front().outcome, Outcome::refuted);
   EXPECT_EQ(refuted.proofs->front().refuted, 1);
   EXPECT_TRUE(refuted.proofs->front().results.empty());
+}
+
+TEST(Reflect, ProvesTheFunctionsForTheValuesForWhichTheyAreCompiled) {
+  const std::string effect = R"json({"isoshade": 1, "effect": "e", "parameters": {
+      "by": {"type": "float", "value": 1, "min": 0, "max": 4}, "tint": {"type": "color3", "value": [1, 1, 1], "min": 0, "max": 1},
+      "times": {"type": "integer", "value": 1, "min": 1, "max": 8}, "on": {"type": "boolean", "value": true}},
+    "nodes": {"i": {"type": "passindex"}, "share": {"type": "convert", "in": "i", "to": "float"},
+      "q": {"type": "divide", "in1": "tint", "in2": "by"},
+      "color": {"type": "expression", "code": "on ? q + color3(share) : color3(1 / share)", "on": "on", "q": "q", "share": "share"}},
+    "passes": [{"name": "base", "repeat": "times", "color": "color"}]})json";
+  ReflectOptions prove;
+  prove.prove = true;
+  const auto proof_for = [&](const std::vector<std::string>& fixed) { return reflection_of(effect, prove, {}, fixed).proofs->front(); };
+  EXPECT_EQ(proof_for({}).refuted, 2) << "by `by`, and by `share` in the first repetition";
+  EXPECT_EQ(proof_for({"by=2"}).refuted, 1);
+  EXPECT_EQ(proof_for({"by=0", "on=true"}).refuted, 1) << "a value that breaks it";
+  const Proof proof = proof_for({"by=2", "on=true", "tint=0.25,0.5,1", "times=3"});
+  EXPECT_EQ(proof.outcome, Outcome::proved);
+  ASSERT_GE(proof.results.size(), 3u);
+  const double least[] = {0.125, 0.25, 0.5};
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(proof.results[c].low, least[c]);
+    EXPECT_EQ(proof.results[c].high, least[c] + 2) << "the last of three repetitions";
+  }
 }
 
 }  // namespace
