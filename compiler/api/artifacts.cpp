@@ -103,7 +103,7 @@ class Maker {
     std::vector<driver::ForwardPair> bound;  // alike in all languages
     if (is_forward) bound = pairs(shader, glsl::target());
     auto reflection =
-        reflect::reflect(shader, {options_.division, rule, options_.prove, bound}, diagnostics_);
+        reflect::reflect(shader, {rule, options_.prove, bound}, diagnostics_);
     if (!reflection) return std::nullopt;
     if (stages) {
       reflection->stages = reflect::Stages{{}, stages->record};

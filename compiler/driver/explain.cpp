@@ -7,7 +7,9 @@
 #include <map>
 #include <optional>
 
+#include "compiler/ir/call_graph.h"
 #include "compiler/ir/expansion.h"
+#include "compiler/support/assert.h"
 #include "compiler/support/parse_number.h"
 
 namespace isoshade::driver {
@@ -17,8 +19,11 @@ namespace {
 /// What a shader has of each node of its document.
 class Remains {
  public:
-  explicit Remains(const Shader& shader) : module_(shader.pure.module), document_(shader.pure.document) {
+  explicit Remains(const Shader& shader)
+      : module_(shader.pure.module), document_(shader.pure.document), branched_(module_.functions.size()) {
+    std::vector<uint32_t> entries;
     for (const emit::PureFunction& function : shader.pure.functions) {
+      entries.push_back(function.entry);
       const std::vector<uint64_t> sizes = ir::expanded_operations(module_, function.entry);
       total_ += sizes[function.entry];
       for (size_t f = 0; f < sizes.size(); ++f)
@@ -27,31 +32,58 @@ class Remains {
           sizes_[f] = sizes[f];
         }
     }
-    for (const ir::Function& function : module_.functions)
-      if (function.document == document_) read(function);
+    const auto order = ir::callees_first(module_, entries);
+    support::assert_that(order.has_value(), "a function calls itself");
+    for (const uint32_t f : *order) {
+      const ir::Function& function = module_.functions[f];
+      if (function.is_declaration()) continue;
+      const uint64_t branched = count(function, 0, false);
+      // No choice of a graph makes the branches of a library function.
+      if (!function.document.empty()) branched_[f] = branched;
+      if (function.document == document_) read_constants(function);
+    }
   }
 
   uint64_t total() const { return total_; }
-  uint64_t operations(const std::string& node) const {
-    const auto found = operations_.find(node);
-    return found == operations_.end() ? 0 : found->second;
-  }
+  uint64_t operations(const std::string& node) const { return found(operations_, node); }
+  uint64_t branched(const std::string& node) const { return found(branched_of_nodes_, node); }
   std::string constant(const std::string& node) const {
     const auto found = constants_.find(node);
     return found == constants_.end() ? "" : found->second;
   }
 
  private:
-  void read(const ir::Function& function) {
-    std::vector<ir::InstructionId> made_by(function.values.size(), ir::none);
-    for (const ir::Block& block : function.blocks) {
-      for (const ir::InstructionId id : block.instructions) {
-        const ir::Instruction& made = function.instructions[id];
-        for (uint32_t k = 0; k < made.result_count; ++k) made_by[made.first_result + k] = id;
-        const bool has_blocks = made.blocks[0] != ir::none;  // what is in them is counted by itself
-        if (!has_blocks) operations_[function.origins[made.origin].node] += ir::expanded_operations(function, made, sizes_);
-      }
+  static uint64_t found(const std::map<std::string, uint64_t>& counts, const std::string& node) {
+    const auto found = counts.find(node);
+    return found == counts.end() ? 0 : found->second;
+  }
+
+  /// Counts the operations of a block for the nodes of the document. Returns those that one side of a branch has: all, if the
+  /// block is `in_branch`.
+  uint64_t count(const ir::Function& function, ir::BlockId block, bool in_branch) {
+    uint64_t branched = 0;
+    for (const ir::InstructionId id : function.blocks[block].instructions) {
+      const ir::Instruction& made = function.instructions[id];
+      for (const ir::BlockId inner : made.blocks)
+        if (inner != ir::none) branched += count(function, inner, in_branch || made.op == ir::Opcode::branch);
+      if (made.blocks[0] != ir::none) continue;
+      const uint64_t operations = ir::expanded_operations(function, made, sizes_);
+      const uint64_t of_callee = made.op == ir::Opcode::call ? branched_[made.imm] : 0;
+      const uint64_t of_branches = in_branch ? operations : of_callee;
+      branched += of_branches;
+      if (function.document != document_) continue;
+      operations_[function.origins[made.origin].node] += operations;
+      branched_of_nodes_[function.origins[made.origin].node] += of_branches;
     }
+    return branched;
+  }
+
+  void read_constants(const ir::Function& function) {
+    std::vector<ir::InstructionId> made_by(function.values.size(), ir::none);
+    for (const ir::Block& block : function.blocks)
+      for (const ir::InstructionId id : block.instructions)
+        for (uint32_t k = 0; k < function.instructions[id].result_count; ++k)
+          made_by[function.instructions[id].first_result + k] = id;
     for (ir::ValueId value = 0; value < function.values.size(); ++value) {
       const uint32_t names = function.values[value].names;
       if (names == 0) continue;
@@ -83,8 +115,8 @@ class Remains {
   const ir::Module& module_;
   const std::string& document_;
   uint64_t total_ = 0;
-  std::vector<uint64_t> sizes_;  ///< by function
-  std::map<std::string, uint64_t> operations_;
+  std::vector<uint64_t> sizes_, branched_;  ///< by function
+  std::map<std::string, uint64_t> operations_, branched_of_nodes_;
   std::map<std::string, std::string> constants_;
 };
 
@@ -106,7 +138,7 @@ Explanation explain(const Shader& general, const Shader& fixed) {
     if (std::ranges::any_of(explanation.nodes, is_same)) continue;
     const bool is_expression = node.origin != graph::Node::Origin::node;
     NodeFate fate{node.id, is_expression ? "expression" : node.type, before.operations(node.id),
-                  after.operations(node.id), ""};
+                  after.operations(node.id), "", before.branched(node.id), after.branched(node.id)};
     if (fate.after == 0) fate.value = after.constant(node.id);
     explanation.nodes.push_back(std::move(fate));
   }

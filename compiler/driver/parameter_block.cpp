@@ -33,4 +33,17 @@ graph::Type type_of(const Field& field) {
   return *type;
 }
 
+std::vector<BlockItem> items_of(const ParameterBlock& block) {
+  std::vector<BlockItem> items;
+  for (size_t i = 0; i < block.fields.size(); ++i) {
+    const Field& field = block.fields[i];
+    const graph::Type type = type_of(field);
+    const bool is_switch = type == graph::Type::boolean || type == graph::Type::integer;
+    if (field.words > 0) items.push_back({field.name, block.word_of(i), static_cast<size_t>(field.words), is_switch});
+  }
+  for (size_t i = 0; i < block.images.size(); ++i)
+    items.push_back({block.images[i].slot.name, block.word_of_image(i), 1, true});
+  return items;
+}
+
 }  // namespace isoshade::driver

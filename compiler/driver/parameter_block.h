@@ -61,4 +61,14 @@ struct ParameterBlock {
 /// The type of a field of a parameter block.
 graph::Type type_of(const Field& field);
 
+/// A part of a record that one parameter or image has.
+struct BlockItem {
+  std::string_view name;  ///< in the block
+  size_t first, words;
+  bool is_switch;  ///< a boolean, an integer, or whether there is an image
+};
+
+/// Of the fields, then of the images.
+std::vector<BlockItem> items_of(const ParameterBlock& block);
+
 }  // namespace isoshade::driver

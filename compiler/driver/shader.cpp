@@ -42,6 +42,8 @@ std::optional<Shader> compile_shader(const Checked& typed, const CompileOptions&
   shader.typed = typed;
   shader.kind = graph.kind;
   shader.tier = options.tier;
+  shader.skips = options.skips;
+  shader.division = shader_options.division;
   emit::PureShader& pure = shader.pure;
   pure.name = graph.name;
   pure.document = typed->document;

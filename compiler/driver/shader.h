@@ -38,6 +38,8 @@ struct Shader {
   std::shared_ptr<const check::TypedGraph> typed;
   functions::Tier tier = functions::Tier::standard;
   FixedWords fixed = {};  ///< what it is compiled for
+  interface::Skips skips = {};
+  Division division = Division::native;  ///< of its module
 };
 
 struct ShaderOptions {

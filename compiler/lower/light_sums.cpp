@@ -28,7 +28,7 @@ bool sums_colors(const check::TypedGraph& graph, uint32_t sum) {
   return false;
 }
 
-bool leaves_out_black_lights(const check::TypedGraph& graph) {
+std::optional<LightSum> sum_of_black_lights(const check::TypedGraph& graph) {
   std::set<const check::TypedGraph*> found{&graph};
   std::vector<const check::TypedGraph*> open{&graph};
   while (!open.empty()) {
@@ -39,11 +39,11 @@ bool leaves_out_black_lights(const check::TypedGraph& graph) {
       if (node.row == nullptr) {
         if (found.insert(node.callee.get()).second) open.push_back(node.callee.get());
       } else if (node.row->is<nodes::SumLights>() && !sums_colors(next, i)) {
-        return false;
+        return LightSum{&next, i};
       }
     }
   }
-  return true;
+  return std::nullopt;
 }
 
 }  // namespace isoshade::lower

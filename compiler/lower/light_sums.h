@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "compiler/check/typed_graph.h"
 
@@ -12,7 +13,16 @@ namespace isoshade::lower {
 /// Whether what the node sums up depends on the colours of the lights.
 bool sums_colors(const check::TypedGraph& graph, uint32_t sum);
 
-/// Whether this is so of every sum over lights of a document and of the functions that it calls.
-bool leaves_out_black_lights(const check::TypedGraph& graph);
+struct LightSum {
+  const check::TypedGraph* document = nullptr;
+  uint32_t node = 0;
+};
+
+/// A sum over lights, of a document or a function that it calls, that does not depend on their colours and so has a term for
+/// every light.
+std::optional<LightSum> sum_of_black_lights(const check::TypedGraph& graph);
+
+/// Whether there is none.
+inline bool leaves_out_black_lights(const check::TypedGraph& graph) { return !sum_of_black_lights(graph); }
 
 }  // namespace isoshade::lower

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 
+#include "compiler/driver/skipped.h"
+#include "compiler/lower/light_sums.h"
 #include "compiler/lower/lower.h"
 #include "compiler/nodes/site.h"
 #include "compiler/passes/passes.h"
 #include "compiler/reflect/files.h"
 #include "compiler/reflect/proofs.h"
 #include "compiler/support/assert.h"
+#include "compiler/support/visible.h"
 #include "compiler/targets/cpp/cpp.h"
 
 namespace isoshade::reflect {
@@ -60,7 +63,7 @@ class Reflector {
     made_.doc = if_any(graph_.graph.doc);
     made_.prefix = pure_.prefix;
     made_.precision.text = functions::tier_name(shader_.tier);
-    made_.division.text = driver::name(options_.division);
+    made_.division.text = driver::name(shader_.division);
     for (ReadFile& read : files_of(graph_, options_.files)) made_.files.push_back(std::move(read.file));
     made_.document = made_.files[0].path;
     for (const graph::Input& input : graph_.graph.inputs) made_.parameters.push_back(parameter(input));
@@ -77,6 +80,8 @@ class Reflector {
     }
     for (const HostCall call : emit::host_calls(pure_, pure_.functions)) add_host(call);
     if (!options_.pairs.empty()) add_pairs();
+    if (made_.lights) made_.black_lights = black_lights();
+    for (const driver::Skipped& skipped : driver::skipped_in(shader_)) add_skipped(skipped);
     return std::move(made_);
   }
 
@@ -358,6 +363,25 @@ class Reflector {
     made_.lights |= call == HostCall::light_count;
     made_.depth |= call == HostCall::depth;
     made_.host.push_back({{Text(row.name)}, Text(row.result), Text(row.parameters), Text(row.doc)});
+  }
+
+  /// Whether a document that asks for lights needs those that are black.
+  BlackLights black_lights() const {
+    const auto sum = lower::sum_of_black_lights(graph_);
+    if (!sum) return {true, "every sum over lights leaves out those whose color is 0"};
+    std::string node = support::quote(sum->document->graph.nodes[sum->node].id);
+    if (sum->document != &graph_) node += " of " + sum->document->document;
+    return {false, node + " sums up what does not depend on the colors of lights"};
+  }
+
+  void add_skipped(const driver::Skipped& skipped) {
+    support::assert_that(skipped.skip.has_value(), "something is left out of functions for no reason");
+    SkippedPart& made = made_.skipped.emplace_back();
+    made.skip.text = interface::name(*skipped.skip);
+    made.what = skipped.what;
+    made.why = skipped.reason;
+    made.node = if_any(skipped.of);
+    if (skipped.operations > 0) made.operations = skipped.operations;
   }
 
   void add_pairs() {

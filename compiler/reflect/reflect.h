@@ -17,7 +17,6 @@ namespace isoshade::reflect {
 List<RecordWords> record_of(const driver::ParameterBlock& block, size_t first);
 
 struct ReflectOptions {
-  driver::Division division = driver::Division::native;
   graph::FileRule files;  ///< which images may be read, to hash them
   bool prove = false;  ///< adds what `isoshade check` finds, which takes seconds where much is left to prove
   std::span<const driver::ForwardPair> pairs = {};  ///< of the shader, if they are written

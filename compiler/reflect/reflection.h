@@ -47,6 +47,7 @@ std::vector<std::string_view> wraps();
 std::vector<std::string_view> host_functions();
 std::vector<std::string_view> stages();
 std::vector<std::string_view> vertex_fields();  ///< of interface/records.def
+std::vector<std::string_view> skips();  ///< of interface/skips.def
 }  // namespace words
 
 using KindName = Word<words::kinds>;
@@ -61,6 +62,7 @@ using WrapName = Word<words::wraps>;
 using HostName = Word<words::host_functions>;
 using StageName = Word<words::stages>;
 using VertexFieldName = Word<words::vertex_fields>;
+using SkipName = Word<words::skips>;
 
 /// The version of the format. It changes when a reader of the one before could misread a file.
 struct Version {

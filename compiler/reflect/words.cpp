@@ -2,6 +2,7 @@
 // The words of a reflection, from the tables that declare them.
 #include "compiler/driver/program.h"
 #include "compiler/interface/host.h"
+#include "compiler/interface/skips.h"
 #include "compiler/nodes/table.h"
 #include "compiler/reflect/reflection.h"
 #include "compiler/support/assert.h"
@@ -66,6 +67,12 @@ std::vector<std::string_view> vertex_fields() {
 #define VERTEX(name, words) #name,
 #include "compiler/interface/records.def"
   };
+}
+
+std::vector<std::string_view> skips() {
+  std::vector<std::string_view> names;
+  for (const interface::SkipRow& row : interface::skip_rows) names.push_back(row.name);
+  return names;
 }
 
 std::vector<std::string_view> stages() {

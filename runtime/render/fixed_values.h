@@ -6,12 +6,10 @@
 #include <numeric>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/driver/driver.h"
 #include "runtime/render/parameters.h"
-#include "runtime/render/stats.h"
 
 namespace isoshade::render {
 
@@ -72,9 +70,5 @@ std::vector<Variant<Document>> variants_of(const driver::ParameterBlock& block, 
 /// The names of fields and images, one of whose words is fixed otherwise than `given` or not given at all.
 std::vector<std::string> broken_by(const driver::ParameterBlock& block, const driver::FixedWords& fixed,
                                    const driver::FixedWords& given);
-
-/// Reports what is fixed, if anything is. `what`: "the effect NAME"
-void report_fixed(const driver::ParameterBlock& block, const driver::FixedWords& fixed, std::string_view what,
-                  std::vector<Skipped>& skips);
 
 }  // namespace isoshade::render

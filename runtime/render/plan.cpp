@@ -293,8 +293,7 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   if (!make_objects()) return false;
   const double object_seconds = clock.lap();
   compile_effects();
-  for (const driver::Effect& effect : plan_.effects) report_draw_values(effect, skipped_in_programs_);
-  report_fixed();
+  report_programs();
   reads_time_ = find_time();
   compile_seconds += clock.lap();
   backends::Frame& frame = plan_.frame;

@@ -245,11 +245,12 @@ bool Planner::posts_keep_fixed() {
   return true;
 }
 
-void Planner::report_fixed() {
-  for (const driver::Effect& effect : plan_.effects)
-    render::report_fixed(effect.parameters, effect.fixed, "the effect " + effect.name, skipped_in_programs_);
-  for (const driver::Post& post : plan_.post_documents)
-    render::report_fixed(post.parameters, post.fixed, "the post " + post.name, skipped_in_programs_);
+void Planner::report_programs() {
+  const auto add = [&](const std::vector<Skipped>& skips) {
+    skipped_in_programs_.insert(skipped_in_programs_.end(), skips.begin(), skips.end());
+  };
+  for (const driver::Effect& effect : plan_.effects) add(driver::skipped_in(effect));
+  for (const driver::Post& post : plan_.post_documents) add(driver::skipped_in(post));
 }
 
 }  // namespace isoshade::render

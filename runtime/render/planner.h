@@ -101,7 +101,7 @@ class Planner {
   /// Whether programs that are compiled for fixed values suit those that are given now. Otherwise notes what has changed.
   bool keeps_fixed(const driver::ParameterBlock& block, const driver::FixedWords& fixed, const driver::FixedWords& given);
   bool posts_keep_fixed();
-  void report_fixed();
+  void report_programs();
 
   // The records of all copies (plan_place.cpp).
   /// One pass over a part of a copy. Its records stand one behind the other: of each repetition; where motion is drawn

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "compiler/ir/expansion.h"
 #include "runtime/scene/placement.h"
 
 namespace isoshade::render {
@@ -37,16 +36,6 @@ void report_skips(const scene::Object& object, const driver::Effect& effect, int
     const driver::Field& field = effect.parameters.fields[*pass.enabled];
     report({}, passes[p].disabled, copies * parts, unit, pass.name,
            field.name + " is " + (field.type == "boolean" ? "false" : "0"));
-  }
-}
-
-void report_draw_values(const driver::Effect& effect, std::vector<Skipped>& skips) {
-  for (const driver::EffectPass& pass : effect.passes) {
-    const auto& values = pass.pixel.draw;
-    if (values == nullptr) continue;
-    const auto operations = static_cast<int64_t>(ir::expanded_operations(values->module, values->entry)[values->entry]);
-    skips.push_back({interface::Skip::rates, "operations of pass " + pass.name + " of " + effect.name,
-                     "the same for all pixels of a draw", {}, operations});
   }
 }
 

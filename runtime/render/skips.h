@@ -23,9 +23,6 @@ struct PassSkips {
 void report_skips(const scene::Object& object, const driver::Effect& effect, int64_t parts,
                   std::span<const PassSkips> passes, std::vector<Skipped>& skips);
 
-/// Adds what the pixels of an effect's passes find in their records (Program::draw).
-void report_draw_values(const driver::Effect& effect, std::vector<Skipped>& skips);
-
 /// Adds what tiles were spared while a frame was drawn.
 void report_tiles(const backends::TileCounts& counts, std::vector<Skipped>& skips);
 

@@ -3,27 +3,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "backends/backend.h"
-#include "compiler/interface/skips.h"
+#include "compiler/driver/skipped.h"
 #include "runtime/render/finite.h"
 
 namespace isoshade::render {
 
-/// Something that was left out because it could not change a bit of the image.
-struct Skipped {
-  std::optional<interface::Skip> skip;  ///< none: the document asks for it, and it cannot be switched off
-  std::string what;    ///< "12 of 50 copies of balls"
-  std::string reason;  ///< "outside of the view"
-  std::string of = {};  ///< the object, light or effect with whose name `what` ends; what is alike is told together
-  // What that saved, where it is known.
-  int64_t operations = 0;  ///< of each pixel, or of each draw if it has no pixels
-  int64_t pixels = 0;      ///< of the frame
-  int64_t bytes = 0;       ///< of memory
-};
+using driver::Skipped;
 
 struct PlanStats {
   int64_t copies = 0;                     ///< of all objects, those skipped too

@@ -89,6 +89,7 @@ TEST_F(Cli, CompileSetLeavesOutWhatOtherValuesNeed) {
   std::string squeezed = read(folder_ / "out" / "glow.json");
   std::erase_if(squeezed, [](char c) { return c == ' ' || c == '\n'; });
   EXPECT_TRUE(has(squeezed, "\"fixed\":[0.25,0.5,0.75]") && has(squeezed, "\"fixed\":3")) << squeezed;
+  EXPECT_TRUE(has(reflection, "\"skip\": \"parameters\"") && has(reflection, "\"node\": \"noise\"")) << reflection;
   const std::string off = compiled("--set strength=0");
   EXPECT_TRUE(has(off, "parameters.tint") && !has(off, "noise3d") && !has(off, "parameters.strength") && !has(off, "parameters.mode")) << off;
   for (const char* wrapper : {"forward --target glsl,spirv", "isoshade --target glsl,cpp,spirv"})

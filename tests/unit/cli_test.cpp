@@ -281,6 +281,8 @@ TEST_F(Cli, StatsListSkippedPosts) {
                               file("a.png");
   const Outcome all = run(command);
   EXPECT_NE(all.text.find("posts:    2"), std::string::npos);
+  EXPECT_NE(all.text.find("skipped:  operations of the post height_fog: the same for all pixels of a draw (saves "), std::string::npos)
+      << all.text;
   EXPECT_NE(all.text.find("\nbuild:    0.0 ms\nvertices: "), std::string::npos) << all.text;  // the interpreter compiles nothing
   const Outcome without = run(command + " --set fog.fog_density=0");
   EXPECT_NE(without.text.find("skipped:  post fog: fog_density is 0"), std::string::npos) << without.text;

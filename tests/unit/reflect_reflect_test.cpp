@@ -258,5 +258,114 @@ TEST(Reflect, ProvesTheFunctionsForTheValuesForWhichTheyAreCompiled) {
   }
 }
 
+/// What is left out, by skip, node and number of operations; of no node: by what it is.
+struct Left {
+  Text skip, node;
+  Integer operations;
+  bool operator==(const Left&) const = default;
+};
+void PrintTo(const Left& left, std::ostream* out) { *out << left.skip << " of " << left.node << ": " << left.operations; }
+
+std::vector<Left> left_out(const Reflection& made) {
+  std::vector<Left> all;
+  for (const SkippedPart& part : made.skipped) {
+    EXPECT_FALSE(part.why.empty()) << part.what;
+    all.push_back({part.skip.text, part.node.value_or(part.what), part.operations.value_or(0)});
+  }
+  return all;
+}
+
+/// An effect of which ranges decide a clamp, a choice needs expensive noise on one side, and a switch chooses.
+const char* const skipping = R"json({"isoshade": 1, "effect": "e", "parameters": {
+    "k": {"type": "float", "value": 0.5, "min": 0, "max": 1}, "mode": {"type": "integer", "enum": ["plain", "noisy"], "value": "noisy"},
+    "gain": {"type": "float", "value": 1, "min": -4, "max": 4}},
+  "nodes": {"uv": {"type": "texcoord"},
+    "held": {"type": "clamp", "in": "k", "low": 0, "high": 1},
+    "noise": {"type": "fractal3d", "to": "float"},
+    "rough": {"type": "expression", "code": "uv.x > 0.5 ? noise : 0", "uv": "uv", "noise": "noise"},
+    "twice": {"type": "multiply", "in1": "gain", "in2": 2},
+    "chosen": {"type": "ifequal", "value1": "mode", "value2": 1, "in1": "rough", "in2": "twice"},
+    "color": {"type": "expression", "code": "color3(chosen + held)", "chosen": "chosen", "held": "held"}},
+  "passes": [{"name": "base", "color": "color"}]})json";
+
+TEST(Reflect, TellsWhatRangesAndBranchesLeaveOutNodeByNode) {
+  const std::vector<Left> left = left_out(reflection_of(skipping));
+  const auto of = [&](const Text& skip) {
+    std::vector<Left> some;
+    std::ranges::copy_if(left, std::back_inserter(some), [&](const Left& one) { return one.skip == skip; });
+    return some;
+  };
+  EXPECT_EQ(of("parameters"), std::vector<Left>{});
+  ASSERT_EQ(of("ranges").size(), 1u) << testing::PrintToString(left);
+  EXPECT_EQ(of("ranges")[0].node, "held");
+  EXPECT_GT(of("ranges")[0].operations, 0);
+  ASSERT_EQ(of("branches").size(), 3u) << testing::PrintToString(left);
+  EXPECT_EQ(of("branches")[0].node, "noise");
+  EXPECT_GT(of("branches")[0].operations, 100);
+  EXPECT_EQ(of("branches")[1], (Left{"branches", "rough", 1}));
+  EXPECT_EQ(of("branches")[2], (Left{"branches", "twice", 1}));
+  EXPECT_EQ(of("ranges").size() + of("branches").size(), left.size());
+}
+
+TEST(Reflect, TellsWhatFixedValuesLeaveOutNodeByNode) {
+  const Reflection plain = reflection_of(skipping, {}, {}, {"mode=plain", "gain=0.75"});
+  std::vector<Left> of_values;
+  for (const Left& left : left_out(plain))
+    if (left.skip == "parameters") of_values.push_back(left);
+  ASSERT_EQ(of_values.size(), 5u) << testing::PrintToString(of_values);
+  EXPECT_EQ(of_values[0], (Left{"parameters", "parameters mode, gain of the effect e", 0}));
+  EXPECT_EQ(of_values[1].node, "noise");
+  EXPECT_GT(of_values[1].operations, 100);
+  EXPECT_EQ(of_values[2].node, "rough");
+  EXPECT_EQ(of_values[3], (Left{"parameters", "twice", 1}));
+  EXPECT_EQ(of_values[4].node, "chosen");
+  const auto twice = std::ranges::find(plain.skipped, Optional<Text>("twice"), &SkippedPart::node);
+  EXPECT_EQ(twice->what, "all operations of twice");
+  EXPECT_EQ(twice->why, "the fixed values decide it, and it is 1.5");
+}
+
+TEST(Reflect, TellsOfLargeFunctionsWithoutTheirNodes) {
+  const auto with_noises = [](int count) {
+    std::string nodes = R"("place": {"type": "position"}, "held": {"type": "clamp", "in": "k", "low": 0, "high": 1},
+      "sum0": {"type": "add", "in1": "held", "in2": "gain"})";
+    for (int i = 1; i <= count; ++i) {
+      const std::string number = std::to_string(i);
+      nodes += R"(, "at)" + number + R"(": {"type": "multiply", "in1": "place", "in2": )" + number + R"(}, "noise)" + number +
+               R"(": {"type": "noise3d", "position": "at)" + number + R"(", "to": "float"}, "sum)" + number +
+               R"(": {"type": "add", "in1": "sum)" + std::to_string(i - 1) + R"(", "in2": "noise)" + number + R"("})";
+    }
+    return R"({"isoshade": 1, "effect": "e", "parameters": {"k": {"type": "float", "value": 0.5, "min": 0, "max": 1},
+      "gain": {"type": "float", "value": 1}}, "nodes": {)" + nodes + R"(, "color": {"type": "convert", "in": "sum)" +
+           std::to_string(count) + R"(", "to": "color3"}}, "passes": [{"name": "base", "color": "color"}]})";
+  };
+  const auto told = [&](int count) { return left_out(reflection_of(with_noises(count), {}, {}, {"gain=2"})); };
+  EXPECT_GT(told(1).size(), 1u);
+  EXPECT_EQ(told(260), (std::vector<Left>{{"parameters", "parameter gain of the effect e", 0}}));
+}
+
+TEST(Reflect, TellsOfNothingWhereNothingIsLeftOut) {
+  EXPECT_EQ(left_out(reflection_of(R"json({"isoshade": 1, "effect": "e", "parameters": {"gain": {"type": "float", "value": 1}},
+    "nodes": {"uv": {"type": "texcoord"}, "color": {"type": "expression", "code": "color3(uv.x * gain)", "uv": "uv", "gain": "gain"}},
+    "passes": [{"name": "base", "color": "color"}]})json")),
+            std::vector<Left>{});
+}
+
+TEST(Reflect, SaysWhetherBlackLightsMayBeLeftOut) {
+  const auto of = [](const std::string& term) {
+    return reflection_of(R"({"isoshade": 1, "effect": "e", "nodes": {"light": {"type": "lightcolor"}, "way": {"type": "lightdirection"},
+        "half": {"type": "multiply", "in1": "light", "in2": 0.5}, "toward": {"type": "convert", "in": "way", "to": "color3"},
+        "sum": {"type": "sum_lights", "in": ")" + term + R"("}},
+      "passes": [{"name": "base", "color": "sum"}]})").black_lights;
+  };
+  ASSERT_TRUE(of("half"));
+  EXPECT_TRUE(of("half")->left_out);
+  EXPECT_FALSE(of("half")->why.empty());
+  ASSERT_TRUE(of("toward"));
+  EXPECT_FALSE(of("toward")->left_out);
+  EXPECT_EQ(of("toward")->why, "\"sum\" sums up what does not depend on the colors of lights");
+  EXPECT_FALSE(reflection_of(R"({"isoshade": 1, "effect": "e", "passes": [{"name": "base", "color": [1, 0, 0]}]})").black_lights)
+      << "it asks for no lights";
+}
+
 }  // namespace
 }  // namespace isoshade::reflect
