@@ -289,6 +289,17 @@ TEST_F(Cli, StatsListSkippedPosts) {
   EXPECT_NE(without.text.find("posts:    1"), std::string::npos) << without.text;
 }
 
+TEST_F(Cli, ShippedParametersThatChangeOftenAreNotFixed) {
+  const auto fixed = [&](const std::string& scene) {
+    return run("render " + graphs + "/scenes/" + scene + ".json --size 16x9 --backend interpreter --stats -o " + file("a.png")).text;
+  };
+  const std::string bloom = fixed("bloom_balls"), cut_outs = fixed("cut_outs");
+  EXPECT_NE(bloom.find("of the post bloom_"), std::string::npos) << bloom;
+  EXPECT_EQ(bloom.find("exposure"), std::string::npos) << bloom;
+  EXPECT_NE(cut_outs.find("of the effect dissolve"), std::string::npos) << cut_outs;
+  EXPECT_EQ(cut_outs.find("amount"), std::string::npos) << cut_outs;
+}
+
 TEST_F(Cli, EachSkipIsSwitchedOffByItsNameAndAllWithoutOne) {
   const std::string fog = graphs + "/scenes/fog_balls.json --size 16x9 --backend interpreter --stats -o " + file("a.png") +
                           " --set fog.fog_density=0";
