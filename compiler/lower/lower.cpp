@@ -2,12 +2,12 @@
 #include "compiler/lower/lower.h"
 
 #include <algorithm>
-#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "compiler/lower/body.h"
 #include "compiler/lower/environment.h"
+#include "compiler/lower/inputs.h"
 #include "compiler/support/assert.h"
 
 namespace isoshade::lower {
@@ -17,10 +17,8 @@ using check::Operand;
 using check::TypedGraph;
 using graph::DocumentKind;
 using graph::Type;
-using interface::Assumption;
 using interface::Binding;
 using nodes::Value;
-namespace assume = interface::assume;
 namespace names = interface::names;
 
 /// SPIR-V allows 255 parameters of a function, and derivatives may double them. A function with more inputs than this
@@ -33,27 +31,6 @@ std::string authored_name(const std::string& name) {
   const bool taken = interface::is_kernel_function(name) || name.starts_with("iso_") ||
                      name.starts_with(names::sample_prefix);
   return taken ? "function_" + name : name;
-}
-
-/// The names of values that stand side by side: of each its own, or one a column of a matrix, "m_0", "m_1". No two are
-/// equal: a column's name gives way to a value of that name.
-std::vector<std::vector<std::string>> names_of_columns(
-    const std::vector<std::pair<std::string, Type>>& values) {
-  std::unordered_set<std::string> taken;
-  for (const auto& [name, type] : values)
-    if (nodes::column_count(type) == 1) taken.insert(name);
-  std::vector<std::vector<std::string>> all;
-  for (const auto& [name, type] : values) {
-    std::vector<std::string>& columns = all.emplace_back();
-    const int count = nodes::column_count(type);
-    if (count == 1) columns.push_back(name);
-    for (int i = 0; count > 1 && i < count; ++i) {
-      std::string column = name + "_" + std::to_string(i);
-      while (!taken.insert(column).second) column += "_";
-      columns.push_back(std::move(column));
-    }
-  }
-  return all;
 }
 
 /// A comment behind each function says which document it comes from.
@@ -102,49 +79,6 @@ std::span<const Operand> outputs_of(const TypedGraph& graph, size_t pass, PassPa
     case PassPart::coverage: return graph.cutout_of(pass);
   }
   support::bug("no such part of a pass");
-}
-
-Assumption assumed_of(const graph::Input& input) {
-  if (input.type == Type::boolean) return assume::boolean;
-  Assumption assumed = input.unit ? assume::direction : assume::anywhere;
-  if (input.min) assumed.lo = static_cast<double>(*input.min);
-  if (input.max) assumed.hi = static_cast<double>(*input.max);
-  if (!input.names.empty()) assumed = {0, static_cast<double>(input.names.size() - 1)};
-  // A written limit may lie beyond the other one, which is assumed.
-  if (assumed.lo > assumed.hi && !input.max) assumed.hi = assumed.lo;
-  if (assumed.lo > assumed.hi) assumed.lo = assumed.hi;
-  return assumed;
-}
-
-/// The range of a parameter that the optimiser may rely on: scenes are checked when they are loaded.
-void limit(ir::Parameter& parameter, const graph::Input& input) {
-  constexpr float most_exact = 0x1p24f, largest = std::numeric_limits<float>::max();
-  float least = input.min.value_or(-largest), most = input.max.value_or(largest);
-  if (!input.names.empty()) least = 0;
-  if (!input.names.empty()) most = static_cast<float>(input.names.size() - 1);
-  // A float holds a large integer only approximately.
-  const bool exact = input.type != Type::integer || (least >= -most_exact && most <= most_exact);
-  if (!exact || input.type == Type::boolean) return;
-  parameter.least = least;
-  parameter.most = most;
-}
-
-/// One binding, or one for each column of a matrix.
-std::vector<Binding> bind_input(const TypedGraph& graph, uint32_t index,
-                                const std::vector<std::string>& columns, const std::string& group,
-                                bool is_parameter) {
-  const graph::Input& input = graph.graph.inputs[index];
-  std::vector<Binding> bindings;
-  for (uint32_t c = 0; c < columns.size(); ++c) {
-    Binding binding{interface::source::Input{index, c},
-                    {columns[c], nodes::ir_type(input.type), group, is_parameter},
-                    assumed_of(input)};
-    if (is_parameter) limit(binding.parameter, input);
-    if (c == 0) binding.parameter.doc = input.doc;
-    if (columns.size() > 1) binding.element = static_cast<int>(c * columns.size());
-    bindings.push_back(std::move(binding));
-  }
-  return bindings;
 }
 
 class ModuleLowering {
@@ -396,12 +330,6 @@ bool has_part(const TypedGraph& graph, size_t pass, PassPart part) {
   return !outputs_of(graph, pass, part).empty();
 }
 
-std::vector<std::vector<std::string>> parameter_names(const TypedGraph& graph) {
-  std::vector<std::pair<std::string, Type>> inputs;
-  for (const graph::Input& input : graph.graph.inputs) inputs.emplace_back(input.name, input.type);
-  return names_of_columns(inputs);
-}
-
 Lowered lower(const TypedGraph& graph, const LowerOptions& options) {
   ModuleLowering lowering(options.nodes, options.light_lists);
   interface::Interface made;
@@ -415,19 +343,6 @@ Lowered lower(const TypedGraph& graph, const LowerOptions& options) {
       made = lowering.add_pass(graph, options.pass, options.part);
   }
   return {lowering.take_module(), std::move(made)};
-}
-
-std::vector<Binding> parameter_bindings(const TypedGraph& graph) {
-  const std::vector<std::vector<std::string>> columns = parameter_names(graph);
-  std::vector<Binding> bindings;
-  for (uint32_t i = 0; i < columns.size(); ++i) {
-    if (graph.graph.inputs[i].type == Type::filename) continue;
-    for (Binding& binding : bind_input(graph, i, columns[i], "parameters", true))
-      bindings.push_back(std::move(binding));
-  }
-  const std::vector<ImageSlot> slots = image_slots(graph).slots;
-  for (uint32_t i = 0; i < slots.size(); ++i) bindings.push_back(interface::bind_image(i, slots[i].name));
-  return bindings;
 }
 
 LoweredShader lower_shader(const TypedGraph& graph) {
