@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 
 namespace isoshade::cpu {
 
@@ -15,5 +16,10 @@ struct Canvas {
 
   size_t index(int x, int y) const { return static_cast<size_t>(y) * stride + static_cast<size_t>(x); }
 };
+
+/// Writes one color to `count` samples side by side.
+inline void fill_color(const float (&color)[4], int count, float* to) {
+  for (int i = 0; i < count; ++i) std::memcpy(to + 4 * i, color, sizeof color);
+}
 
 }  // namespace isoshade::cpu

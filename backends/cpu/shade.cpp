@@ -45,10 +45,6 @@ void copy_buffers(const TilePost& post, const std::vector<int32_t>& records, con
   buffers[static_cast<size_t>(lower::FrameBuffer::layers)] = layers;
 }
 
-void fill_color(const float (&color)[4], float* row, int width) {
-  for (int x = 0; x < width; ++x) std::memcpy(row + 4 * x, color, sizeof color);
-}
-
 }  // namespace
 
 std::optional<EmptyPixel> empty_pixel(const backends::View& view, std::span<const TilePost> posts, int side) {
@@ -119,17 +115,18 @@ bool TilePainter::finish(const DrawJob& job) {
 
 void TilePainter::fill_background(const DrawJob& job) const {
   for (int y = 0; y < canvas_.height; ++y) {
-    fill_color(job.view.background, canvas_.color + 4 * canvas_.index(0, y), canvas_.width);
+    fill_color(job.view.background, canvas_.width, canvas_.color + 4 * canvas_.index(0, y));
     std::fill_n(canvas_.depth + canvas_.index(0, y), canvas_.width, 0.0f);
   }
 }
 
 void TilePainter::fill_pixels(const DrawJob& job) const {
   const int x = (x_ - job.grid.area.x0) / job.side, y = (y_ - job.grid.area.y0) / job.side;
+  const int width = canvas_.width / job.side;
   for (int row = 0; row < canvas_.height / job.side; ++row) {
     const size_t first = static_cast<size_t>(y + row) * static_cast<size_t>(job.width) + static_cast<size_t>(x);
-    if (job.color != nullptr) fill_color(job.empty->color, job.color + 4 * first, canvas_.width / job.side);
-    std::fill_n(job.depth + first, canvas_.width / job.side, 0.0f);
+    if (job.color != nullptr) fill_color(job.empty->color, width, job.color + 4 * first);
+    std::fill_n(job.depth + first, width, 0.0f);
   }
 }
 

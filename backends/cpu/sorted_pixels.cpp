@@ -28,10 +28,6 @@ bool are_within(const int32_t* triangles, int count, int first, int end) {
   return !any(outside);
 }
 
-void fill(const float (&color)[4], int count, float* to) {
-  for (int i = 0; i < count; ++i) std::memcpy(to + 4 * i, color, sizeof color);
-}
-
 /// The colors of a block's row. Pixel by pixel, or compilers call memcpy.
 void copy_row(const float* from, float* to) {
   for (int i = 0; i < block_size; ++i) std::memcpy(to + 4 * i, from + 4 * i, 4 * sizeof(float));
@@ -145,7 +141,7 @@ void SortedPixels::write(const raster::Tile& tile, const float (&background)[4],
       float* const to = row + 4 * left;
       switch (shown_[first / block_pixels]) {
         case Shown::several: write_row(tile, background, first, count, to); break;
-        case Shown::nothing: fill(background, count, to); break;
+        case Shown::nothing: fill_color(background, count, to); break;
         case Shown::one_object:
           // All of its pixels lie in the window, as others show nothing.
           copy_row(color + 4 * (place_[first & -block_pixels] + first % block_pixels), to);

@@ -25,29 +25,37 @@ Drawn draw(render::Plan& plan, render::Renderer& renderer, bool skip) {
   return drawn;
 }
 
-/// "" is the widest.
-constexpr const char* lane_counts[] = {"1", "8", ""};
+/// Of 1 lane, of 8, of the widest, and with the interpreter in place of compiled code.
+std::vector<std::pair<std::string, std::unique_ptr<backends::Backend>>> cpu_backends() {
+  std::vector<std::pair<std::string, std::unique_ptr<backends::Backend>>> all;
+  for (const char* lanes : {"1", "8", ""}) all.emplace_back("lanes " + std::string(lanes), cpu_backend(lanes));
+  support::Diagnostics diagnostics;
+  cpu::CpuOptions options;
+  options.execution = cpu::Execution::interpreted;
+  all.emplace_back("interpreted", cpu::create(options, diagnostics));
+  return all;
+}
 
 class Tiles : public SceneFolder {
  protected:
   void SetUp() override {
-    const auto pass = [](const std::string& color, const std::string& state = "") {
-      return R"("passes": [{"name": "base", "color": ")" + color + "\"" + state + "}]}";
+    const auto pass = [](const std::string& color, const std::string& more = "") {
+      return R"("passes": [{"name": "base", "color": ")" + color + "\"" + more + "}]}";
     };
     folder_.write("lit.json", R"json({"isoshade": 1, "effect": "lit", "nodes": {"n": {"type": "normal"},
       "c": {"type": "expression", "code": "color4(n.x * 0.5 + 0.5, n.y * 0.5 + 0.5, n.z * 0.5 + 0.5, 1)", "n": "n"}},)json" +
                                    pass("c"));
     folder_.write("glass.json", R"json({"isoshade": 1, "effect": "glass", "nodes": {"n": {"type": "normal"},
       "c": {"type": "expression", "code": "color4(n.x * n.x, 0.2, 0.3, 0.4)", "n": "n"}},)json" +
-                                     pass("c", R"(, "state": {"blend": "over"})"));
+                                     pass("c", R"(, "blend": "over")"));
     folder_.write("tone.json", R"json({"isoshade": 1, "post": "tone",
       "parameters": {"gain": {"type": "float", "value": 2, "min": 0, "max": 8}},
       "nodes": {"s": {"type": "scenecolor"}, "d": {"type": "scenedepth"},
         "c": {"type": "expression", "code": "color4(s.rgb * gain / (s.rgb + 1), s.a + d)", "s": "s", "d": "d.out", "gain": "gain"}},
       "outputs": {"color": "c"}})json");
     folder_.write("place.json", R"json({"isoshade": 1, "post": "place",
-      "nodes": {"s": {"type": "scenecolor"}, "r": {"type": "viewray"},
-        "c": {"type": "expression", "code": "color4(s.rgb + abs(r) * 0.25, s.a)", "s": "s", "r": "r"}},
+      "nodes": {"s": {"type": "scenecolor"}, "d": {"type": "scenedepth"}, "r": {"type": "viewray"},
+        "c": {"type": "expression", "code": "color4(s.rgb + color3(abs(r) * (d + 0.25)), s.a)", "s": "s", "d": "d.out", "r": "r"}},
       "outputs": {"color": "c"}})json");
     folder_.write("beside.json", R"json({"isoshade": 1, "post": "beside",
       "nodes": {"s": {"type": "scenecolor"}, "o": {"type": "scenecolor", "offsetx": 1},
@@ -77,9 +85,8 @@ class Tiles : public SceneFolder {
     render::Plan reference = plan(size, samples, members, false), all = plan(size, samples, members);
     const backends::Image expected = equivalence::draw(reference, *interpreter_);
     std::optional<backends::TileCounts> found;
-    for (const char* lanes : lane_counts) {
-      const std::string what = text(size, samples) + ", lanes " + lanes;
-      const auto cpu = cpu_backend(lanes);
+    for (const auto& [name, cpu] : cpu_backends()) {
+      const std::string what = text(size, samples) + ", " + name;
       render::Renderer renderer(*cpu);
       const Drawn without = draw(all, renderer, false), with = draw(all, renderer, true), again = draw(all, renderer, true);
       expect_identical(expected, without.image, what + ", without");

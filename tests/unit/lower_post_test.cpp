@@ -40,6 +40,31 @@ TEST(LowerPost, TakesOnlyTheInputsItUses) {
             "camera.depth_denominator");
 }
 
+TEST(LowerPost, TellsWhetherPixelsOfOneColorAndDepthBecomeTheSame) {
+  const auto is = [](const std::string& nodes) {
+    FrontEnd front_end;
+    const auto graph = front_end.check(R"({"isoshade": 1, "post": "p", "images": ["glow"],
+      "nodes": {"s": {"type": "scenecolor"}, )" + nodes + R"(}, "outputs": {"color": "color"}})");
+    EXPECT_NE(graph, nullptr) << front_end.diagnostics.text();
+    if (graph == nullptr) return std::string();
+    const lower::Lowered lowered = lower::lower(*graph);
+    if (!lower::is_pointwise(lowered)) return std::string("reads others");
+    return std::string(lower::ignores_place(lowered) ? "same" : "by place");
+  };
+  const auto added = [](const std::string& node, const std::string& part) {
+    return "\"n\": {\"type\": " + node + R"json(}, "color": {"type": "expression", "code": "s * ()json" + part +
+           R"json()", "s": "s", "n": "n"})json";
+  };
+  EXPECT_EQ(is(added(R"("time")", "n")), "same");
+  EXPECT_EQ(is(added(R"("scenedepth")", "n")), "same");
+  EXPECT_EQ(is(added(R"("cameraposition")", "n.x")), "same");
+  EXPECT_EQ(is(added(R"("viewray")", "n.x")), "by place");
+  EXPECT_EQ(is(added(R"("worldposition")", "n.x")), "by place");
+  EXPECT_EQ(is(added(R"("screencoord")", "n.x")), "by place");
+  EXPECT_EQ(is(added(R"("scenecolor", "offsetx": 1)", "n.r")), "reads others");
+  EXPECT_EQ(is(added(R"("scenecolor", "image": "glow")", "n.r")), "reads others");
+}
+
 TEST(LowerPost, ReservesItsOwnNames) {
   // Functions of documents that are called as what surrounds a post.
   FrontEnd front_end;
