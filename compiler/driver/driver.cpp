@@ -5,8 +5,9 @@
 
 #include "compiler/check/stage_needs.h"
 #include "compiler/driver/finish.h"
-#include "compiler/driver/plain_background.h"
 #include "compiler/driver/front.h"
+#include "compiler/driver/plain_background.h"
+#include "compiler/ir/record_words.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/lower/light_sums.h"
 #include "compiler/lower/lower.h"
@@ -199,10 +200,12 @@ void make_programs(Effect& effect, const CompileOptions& of_scene) {
     made.pixel = pixel_program(typed, i, effect, options, room);
     effect.reads_previous |= reads_previous(made.vertex) || reads_previous(made.pixel) ||
                              (made.cutout && reads_previous(*made.cutout));
-    made.sums_lights = std::ranges::any_of(made.pixel.bindings, [](const interface::Binding& binding) {
-      return std::holds_alternative<interface::source::LightCount>(binding.source);
-    });
-    made.receives_shadow &= made.sums_lights;
+    // Fixed values of parameters may leave nothing of a sum over lights, or of their shadows.
+    const auto loads = [&](lower::FrameBuffer buffer) {
+      return ir::loads_from(made.pixel.module, static_cast<uint32_t>(buffer));
+    };
+    made.sums_lights = loads(lower::FrameBuffer::lights);
+    made.receives_shadow &= made.sums_lights && loads(lower::FrameBuffer::layers);
     if (made.state.blend != interface::Blend::none) made.blend = pixel_program(typed, i, effect, options, room, true);
     room += std::max(draw_words(made.pixel), made.blend ? draw_words(*made.blend) : 0);
     effect.draw_words = std::max(effect.draw_words, room - first_draw_word(effect));

@@ -57,6 +57,15 @@ struct EffectPass {
   std::optional<Program> cutout;  ///< whether a pixel is drawn; every pixel is if there is none
 };
 
+/// Calls `use` for each program of a pass.
+template <class Use>
+void for_each_program(const EffectPass& pass, const Use& use) {
+  use(pass.vertex);
+  use(pass.pixel);
+  if (pass.blend) use(*pass.blend);
+  if (pass.cutout) use(*pass.cutout);
+}
+
 struct Effect {
   std::string name;
   std::string document;

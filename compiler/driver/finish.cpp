@@ -27,11 +27,12 @@ std::optional<passes::DrawRate> draw_rate(Stage stage, uint32_t first) {
   rate.first = first;
   rate.buffers = {number(FrameBuffer::objects), number(FrameBuffer::textures), number(FrameBuffer::frame)};
   rate.late_words = {lower::object_word::first_light, lower::object_word::light_count};
+  rate.parameter = lower::record_parameter(stage);
   switch (stage) {
-    case Stage::vertex: rate.parameter = 1; break;
-    case Stage::cutout: rate.parameter = 3; break;
+    case Stage::vertex:
+    case Stage::cutout:
     case Stage::pixel:
-    case Stage::blend: rate.parameter = 3; break;
+    case Stage::blend: break;
     case Stage::post:
       // Where the images lie is up to the backend.
       namespace word = lower::image_word;

@@ -3,6 +3,7 @@
 // else, so that both languages and the interpreter run one definition.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -41,6 +42,22 @@ constexpr bool decides_visibility(Stage stage) {
     case Stage::post: break;
   }
   return false;
+}
+
+/// Which parameter of the kernel is the first word of the object's record; none where there is no such record. That of a
+/// post begins at word 0.
+constexpr std::optional<size_t> record_parameter(Stage stage) {
+  switch (stage) {
+    case Stage::vertex: return 1;
+    case Stage::cutout:
+    case Stage::pixel:
+    case Stage::blend: return 3;
+    case Stage::setup:
+    case Stage::depth:
+    case Stage::eval:
+    case Stage::post: break;
+  }
+  return std::nullopt;
 }
 
 /// Which kinds of light a scene has: the others are not asked about.

@@ -2,12 +2,14 @@
 #include "runtime/render/draw_evaluator.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "compiler/ir/interpreter.h"
+#include "compiler/ir/record_words.h"
 #include "runtime/lanes/lanes.h"
 
 namespace isoshade::render {
@@ -16,38 +18,16 @@ namespace {
 
 using lower::FrameBuffer;
 
-/// Where the words of the record lie that the values depend on: all before them if that is not plain.
+/// Where the words of the record lie that the values depend on: all before them if that does not show.
 std::vector<uint32_t> words_read(const passes::DrawValues& values) {
-  const ir::Function& entry = values.module.functions[values.entry];
-  std::vector<ir::InstructionId> made_by(entry.values.size(), ir::none);
-  for (ir::InstructionId id = 0; id < entry.instructions.size(); ++id)
-    for (uint32_t k = 0; k < entry.instructions[id].result_count; ++k)
-      made_by[entry.instructions[id].first_result + k] = id;
-  const auto constant = [&](ir::ValueId value) -> std::optional<uint32_t> {
-    const bool is_constant = made_by[value] != ir::none && entry.instructions[made_by[value]].op == ir::Opcode::constant;
-    return is_constant ? std::optional(entry.instructions[made_by[value]].imm) : std::nullopt;
-  };
-  const auto place = [&](ir::ValueId value) -> std::optional<uint32_t> {
-    if (made_by[value] == ir::none) return 0;  // the record
-    const ir::Instruction& made = entry.instructions[made_by[value]];
-    if (made.op != ir::Opcode::iadd) return constant(value);
-    const auto operands = entry.operands_of(made);
-    return made_by[operands[0]] == ir::none ? constant(operands[1]) : std::nullopt;
-  };
-  std::set<uint32_t> words;
-  bool is_plain = true;
-  for (size_t f = 0; f < values.module.functions.size(); ++f) {
-    const ir::Function& function = values.module.functions[f];
-    for (const ir::Instruction& made : function.instructions) {
-      if (made.op != ir::Opcode::load || made.imm != static_cast<uint32_t>(FrameBuffer::objects)) continue;
-      const auto word = f == values.entry ? place(function.operands_of(made)[0]) : std::nullopt;
-      is_plain = is_plain && word && *word < values.first;
-      if (word) words.insert(*word);
-    }
-  }
-  if (is_plain) return {words.begin(), words.end()};
-  std::vector<uint32_t> all;
-  for (uint32_t word = 0; word < values.first; ++word) all.push_back(word);
+  const bool has_parameter = !values.module.functions[values.entry].parameters.empty();
+  const auto words =
+      ir::loaded_words(values.module, values.entry, has_parameter ? std::optional<size_t>(0) : std::nullopt,
+                       std::array{static_cast<uint32_t>(FrameBuffer::objects)});
+  const auto is_stored_here = [&](uint32_t word) { return word >= values.first; };
+  if (words && std::ranges::none_of(*words, is_stored_here)) return *words;
+  std::vector<uint32_t> all(values.first);
+  std::iota(all.begin(), all.end(), 0u);
   return all;
 }
 

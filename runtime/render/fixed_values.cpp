@@ -35,31 +35,8 @@ Groups split(const Groups& groups, size_t word, std::span<const FixedWords> give
   return made;
 }
 
-/// Marks the words that a program reads.
-void mark_read(const driver::Program& program, const ParameterBlock& block, std::vector<bool>& words) {
-  for (const interface::Binding& binding : program.bindings) {
-    if (const auto* input = std::get_if<interface::source::Input>(&binding.source)) {
-      const size_t width = binding.parameter.type.width;
-      for (size_t i = 0; i < width; ++i) words[block.word_of(input->input) + input->column * width + i] = true;
-    } else if (const auto* image = std::get_if<interface::source::Image>(&binding.source)) {
-      words[block.word_of_image(image->slot)] = true;
-    }
-  }
-}
-
 uint64_t operations(const driver::Program& program) {
   return ir::expanded_operations(program.module, program.entry)[program.entry];
-}
-
-/// Calls `use` for each program of an effect.
-template <class Use>
-void for_each_program(const driver::Effect& effect, const Use& use) {
-  for (const driver::EffectPass& pass : effect.passes) {
-    use(pass.vertex);
-    use(pass.pixel);
-    if (pass.blend) use(*pass.blend);
-    if (pass.cutout) use(*pass.cutout);
-  }
 }
 
 }  // namespace
@@ -81,21 +58,10 @@ Groups groups_of(const ParameterBlock& block, std::span<const FixedWords> given,
   return groups;
 }
 
-std::vector<bool> read_words(const driver::Effect& effect) {
-  std::vector<bool> words(effect.parameters.word_count());
-  for_each_program(effect, [&](const driver::Program& program) { mark_read(program, effect.parameters, words); });
-  return words;
-}
-
-std::vector<bool> read_words(const driver::Post& post) {
-  std::vector<bool> words(post.parameters.word_count());
-  mark_read(post.program, post.parameters, words);
-  return words;
-}
-
 uint64_t operations(const driver::Effect& effect) {
   uint64_t sum = 0;
-  for_each_program(effect, [&](const driver::Program& program) { sum += operations(program); });
+  for (const driver::EffectPass& pass : effect.passes)
+    driver::for_each_program(pass, [&](const driver::Program& program) { sum += operations(program); });
   return sum;
 }
 

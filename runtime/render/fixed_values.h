@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/driver/driver.h"
+#include "compiler/driver/reads.h"
 #include "runtime/render/parameters.h"
 
 namespace isoshade::render {
@@ -30,9 +31,6 @@ inline constexpr size_t max_variants = 4;  ///< of one effect or post document
 std::vector<std::vector<size_t>> groups_of(const driver::ParameterBlock& block,
                                            std::span<const driver::FixedWords> given, const std::vector<bool>& reads);
 
-/// By word of the record: whether programs read it.
-std::vector<bool> read_words(const driver::Effect& effect);
-std::vector<bool> read_words(const driver::Post& post);
 /// The operations of all programs.
 uint64_t operations(const driver::Effect& effect);
 uint64_t operations(const driver::Post& post);
@@ -52,7 +50,7 @@ std::vector<Variant<Document>> variants_of(const driver::ParameterBlock& block, 
   std::iota(all.begin(), all.end(), size_t{0});
   std::vector<Variant<Document>> whole;
   whole.push_back(made_for(std::move(all)));
-  const auto groups = groups_of(block, given, read_words(whole[0].document));
+  const auto groups = groups_of(block, given, driver::words_read(whole[0].document));
   if (groups.size() == 1) return whole;
   std::vector<Variant<Document>> variants;
   uint64_t run = 0, compiled = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/ir/printer.h"
+#include "compiler/ir/record_words.h"
 #include "compiler/lower/frame_layout.h"
 #include "compiler/support/visible.h"
 #include "runtime/lanes/lanes.h"
@@ -33,12 +34,8 @@ lower::LightKinds kinds_of(const std::vector<scene::Light>& lights) {
 }
 
 bool draw_reads_frame(const driver::Program& program) {
-  const auto reads_frame = [](const ir::Function& function) {
-    return std::ranges::any_of(function.instructions, [](const ir::Instruction& made) {
-      return made.op == ir::Opcode::load && made.imm == static_cast<uint32_t>(lower::FrameBuffer::frame);
-    });
-  };
-  return program.draw != nullptr && std::ranges::any_of(program.draw->module.functions, reads_frame);
+  return program.draw != nullptr &&
+         ir::loads_from(program.draw->module, static_cast<uint32_t>(lower::FrameBuffer::frame));
 }
 
 }  // namespace
@@ -121,8 +118,9 @@ void Planner::compile_effects() {
       const uint32_t cutout = pass.cutout ? add_program(*pass.cutout) : backends::Frame::no_program;
       const uint32_t pixel = add_program(pass.pixel, cutout);
       programs.push_back({vertex, pixel, pass.blend ? add_program(*pass.blend, cutout) : pixel});
-      draws_read_frame_ |= draw_reads_frame(pass.vertex) || draw_reads_frame(pass.pixel) ||
-                           (pass.blend && draw_reads_frame(*pass.blend)) || (pass.cutout && draw_reads_frame(*pass.cutout));
+      driver::for_each_program(pass, [&](const driver::Program& program) {
+        draws_read_frame_ = draws_read_frame_ || draw_reads_frame(program);
+      });
     }
   }
 }
