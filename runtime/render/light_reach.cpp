@@ -61,18 +61,22 @@ bool is_black(LightRecord light) {
   return light[word::color] == 0 && light[word::color + 1] == 0 && light[word::color + 2] == 0;
 }
 
+double squared_distance(LightRecord light, const ReachBox& box) {
+  double sum = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const double at = light[word::position + i];
+    const double gap = std::max({box.low[i] - at, at - box.high[i], 0.0});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
 bool reaches(LightRecord light, const ReachBox& box) {
   const auto kind = static_cast<scene::LightKind>(light[word::kind]);
   if (kind == scene::LightKind::directional) return true;
   if (!std::ranges::all_of(light, [](float value) { return std::isfinite(value); })) return true;
-  double distance2 = 0;
-  for (size_t i = 0; i < 3; ++i) {
-    const double at = light[word::position + i];
-    const double gap = std::max({box.low[i] - at, at - box.high[i], 0.0});
-    distance2 += gap * gap;
-  }
   // The window of the falloff is saturate(1 - (distance^2 / range^2)^2).
-  if (distance2 * light[word::range] > 1 + 4 * rounding) return false;
+  if (squared_distance(light, box) * light[word::range] > 1 + 4 * rounding) return false;
   return kind != scene::LightKind::spot || !is_outside_cone(light, box);
 }
 

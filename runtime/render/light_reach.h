@@ -25,6 +25,8 @@ ReachBox box_around(const glm::vec3& low, const glm::vec3& high, const glm::mat4
 bool may_be_left_out(const scene::Light& light);
 
 bool is_black(LightRecord light);
+/// From the light's position to the nearest point of the box.
+double squared_distance(LightRecord light, const ReachBox& box);
 /// False if the colour that arrives (lower::light_values) is 0 at every point of the box. True if the light is not
 /// finite.
 bool reaches(LightRecord light, const ReachBox& box);

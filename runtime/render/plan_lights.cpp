@@ -51,13 +51,20 @@ void Planner::add_lights(const scene::View& picture) {
     auto record = scene::light_record(light);
     const bool is_black = light.intensity == 0 || light.color == glm::vec3(0);
     const bool is_left_out = is_black && skips(interface::Skip::shadows);
-    const std::vector<ShadowMap> maps = light.shadow && !is_left_out
-                                            ? shadow_maps(light, placed_.hulls, picture, workers_)
-                                            : std::vector<ShadowMap>{};
-    if (light.shadow && maps.empty())
+    std::vector<ShadowMap> maps;
+    if (light.shadow && !is_left_out) {
+      ShadowMaps made = shadow_maps(light, record, placed_.hulls, picture, workers_);
+      if (made.may_darken || !skips(interface::Skip::shadows)) maps = std::move(made.maps);
+    }
+    if (light.shadow && maps.empty()) {
+      const int64_t side = light.shadow->size;
       plan_.stats.skips.push_back(
-          {interface::Skip::shadows, "shadow of " + light.name,
-           is_left_out ? "the light is black" : "it darkens nothing that is seen", light.name});
+          {.skip = interface::Skip::shadows,
+           .what = "shadow of " + light.name,
+           .reason = is_left_out ? "the light is black" : "it darkens nothing that is seen",
+           .of = light.name,
+           .bytes = static_cast<int64_t>(shadow_map_count(light) * sizeof(float)) * side * side});
+    }
     note_largest_shadow(light, maps.size());
     if (!maps.empty()) {
       const size_t place = frame.views.size() + (has_opaque_view_ ? 1 : 0);

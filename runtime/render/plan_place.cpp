@@ -37,6 +37,7 @@ Hull Planner::hull_of(size_t o, const glm::mat4& model) const {
   Hull hull;
   hull.moves = std::ranges::any_of(passes, &driver::EffectPass::moves_vertices);
   hull.corners = corners_of(mesh.low, mesh.high, hull.moves ? moved : 0.0f, model);
+  hull.box = box_around(mesh.low, mesh.high, model);
   hull.casts = object.casts_shadow && std::ranges::any_of(passes, &driver::EffectPass::casts_shadow);
   hull.casts_anywhere = hull.casts && std::ranges::any_of(passes, [](const driver::EffectPass& pass) {
     return pass.casts_shadow && pass.moves_vertices;

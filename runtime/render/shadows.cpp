@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <numbers>
 
 #include "runtime/scene/host_math.h"
 
@@ -150,6 +151,12 @@ vec3 up_across(const vec3& along) {
 /// The number of texels at each edge of a map that only the filter reads.
 float margin_of(const scene::Shadow& shadow) { return std::ceil(shadow.softness * 0.5f) + 1; }
 
+/// ShadowMap::margin.
+float margin_factor(const scene::Shadow& shadow) {
+  const auto size = static_cast<float>(shadow.size);
+  return size / std::max(size - 2 * margin_of(shadow), 1.0f);
+}
+
 raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& camera, const scene::View& view,
                           float depths) {
   // The filter compares with texels whose centres lie so far away, and positions are rounded to 1/256.
@@ -170,8 +177,7 @@ raster::DepthBias bias_of(const scene::Shadow& shadow, const scene::Camera& came
 /// deep as `depths` pictures, towards the light.
 ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow, float depths = 1) {
   ShadowMap map{camera, scene::make_view(camera, shadow.size, shadow.size), {}};
-  const auto size = static_cast<float>(shadow.size);
-  map.margin = size / std::max(size - 2 * margin_of(shadow), 1.0f);
+  map.margin = margin_factor(shadow);
   map.view.clip_from_view[0][0] /= map.margin;
   map.view.clip_from_view[1][1] /= map.margin;
   for (const int column : {2, 3}) map.view.clip_from_view[column][2] /= depths;
@@ -180,8 +186,8 @@ ShadowMap map_of(const scene::Camera& camera, const scene::Shadow& shadow, float
   return map;
 }
 
-std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<const Hull> hulls,
-                                          const scene::View& picture, threads::Workers& workers) {
+ShadowMaps map_of_directional(const scene::Light& light, std::span<const Hull> hulls,
+                              const scene::View& picture, threads::Workers& workers) {
   const vec3 back = scene::normalize(-light.direction);
   const vec3 up = up_across(back);
   const vec3 right = scene::normalize(scene::cross(up, back)), upright = scene::cross(back, right);
@@ -189,7 +195,6 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
     return vec3(scene::dot(right, p), scene::dot(upright, p), scene::dot(back, p));
   };
   const std::array<Plane, 4> sides = sides_of(picture.projection);
-  if (std::ranges::none_of(hulls, &Hull::darkens)) return {};
   const auto see = [&](const std::array<vec3, 8>& corners, Bounds& bounds) {
     for_seen_points(corners, picture, sides, [&](const vec3& p) { bounds.add(in_light(p)); });
   };
@@ -200,7 +205,10 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
   const bool may_show = std::ranges::any_of(hulls, [](const Hull& hull) { return hull.shows && hull.moves; });
   // Nothing is where it was: look wherever vertices may have been moved to.
   if (seen.empty() && may_show) see(all.widened(moved_sizes), seen);
-  if (seen.empty()) return {};
+  const bool shows_any = !seen.empty();
+  if (!shows_any)  // the map shows all there is, for comparison
+    for (const vec3& corner : all.empty() ? corners_of(vec3(0), vec3(0), 0, glm::mat4(1)) : all.widened(0))
+      seen.add(in_light(corner));
   float nearest = seen.high.z;
   bool casts = false, casts_anywhere = false;
   for (const Hull& hull : hulls) {
@@ -214,7 +222,8 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
     casts = true;
     nearest = std::max(nearest, box.high.z);
   }
-  if (!casts && !casts_anywhere) return {};
+  const bool may_darken =
+      shows_any && (casts || casts_anywhere) && std::ranges::any_of(hulls, &Hull::darkens);
   const vec3 middle = (seen.low + seen.high) * 0.5f;
   const vec3 extent = vec3(seen.high.x, seen.high.y, nearest) - seen.low;
   const float widest = std::max({extent.x, extent.y, 1e-6f});
@@ -228,21 +237,25 @@ std::vector<ShadowMap> map_of_directional(const scene::Light& light, std::span<c
   camera.height = widest * (1 + slack);
   camera.near = 0;
   camera.far = depth * (1 + 2 * slack);
-  if (!casts_anywhere) return {map_of(camera, *light.shadow)};
+  if (!casts_anywhere) return {{map_of(camera, *light.shadow)}, may_darken};
   // How far the map must see beyond `begin`, in depths of the map: a power of two, so that all depths keep their digits.
   float depths = 1;
   while ((depths - 1) * camera.far < moved_sizes * all.largest() && depths < most_depths) depths *= 2;
-  return {map_of(camera, *light.shadow, depths)};
+  return {{map_of(camera, *light.shadow, depths)}, may_darken};
 }
 
-/// Whether a point of the hull may lie within the range of the light.
-bool may_reach(const scene::Light& light, const Hull& hull) {
+/// The angle from the middle of each map of a point light or a spot to its sides, in degrees.
+float half_angle(const scene::Light& light) { return shadow_map_count(light) == 1 ? light.outer_angle : 45; }
+
+/// Whether a hull may stand before something within the range of a point light or a spot, as a map shows it.
+bool may_hide(const scene::Light& light, LightRecord record, const Hull& hull) {
+  if (!hull.casts) return false;
   if (light.range == 0 || hull.moves) return true;
-  Bounds box;
-  for (const vec3& corner : hull.corners) box.add(corner);
-  const vec3 gap = glm::max(glm::max(box.low - light.position, light.position - box.high), vec3(0));
-  const float reach = light.range * (1 + slack);
-  return !(scene::dot(gap, gap) > reach * reach);
+  // A map compares depths along its axis. In its corners they are this much less than distances.
+  const double side =
+      std::tan(double{half_angle(light)} * std::numbers::pi / 180) * double{margin_factor(*light.shadow)};
+  const double reach = double{light.range} * (1 + double{slack});
+  return !(squared_distance(record, hull.box) > reach * reach * (1 + 2 * side * side));
 }
 
 }  // namespace
@@ -265,15 +278,17 @@ size_t shadow_map_count(const scene::Light& light) {
   return light.kind == scene::LightKind::point || is_wide ? 6 : 1;
 }
 
-std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture,
-                                   threads::Workers& workers) {
+ShadowMaps shadow_maps(const scene::Light& light, LightRecord record, std::span<const Hull> hulls,
+                       const scene::View& picture, threads::Workers& workers) {
   if (light.kind == scene::LightKind::directional) return map_of_directional(light, hulls, picture, workers);
-  const auto is_darkened = [&](const Hull& hull) { return hull.darkens && may_reach(light, hull); };
-  if (std::ranges::none_of(hulls, is_darkened) || std::ranges::none_of(hulls, &Hull::casts)) return {};
+  const auto is_darkened = [&](const Hull& hull) {
+    return hull.darkens && (hull.moves || reaches(record, hull.box));
+  };
+  const auto hides = [&](const Hull& hull) { return may_hide(light, record, hull); };
+  ShadowMaps made{{}, std::ranges::any_of(hulls, is_darkened) && std::ranges::any_of(hulls, hides)};
   scene::Camera camera;
   camera.position = light.position;
   camera.near = bounds_of(hulls, workers).largest() * near_part;
-  std::vector<ShadowMap> maps;
   // Far enough to differ from the position.
   const vec3 away = glm::abs(light.position);
   const float far_enough = std::max({away.x, away.y, away.z, 1.0f});
@@ -281,20 +296,20 @@ std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hu
     camera.target = light.position + along * far_enough;
     camera.up = up_across(along);
     camera.fov = fov;
-    maps.push_back(map_of(camera, *light.shadow));
+    made.maps.push_back(map_of(camera, *light.shadow));
   };
   if (shadow_map_count(light) == 1) {
-    add(scene::normalize(light.direction), 2 * light.outer_angle);
+    add(scene::normalize(light.direction), 2 * half_angle(light));
   } else {
     for (int axis = 0; axis < 3; ++axis) {
       for (const float sign : {1.0f, -1.0f}) {
         vec3 along(0);
         along[axis] = sign;
-        add(along, 90);
+        add(along, 2 * half_angle(light));
       }
     }
   }
-  return maps;
+  return made;
 }
 
 }  // namespace isoshade::render

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/raster/clip.h"
+#include "runtime/render/light_reach.h"
 #include "runtime/scene/placement.h"
 #include "runtime/scene/scene.h"
 #include "runtime/threads/workers.h"
@@ -18,6 +19,7 @@ namespace isoshade::render {
 /// A box around a copy of an object, in world space.
 struct Hull {
   std::array<glm::vec3, 8> corners;  ///< bit i of the index: the high end along axis i of object space
+  ReachBox box;                      ///< around its vertices, unless they are moved
   bool casts = false;                ///< a shadow
   bool casts_anywhere = false;       ///< a pass that casts moves vertices, maybe out of the box
   bool may_show = false;             ///< it receives shadows
@@ -40,11 +42,17 @@ struct ShadowMap {
 /// How many maps a light has.
 size_t shadow_map_count(const scene::Light& light);
 
-/// The maps of a light that has a shadow: one for a directional light, fitted to what the picture shows of the boxes and
-/// as deep as what may darken it (of vertices that are moved: up to twice the size of the scene away); one for a spot, around its cone; six for a point light, and for a spot wider than 60
-/// degrees, towards +x -x +y -y +z -z. Every map has a margin for the filter. Empty if there is nothing that it could
-/// darken. The caller holds a lanes::FpGuard.
-std::vector<ShadowMap> shadow_maps(const scene::Light& light, std::span<const Hull> hulls, const scene::View& picture,
-                                   threads::Workers& workers);
+struct ShadowMaps {
+  std::vector<ShadowMap> maps;
+  /// Whether drawing them may darken anything that the picture shows: otherwise without them the picture has the same bits.
+  bool may_darken = false;
+};
+
+/// The maps of a light that has a shadow: one for a directional light, fitted to what the picture shows of the boxes and as
+/// deep as what may darken it (of vertices that are moved: up to twice the size of the scene away); one for a spot, around
+/// its cone; six for a point light, and for a spot wider than 60 degrees, towards +x -x +y -y +z -z. Every map has a margin
+/// for the filter. `record`: of the light. The caller holds a lanes::FpGuard.
+ShadowMaps shadow_maps(const scene::Light& light, LightRecord record, std::span<const Hull> hulls,
+                       const scene::View& picture, threads::Workers& workers);
 
 }  // namespace isoshade::render

@@ -314,37 +314,5 @@ TEST_F(Shadows, AreCastFromWhereVerticesAreMovedTo) {
   EXPECT_EQ(light("[-2, 2, 0]", "[0, 0, 30]"), 1);
 }
 
-TEST_F(Shadows, ThatDarkenNothingAreNotDrawn) {
-  const render::Plan made = plan({64, 64}, 1, R"("lights": {"sun": {"type": "directional", "direction": [1, -1, 0], "shadow": {}}},
-    "objects": {"ball": {"mesh": "sphere", "effect": "lit.json", "casts_shadow": false}})");
-  EXPECT_EQ(made.frame.views.size(), 1u);
-  ASSERT_EQ(made.stats.skips.size(), 1u);
-  EXPECT_EQ(made.stats.skips[0].what, "shadow of sun");
-}
-
-TEST_F(Shadows, OfLightsThatArriveNowhereAreNotDrawn) {
-  folder_.write("flat.json", R"({"isoshade": 1, "effect": "flat", "passes": [{"name": "p", "color": 1}]})");
-  folder_.write("dull.json", R"json({"isoshade": 1, "effect": "dull",
-    "nodes": {"c": {"type": "lightcolor"}, "sum": {"type": "sum_lights", "in": "c"}},
-    "passes": [{"name": "p", "receives_shadow": false, "color": "sum"}]})json");
-  const auto maps = [&](const std::string& light, const std::string& effect = "lit.json") {
-    const render::Plan made = plan({64, 64}, 1, R"("lights": {"l": {"shadow": {}, )" + light +
-                                                    R"(}}, "objects": {"ball": {"mesh": "sphere", "effect": ")" + effect + "\"}}");
-    const auto is_shadow = [](const render::Skipped& skipped) { return skipped.skip == interface::Skip::shadows; };
-    EXPECT_EQ(std::ranges::count_if(made.stats.skips, is_shadow), made.frame.views.size() == 1 ? 1 : 0);
-    return made.frame.views.size() - 1;
-  };
-  const std::string sun = R"("type": "directional", "direction": [1, -1, 0])";
-  const std::string lamp = R"("type": "point", "position": [0, 5, 0])";
-  EXPECT_EQ(maps(sun), 1u);
-  EXPECT_EQ(maps(sun + R"(, "intensity": 0)"), 0u);
-  EXPECT_EQ(maps(sun + R"(, "color": [0, 0, 0])"), 0u);
-  EXPECT_EQ(maps(sun, "flat.json"), 0u) << "no pass reads lights";
-  EXPECT_EQ(maps(sun, "dull.json"), 0u) << "no pass receives shadows";
-  EXPECT_EQ(maps(lamp), 6u);
-  EXPECT_EQ(maps(lamp + R"(, "range": 4.1)"), 6u);
-  EXPECT_EQ(maps(lamp + R"(, "range": 3.9)"), 0u) << "it ends before it reaches anything";
-}
-
 }  // namespace
 }  // namespace isoshade::equivalence
