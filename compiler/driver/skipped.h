@@ -19,7 +19,7 @@ struct Skipped {
   std::optional<interface::Skip> skip;  ///< none: the document asks for it, and it cannot be switched off
   std::string what;    ///< "12 of 50 copies of balls"
   std::string reason;  ///< "outside of the view"
-  /// The object, light, effect or node with whose name `what` ends; what is alike is told together.
+  /// The object, light, effect, image or node with whose name `what` ends; what is alike is told together.
   std::string of = {};
   // What that saved, where it is known.
   int64_t operations = 0;  ///< of each pixel, or of each draw if it has no pixels

@@ -133,7 +133,7 @@ std::string measured_schema() {
       {{"what", text("what was left out")},
        {"why", text("why that changes no bit")},
        {"skip", {{"enum", std::move(names)}, {"description", "what `--no-skip` takes; absent if the document itself asks for it"}}},
-       {"of", text("the object, light or effect that it belongs to")},
+       {"of", text("the object, light, effect or image that it belongs to")},
        {"operations", whole("that each pixel is spared, or each draw if it has no pixels", 1)},
        {"pixels", whole("that are not computed", 1)},
        {"bytes", whole("that are not stored", 1)}},

@@ -2,6 +2,7 @@
 #include "runtime/render/image_layers.h"
 
 #include <algorithm>
+#include <span>
 
 #include "compiler/support/visible.h"
 
@@ -129,12 +130,13 @@ size_t LayeredImage::file_bytes() const {
   return bytes;
 }
 
-std::optional<std::vector<std::vector<FileImage>>> LayeredImage::decode(Diagnostics& diagnostics) const {
+std::optional<std::vector<std::vector<FileImage>>> LayeredImage::decode(bool smaller,
+                                                                        Diagnostics& diagnostics) const {
   std::vector<std::vector<FileImage>> all;
   for (const Layers& layers : layers_) {
     const size_t first = all.size();
     all.resize(first + static_cast<size_t>(layers.count));
-    for (const File& file : layers.levels) {
+    for (const File& file : std::span(layers.levels).first(smaller ? layers.levels.size() : 1)) {
       auto image = scene::read_image(file.name, *file.bytes, diagnostics, file.where);
       if (!image) return std::nullopt;
       if (layers.count == 1) {

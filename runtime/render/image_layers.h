@@ -38,8 +38,9 @@ class LayeredImage {
   const ImageShape& shape() const { return shape_; }
   /// Of all files together.
   size_t file_bytes() const;
-  /// By layer: the levels that files hold, from the largest on. Reports damaged files.
-  std::optional<std::vector<std::vector<scene::FileImage>>> decode(support::Diagnostics& diagnostics) const;
+  /// By layer: the levels that files hold, from the largest on; without `smaller` the largest alone. Reports damaged files.
+  std::optional<std::vector<std::vector<scene::FileImage>>> decode(bool smaller,
+                                                                   support::Diagnostics& diagnostics) const;
 
  private:
   struct File {

@@ -45,6 +45,16 @@ class ParameterValues {
   /// holds lanes::FpGuard.
   std::vector<float> words(const scene::Instance& instance, const std::function<int(int)>& record_of) const;
 
+  /// Calls use(image, texture) for each image of the block and the number of each texture that it is in some copy.
+  template <class Use>
+  void for_each_texture(const Use& use) const {
+    for (size_t image = 0; image < images_.size(); ++image) {
+      if (images_[image].texture >= 0) use(image, images_[image].texture);
+      for (const int texture : images_[image].along_axis)
+        if (texture >= 0) use(image, texture);
+    }
+  }
+
   /// Whether both have the same textures.
   bool has_images_of(const ParameterValues& other) const { return images_ == other.images_; }
 

@@ -42,8 +42,9 @@ bool Planner::find_time() {
   };
   const auto effect_reads = [&](const driver::Effect& effect) {
     return std::ranges::any_of(effect.passes, [&](const driver::EffectPass& pass) {
-      return reads(pass.vertex) || reads(pass.pixel) || (pass.blend && reads(*pass.blend)) ||
-             (pass.cutout && reads(*pass.cutout));
+      bool any = false;
+      driver::for_each_program(pass, [&](const driver::Program& program) { any = any || reads(program); });
+      return any;
     });
   };
   plan_.views_read_time = std::ranges::any_of(plan_.effects, effect_reads);
@@ -298,6 +299,7 @@ bool Planner::plan(const Scene& scene, Diagnostics& diagnostics) {
   compile_seconds += clock.lap();
   backends::Frame& frame = plan_.frame;
   programs_without_motion_ = frame.programs.size();
+  leave_out_images();
   if (!textures_.store(frame, diagnostics)) return false;
   texels_of_textures_ = frame.texels.size();
   words_of_textures_ = frame.textures.size();
@@ -354,7 +356,7 @@ void Planner::finish_stats(double seconds) {
   stats.mesh_vertices = static_cast<int64_t>(frame.vertices.size()) / lower::vertex_word::stride;
   stats.effects = static_cast<int64_t>(plan_.effects.size());
   stats.programs = static_cast<int64_t>(frame.programs.size());
-  stats.textures = static_cast<int64_t>(textures_.count());
+  stats.textures = textures_.count();
   stats.texels = textures_.texel_count();
   stats.texture_bytes = static_cast<int64_t>(4 * (frame.texels.size() + frame.texel_bytes.size()));
   stats.lights = frame.light_count;

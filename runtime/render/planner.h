@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a plan is made, for the files of this folder that make it: plan.cpp compiles and collects, plan_place.cpp writes
 // the records of all copies, plan_compile.cpp makes the programs, plan_views.cpp lists what each view draws,
-// plan_lights.cpp places the shadow maps, plan_light_lists.cpp lists the lights of each copy.
+// plan_images.cpp finds which images they read, plan_lights.cpp places the shadow maps, plan_light_lists.cpp lists the lights of each copy.
 #pragma once
 
 #include <map>
@@ -102,6 +102,10 @@ class Planner {
   bool keeps_fixed(const driver::ParameterBlock& block, const driver::FixedWords& fixed, const driver::FixedWords& given);
   bool posts_keep_fixed();
   void report_programs();
+
+  // The images that programs read (plan_images.cpp).
+  /// Leaves out of the store what no program reads of an image, and reports it.
+  void leave_out_images();
 
   // The records of all copies (plan_place.cpp).
   /// One pass over a part of a copy. Its records stand one behind the other: of each repetition; where motion is drawn

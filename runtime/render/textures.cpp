@@ -55,15 +55,21 @@ std::vector<Skipped> unread_images(const std::vector<driver::Effect>& effects) {
   return skips;
 }
 
-int64_t TextureStore::Texture::texel_count() const { return render::texel_count(shape, mips); }
-int64_t TextureStore::Texture::bytes() const { return bytes_of(shape, mips); }
+int64_t TextureStore::Texture::texel_count() const {
+  return part.texels ? render::texel_count(shape, stores_mips()) : 0;
+}
+int64_t TextureStore::Texture::bytes() const { return part.texels ? bytes_of(shape, stores_mips()) : 0; }
 
 backends::Largest TextureStore::Texture::described() const {
   return {"the image " + support::quote(source.path) + ", " + std::to_string(shape.header.width) + " x " +
               std::to_string(shape.header.height) +
-              (shape.layers > 1 ? ", " + std::to_string(shape.layers) + " layers" : "") + (mips ? " with mip levels: " : ": ") + std::to_string(bytes()) +
-              " bytes",
+              (shape.layers > 1 ? ", " + std::to_string(shape.layers) + " layers" : "") +
+              (stores_mips() ? " with mip levels: " : ": ") + std::to_string(bytes()) + " bytes",
           source.where};
+}
+
+int64_t TextureStore::count() const {
+  return std::ranges::count_if(textures_, [](const Texture& texture) { return texture.part.texels; });
 }
 
 int64_t TextureStore::texel_count() const {
@@ -111,18 +117,27 @@ std::optional<int> TextureStore::find(const ImageSource& source, lower::Decoding
   const auto number = static_cast<int>(textures_.size());
   shapes_[canonical] = shape;
   numbers_[{canonical, srgb}] = number;
-  Texture& texture = textures_.emplace_back(Texture{source, srgb, mips, shape, std::move(image), {}});
-  if (shape.header.bytes) {
-    waiting_bytes_ += texture.image->file_bytes();
-    if (waiting_bytes_ > most_waiting_bytes && !decode_all(diagnostics)) return std::nullopt;
-  } else if (!texture.decode(diagnostics)) {  // here, because decoding computes floats in the mode of this thread
-    return std::nullopt;
-  }
+  const Texture& texture =
+      textures_.emplace_back(Texture{source, srgb, mips, shape, std::move(image), {}, {}});
+  // The files wait in memory until it is known which images programs read. When they are too many, all are decoded.
+  waiting_bytes_ += texture.image->file_bytes();
+  if (waiting_bytes_ > most_waiting_bytes && !decode_all(diagnostics)) return std::nullopt;
   return number;
 }
 
+int64_t TextureStore::store_only(int number, Part part) {
+  Texture& texture = textures_[static_cast<size_t>(number)];
+  const int64_t before = texture.bytes();
+  texture.part = part;
+  if (!part.texels) {
+    texture.image.reset();
+    texture.layers.clear();
+  }
+  return before - texture.bytes();
+}
+
 bool TextureStore::Texture::decode(support::Diagnostics& diagnostics) {
-  auto decoded = image->decode(diagnostics);
+  auto decoded = image->decode(part.levels, diagnostics);
   image.reset();
   if (!decoded) return false;
   for (std::vector<scene::FileImage>& layer : *decoded) {
@@ -140,7 +155,7 @@ bool TextureStore::Texture::decode(support::Diagnostics& diagnostics) {
 bool TextureStore::decode_all(support::Diagnostics& diagnostics) {
   std::vector<Texture*> waiting;
   for (Texture& texture : textures_)
-    if (texture.image) waiting.push_back(&texture);
+    if (texture.image && texture.shape.header.bytes) waiting.push_back(&texture);
   waiting_bytes_ = 0;
   std::vector<support::Diagnostics> reports(waiting.size());
   std::atomic<bool> good = true;
@@ -154,12 +169,15 @@ bool TextureStore::decode_all(support::Diagnostics& diagnostics) {
       added.fix = one.fix;
     }
   }
+  // Here, because decoding computes floats in the mode of this thread.
+  for (Texture& texture : textures_)
+    if (texture.image && !texture.decode(diagnostics)) good = false;
   return good;
 }
 
 int TextureStore::Texture::smaller_levels() const {
   const auto side = static_cast<unsigned>(std::max(shape.header.width, shape.header.height));
-  return mips ? std::bit_width(side) - 1 : 0;
+  return stores_mips() ? std::bit_width(side) - 1 : 0;
 }
 
 namespace {
@@ -205,16 +223,17 @@ int append_levels(const std::vector<scene::TextureLevel>& levels, backends::Fram
 bool TextureStore::store(backends::Frame& frame, support::Diagnostics& diagnostics) {
   if (!decode_all(diagnostics)) return false;
   is_stored_ = true;
-  const bool has_bytes =
-      std::ranges::any_of(textures_, [](const Texture& texture) { return texture.shape.header.bytes; });
-  size_t bytes = textures_.empty() ? 0 : 1, floats = has_bytes ? 2 * lower::byte_table::size : 0;
+  const bool has_bytes = std::ranges::any_of(
+      textures_, [](const Texture& texture) { return texture.part.texels && texture.shape.header.bytes; });
+  size_t bytes = count() == 0 ? 0 : 1, floats = has_bytes ? 2 * lower::byte_table::size : 0;
   struct Job {
     Texture* texture;
     size_t layer, first;  ///< word
   };
   std::vector<Job> jobs;
   for (Texture& texture : textures_) {
-    records_.push_back(static_cast<int>(frame.textures.size() / word::stride));
+    records_.push_back(texture.part.texels ? static_cast<int>(frame.textures.size() / word::stride) : -1);
+    if (!texture.part.texels) continue;
     const scene::ImageHeader& header = texture.shape.header;
     const int smaller = texture.smaller_levels();
     const int table = texture.srgb ? lower::byte_table::srgb : lower::byte_table::linear;
@@ -244,6 +263,7 @@ bool TextureStore::store(backends::Frame& frame, support::Diagnostics& diagnosti
   });
   const Texture* largest[] = {nullptr, nullptr};
   for (const Texture& texture : textures_) {
+    if (!texture.part.texels) continue;
     const Texture*& known = largest[texture.shape.header.bytes ? 1 : 0];
     if (known == nullptr || texture.bytes() > known->bytes()) known = &texture;
   }

@@ -39,18 +39,30 @@ class TextureStore {
       : rule_(rule), workers_(workers), most_bytes_(most_bytes) {}
 
   /// The number of the texture; it has mip levels if any caller passes `mips`. Reports what is not an image, or too
-  /// large. After store() finds, and does not report, only what is stored.
+  /// large. After store() finds, and does not report, only what was found before.
   std::optional<int> find(const ImageSource& source, lower::Decoding decoding, bool mips,
                           support::Diagnostics& diagnostics);
 
-  /// Fills the texture buffers of the frame. Call it once; it releases the images. Images of bytes are decoded only now, on
-  /// all threads. Reports damaged ones.
+  /// How many have been found; their numbers are those below.
+  size_t found() const { return textures_.size(); }
+  /// What is stored of a texture.
+  struct Part {
+    bool texels = true, levels = true;  ///< `levels`: the smaller mip levels, if it has them
+  };
+  /// Leaves the rest of a texture out: it need not be decoded. Returns the bytes that this saves. Call it before store().
+  int64_t store_only(int number, Part part);
+  /// What messages call the image.
+  const std::string& name(int number) const { return textures_[static_cast<size_t>(number)].source.path; }
+
+  /// Fills the texture buffers of the frame. Call it once; it releases the images. They are decoded only now, unless their
+  /// files were too large to wait for it: those of bytes on all threads. Reports damaged ones.
   bool store(backends::Frame& frame, support::Diagnostics& diagnostics);
-  /// The record of a stored texture, by its number; -1 for -1.
+  /// The record of a texture, by its number; -1 for -1, and for what is not stored.
   int record(int number) const { return number < 0 ? -1 : records_[static_cast<size_t>(number)]; }
 
-  size_t count() const { return textures_.size(); }
-  int64_t texel_count() const;  ///< of all textures, with their mip levels
+  // Of what is stored.
+  int64_t count() const;
+  int64_t texel_count() const;  ///< with mip levels
 
  private:
   /// Of a layer, from the largest on.
@@ -61,15 +73,17 @@ class TextureStore {
     bool mips;
     ImageShape shape;
     std::optional<LayeredImage> image;  ///< until it is decoded
+    Part part = {};                     ///< that is stored
     std::vector<Levels> layers;         ///< what the files have
 
     bool decode(support::Diagnostics& diagnostics);
+    bool stores_mips() const { return mips && part.levels; }
     int smaller_levels() const;  ///< of each layer
     int64_t texel_count() const;
     int64_t bytes() const;
     backends::Largest described() const;
   };
-  /// Decodes the images that are not yet decoded, on all threads.
+  /// Decodes the images that are not yet decoded and will be stored.
   bool decode_all(support::Diagnostics& diagnostics);
   template <class Word>
   void store_layer(const Texture& texture, Levels levels, Word* to) const;

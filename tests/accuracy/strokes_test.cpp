@@ -15,7 +15,7 @@ const std::vector<int> sizes{256, 128, 64, 32};
 std::vector<std::vector<scene::FileImage>> shipped_strokes() {
   support::Diagnostics diagnostics;
   const auto image = render::LayeredImage::open({ISOSHADE_GRAPHS "/textures/hatching.json", nullptr, {}}, nullptr, diagnostics);
-  auto layers = image ? image->decode(diagnostics) : std::nullopt;
+  auto layers = image ? image->decode(true, diagnostics) : std::nullopt;
   EXPECT_TRUE(layers) << diagnostics.text();
   return layers.value_or(std::vector<std::vector<scene::FileImage>>());
 }

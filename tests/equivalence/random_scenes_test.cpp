@@ -80,7 +80,8 @@ class RandomScene {
         "../effects/refraction.json",      "../effects/fur.json",
         "../effects/overlay.json",         "../effects/stylised_highlight.json",
         "../effects/planted.json",         "../materials/moved_vertices.json",
-        "../materials/textured.json",      "../materials/derivatives.json"};
+        "../materials/textured.json",      "../materials/derivatives.json",
+        "../materials/gltf_pbr.json"};  // twice: it has many images
     const std::string effect = effects[below(std::size(effects))];
     std::string text = "\"object" + std::to_string(i) + "\": {\"mesh\": " + meshes[below(std::size(meshes))];
     text += ", \"effect\": \"" + effect + "\", \"transform\": {\"translate\": " + vector(-4, 2, -1, 2, -4, 3);
@@ -97,9 +98,12 @@ class RandomScene {
   std::string parameters(const std::string& effect) {
     std::string text;
     for (const driver::Field& field : fields_of(effect)) {
+      if (below(2) == 0) continue;
+      const std::string choice = choice_of(field);
+      if (!choice.empty()) text += (text.empty() ? "" : ", ") + ("\"" + field.name + "\": ") + choice;
       const bool is_number = field.type == "float" || field.type == "color3" || field.type == "vector2" ||
                              field.type == "vector3";
-      if (!is_number || below(2) == 0) continue;
+      if (!is_number) continue;
       const auto value = [&](size_t i) {
         const double usual = field.value[i];
         const double low = field.min ? double{*field.min} : usual - 1,
@@ -118,6 +122,15 @@ class RandomScene {
       text += "[" + list(field.words, [&](int c) { return value(static_cast<size_t>(c)); }) + "]";
     }
     return text;
+  }
+
+  /// Of what has no numbers: a switch, one of some names, or an image. Otherwise nothing.
+  std::string choice_of(const driver::Field& field) {
+    static constexpr const char* images[] = {"", "../textures/uv_grid.png", "../textures/leaf.png",
+                                             "../textures/toon_ramp.png"};
+    if (field.type == "boolean") return below(2) == 0 ? "true" : "false";
+    if (!field.names.empty()) return "\"" + field.names[below(field.names.size())] + "\"";
+    return field.type == "filename" ? "\"" + std::string(images[below(std::size(images))]) + "\"" : "";
   }
 
   static const std::vector<driver::Field>& fields_of(const std::string& effect) {
@@ -157,7 +170,7 @@ TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
   const auto [first, last] = seeds(12, 10'000);
   const auto interpreter = interpreter::create();
   const auto cpu = cpu_backend();
-  int64_t left_out = 0;
+  int64_t left_out = 0, images = 0;
   for (uint64_t seed = first; seed < last; ++seed) {
     const std::string text = RandomScene(seed).text();
     const scene::Scene scene =
@@ -167,6 +180,8 @@ TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
     const render::Plan all = plan(scene, size.width, size.height, false), with = plan(scene, size.width, size.height);
     ASSERT_FALSE(::testing::Test::HasFailure()) << "seed " << seed << ": " << text;
     left_out += with.stats.left_out_lights;
+    images += std::ranges::count(with.stats.in_programs, std::optional(interface::Skip::textures),
+                                 &render::Skipped::skip);
     const backends::Image expected = draw(all, *interpreter);
     expect_identical(expected, draw(with, *interpreter), "interpreter, seed " + std::to_string(seed));
     // C++ compilers take most of the time.
@@ -177,6 +192,7 @@ TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
   EXPECT_GT(left_out, 0);
   EXPECT_GT(cpu->tile_counts().blocks_of_one_object, 0);
   EXPECT_GT(cpu->tile_counts().empty, 0);
+  EXPECT_GT(images, 0);
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ target_compile_definitions(environment_test PRIVATE ISOSHADE_GRAPHS="${PROJECT_S
 isoshade_test(render_test
   SOURCES
     unit/render_finite_test.cpp
+    unit/render_images_test.cpp
     unit/render_parts_test.cpp
     unit/render_plan_test.cpp
     unit/render_posts_test.cpp
