@@ -189,6 +189,7 @@ TEST(RandomScenes, HaveTheSameBitsWithAndWithoutSkips) {
       expect_identical(expected, draw(with, *cpu), "cpu, seed " + std::to_string(seed));
     ASSERT_FALSE(::testing::Test::HasFailure()) << text;
   }
+  if (last - first < 12) return;  // a few scenes need not have all of these
   EXPECT_GT(left_out, 0);
   EXPECT_GT(cpu->tile_counts().blocks_of_one_object, 0);
   EXPECT_GT(cpu->tile_counts().empty, 0);
