@@ -71,6 +71,7 @@ class TilePainter {
     alignas(64) float color[4 * raster::tile_pixels];
     alignas(64) float depth[raster::tile_pixels];
   };
+
   void collect(const DrawJob& job, int tile);
   /// In the image, or in samples_ if a pixel has several.
   Canvas canvas_of(const DrawJob& job, int tile);
@@ -79,7 +80,7 @@ class TilePainter {
   void fill_background(const DrawJob& job) const;
   /// Writes EmptyPixel to the image.
   void fill_pixels(const DrawJob& job) const;
-  /// Runs the posts and makes pixels of samples.
+  /// Runs the posts and makes pixels of samples. Returns as paint().
   bool finish(const DrawJob& job);
   bool process(const TilePost& post, const DrawJob& job);
   void resolve(const DrawJob& job);

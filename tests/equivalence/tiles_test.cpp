@@ -166,14 +166,18 @@ TEST_F(Tiles, ThatShowManyObjectsAreDrawnAsBefore) {
   EXPECT_EQ(counts.blocks_of_one_object, 0);
 }
 
-TEST_F(Tiles, OfAPostThatIsNotFiniteAreFound) {
-  const std::string members = ball("", post("divide"));
-  render::Plan made = plan({203, 135}, 1, members);
+TEST_F(Tiles, OfPixelsThatAreNotFiniteAreFound) {
+  // The left tile is covered; the depth of the right one is 0.
+  const std::string members = R"("camera": {"type": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "height": 64},
+    "background": [0.5, 0.5, 0.5, 1], "objects": {"wall": {"mesh": {"type": "plane", "size": [64, 64]}, "effect": "lit.json",
+      "transform": {"translate": [-32, 0, 0], "rotate": [90, 0, 0]}}}, "posts": [)" + post("divide") + "]";
+  render::Plan made = plan({128, 64}, 1, members);
   const auto cpu = cpu_backend();
   render::Renderer renderer(*cpu);
   const Drawn without = draw(made, renderer, false), with = draw(made, renderer, true);
-  EXPECT_GT(without.stats.non_finite.result.count, 0);
-  EXPECT_EQ(with.stats.non_finite.result.count, without.stats.non_finite.result.count);
+  EXPECT_EQ(with.stats.tiles.empty, 1);
+  EXPECT_EQ(without.stats.non_finite.result.count, 64 * 64);
+  EXPECT_EQ(with.stats.non_finite.result.count, 64 * 64);
   expect_identical(without.image, with.image, "not finite");
 }
 
@@ -227,6 +231,11 @@ TEST_F(TilesOfFrames, AreFilledAgainAfterOtherFrames) {
   draw(frame, renderer, true);
   draw(frame, renderer, false);
   EXPECT_EQ(draw(frame, renderer, true).stats.tiles.kept, 0);
+  // The same image, of which a tile of samples takes another part.
+  render::Plan sampled = plan({203, 135}, 4, ball_at("1.5"));
+  const Drawn drawn = draw(sampled, renderer, true);
+  EXPECT_EQ(drawn.stats.tiles.kept, 0);
+  expect_identical(equivalence::draw(sampled, *interpreter_), drawn.image, "4 samples after 1");
 }
 
 }  // namespace
