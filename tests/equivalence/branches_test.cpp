@@ -59,12 +59,7 @@ render::Plan plan_with(const interface::Skips& skips, const scene::Scene& scene)
 }
 
 TEST(Branches, ChangeNoBitOnAnyBackend) {
-  std::vector<std::unique_ptr<backends::Backend>> all;
-  all.push_back(interpreter::create());
-  all.push_back(cpu_backend());
-#ifdef ISOSHADE_VULKAN
-  all.push_back(vulkan_backend());
-#endif
+  const std::vector<std::unique_ptr<backends::Backend>> all = every_backend();
   for (const char* name : {"material_balls", "gltf_textures", "cartoon_tub", "sketch", "environment_balls"}) {
     const scene::Scene scene = load(scene_path(name));
     const render::Plan with = plan_with({}, scene);

@@ -13,17 +13,6 @@ namespace {
 
 using interface::Skip;
 
-std::vector<std::unique_ptr<backends::Backend>> every_backend() {
-  std::vector<std::unique_ptr<backends::Backend>> all;
-  all.push_back(interpreter::create());
-  all.push_back(cpu_backend());
-#ifdef ISOSHADE_VULKAN
-  all.push_back(vulkan_backend());
-  all.push_back(vulkan_backend(std::nullopt, true));
-#endif
-  return all;
-}
-
 /// A surface with dirt on it, and stains on the dirt.
 const std::string dirty = R"json({"isoshade": 1, "effect": "dirty", "parameters": {
     "paint": {"type": "filename", "value": "paint.png"}, "dirt": {"type": "filename", "value": "dirt.png"},

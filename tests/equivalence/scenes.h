@@ -108,6 +108,18 @@ inline std::unique_ptr<backends::Backend> vulkan_backend(
 }
 #endif
 
+/// With Vulkan in both of its ways.
+inline std::vector<std::unique_ptr<backends::Backend>> every_backend() {
+  std::vector<std::unique_ptr<backends::Backend>> all;
+  all.push_back(interpreter::create());
+  all.push_back(cpu_backend());
+#ifdef ISOSHADE_VULKAN
+  all.push_back(vulkan_backend());
+  all.push_back(vulkan_backend(std::nullopt, true));
+#endif
+  return all;
+}
+
 inline void expect_identical(const backends::Image& a, const backends::Image& b, const std::string& what) {
   const compare::Comparison comparison = compare::compare(a, b);
   EXPECT_TRUE(comparison.identical()) << what << ": " << compare::describe(comparison, "first", "second");

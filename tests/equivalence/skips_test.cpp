@@ -32,17 +32,6 @@ interface::Skips without(Skip skip) {
   return skips;
 }
 
-std::vector<std::unique_ptr<backends::Backend>> every_backend() {
-  std::vector<std::unique_ptr<backends::Backend>> all;
-  all.push_back(interpreter::create());
-  all.push_back(cpu_backend());
-#ifdef ISOSHADE_VULKAN
-  all.push_back(vulkan_backend());
-  all.push_back(vulkan_backend(std::nullopt, true));
-#endif
-  return all;
-}
-
 /// Expects that the scene has the same bits without the skip; returns how many lights were left out.
 int64_t left_out(const scene::Scene& scene, Size size = {61, 43}) {
   check::Library library(ISOSHADE_GRAPHS "/library");
